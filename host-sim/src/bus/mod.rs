@@ -1,0 +1,1 @@
+//! CAN buses behind one trait.

@@ -1,0 +1,11 @@
+//! The host harness of holdover: scenario -> world of vehicles (plant + the same core as on the ECU) -> V2X channel
+//! -> CAN bus -> metrics -> report.
+
+pub mod baseline;
+pub mod bus;
+pub mod channel;
+pub mod modem;
+pub mod recording;
+pub mod reference;
+pub mod report;
+pub mod scenario;

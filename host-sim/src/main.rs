@@ -1,0 +1,3 @@
+//! `holdover-sim`: the command line of the host harness.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! Recorded motion and recorded channels: a CSV file enters, checked rows leave.

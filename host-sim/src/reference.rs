@@ -1,0 +1,1 @@
+//! The discrete equations of the core in float64: the reference that the fixed-point core is held against.

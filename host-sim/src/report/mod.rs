@@ -1,0 +1,1 @@
+//! The HTML report: results enter, one self-contained page with plots leaves.

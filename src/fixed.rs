@@ -1,0 +1,121 @@
+//! The number formats of the core, each named once with its range, resolution and rounding; what enters are raw
+//! fixed-point words, what leaves are their products.
+//!
+//! | format | quantity | range | resolution |
+//! |---|---|---|---|
+//! | [`DistanceFormat`] `I12F20` | distance, gap | ±2048 m | 0.95 µm |
+//! | [`PositionFormat`] `I44F20` | position along the lane | ±8.8e12 m | 0.95 µm |
+//! | [`SpeedFormat`] `I9F23` | speed | ±256 m/s | 0.12 µm/s |
+//! | [`AccelerationFormat`] `I7F25` | acceleration, jerk | ±64 m/s² | 0.03 µm/s² |
+//! | [`SecondsFormat`] `I3F29` | time gap, damping, steps times speed | ±4 s | 1.9 ns |
+//! | [`FineSecondsFormat`] `I2F30` | steps times acceleration | ±2 s | 0.93 ns |
+//! | [`GainFormat`] `I3F29` | the law's gain `k` | ±4 /s² | 1.9e-9 |
+//! | [`ShareFormat`] `I2F30` | a share from 0 to 1 | ±2 | 9.3e-10 |
+//!
+//! The formats are chosen so that every product of the prediction step is a plain `>> 32`, which is one instruction
+//! (`SMMULR`) on a Cortex-M4:
+//!
+//! | product | formats | rounding |
+//! |---|---|---|
+//! | speed × seconds = distance | F23 × F29 → F20 | to nearest |
+//! | acceleration × fine seconds = speed | F25 × F30 → F23 | to nearest |
+//! | distance × gain = acceleration | F20 × F29 → F17, then `<< 8` → F25 | to nearest 7.6 µm/s², saturating |
+//! | acceleration × share = acceleration | F25 × F30 → F23, then `<< 2` → F25 | to nearest 0.12 µm/s², saturating |
+//!
+//! Sums saturate, except in ring positions, which are modulo 4096 m on purpose ([`crate::units::RingPosition`]).
+
+use fixed::types::extra::{U20, U23, U25, U29, U30};
+use fixed::{FixedI32, FixedI64};
+
+/// Distance and gap in metres.
+pub type DistanceFormat = FixedI32<U20>;
+/// Position along the lane in metres.
+pub type PositionFormat = FixedI64<U20>;
+/// Speed in metres per second.
+pub type SpeedFormat = FixedI32<U23>;
+/// Acceleration in m/s², jerk in m/s³.
+pub type AccelerationFormat = FixedI32<U25>;
+/// A time that multiplies a speed, in seconds.
+pub type SecondsFormat = FixedI32<U29>;
+/// A time that multiplies an acceleration, in seconds.
+pub type FineSecondsFormat = FixedI32<U30>;
+/// The gain `k` of the consensus law, in 1/s².
+pub type GainFormat = FixedI32<U29>;
+/// A share from 0 to 1, such as `e^(-δt/T)`.
+pub type ShareFormat = FixedI32<U30>;
+
+/// `a·b / 2³²`, rounded to nearest (ties towards +∞). Cannot overflow: the product of two 32-bit words is at most
+/// 2⁶² in magnitude.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // proved in the doc comment
+pub const fn mul_hi(a: i32, b: i32) -> i32 {
+    ((a as i64 * b as i64 + (1 << 31)) >> 32) as i32
+}
+
+/// `x << bits`, saturating: compiles to `SSAT` and a shift.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::arithmetic_side_effects)] // the clamp keeps the shifted value inside 32 bits
+pub const fn shl_saturating<const BITS: u32>(x: i32) -> i32 {
+    let limit = 1i32 << (31 - BITS);
+    let x = if x < -limit {
+        -limit
+    } else if x > limit - 1 {
+        limit - 1
+    } else {
+        x
+    };
+    x << BITS
+}
+
+/// `numerator / denominator` as a word with `fraction` bits, rounded to nearest (ties away from zero), saturating to
+/// 64 bits. A denominator of 0 gives the extreme of the numerator's sign.
+#[must_use]
+#[allow(clippy::arithmetic_side_effects)] // 128-bit intermediates hold every 64-bit numerator shifted by up to 62
+pub const fn ratio(numerator: i64, denominator: i64, fraction: u32) -> i64 {
+    if denominator == 0 {
+        return if numerator < 0 { i64::MIN } else { i64::MAX };
+    }
+    let scaled = (numerator as i128) << fraction;
+    saturate_i64(divide_rounding(scaled, denominator as i128))
+}
+
+/// `word / 2^fraction · denominator`, rounded to nearest (ties away from zero): the inverse of [`ratio`] wherever the
+/// format is finer than `1/denominator`.
+#[must_use]
+#[allow(clippy::arithmetic_side_effects)] // 64 by 64 bits fits 128
+pub const fn unratio(word: i64, denominator: i64, fraction: u32) -> i64 {
+    saturate_i64(divide_rounding(word as i128 * denominator as i128, 1i128 << fraction))
+}
+
+/// Narrows to 32 bits, saturating.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // checked
+pub const fn saturate_i32(x: i64) -> i32 {
+    if x > i32::MAX as i64 {
+        i32::MAX
+    } else if x < i32::MIN as i64 {
+        i32::MIN
+    } else {
+        x as i32
+    }
+}
+
+#[allow(clippy::cast_possible_truncation)] // checked
+const fn saturate_i64(x: i128) -> i64 {
+    if x > i64::MAX as i128 {
+        i64::MAX
+    } else if x < i64::MIN as i128 {
+        i64::MIN
+    } else {
+        x as i64
+    }
+}
+
+#[allow(clippy::arithmetic_side_effects)] // the divisor is never 0 or -1 with an extreme dividend: callers' contract
+const fn divide_rounding(dividend: i128, divisor: i128) -> i128 {
+    let half = divisor.abs() / 2;
+    if dividend >= 0 { (dividend + half) / divisor } else { (dividend - half) / divisor }
+}

@@ -1,0 +1,148 @@
+//! What the unit refuses, counted by cause: a refusal enters, a saturating count per cause leaves.
+
+/// Why a frame or a message was refused. A refusal changes nothing but its count, the end-to-end state of that
+/// identifier, and the evidence of misbehaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)]
+pub enum Refusal {
+    /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
+    Length = 0,
+    /// The E2E checksum does not fit.
+    Checksum = 1,
+    /// The E2E counter repeats the last one: the same frame twice.
+    Repeated = 2,
+    /// More E2E counters are missing than the message tolerates.
+    CounterGap = 3,
+    /// The E2E counter is outside 0 to 14.
+    CounterRange = 4,
+    /// The E2E state machine has not seen enough good frames of this identifier yet.
+    NotYetTrusted = 5,
+    /// A field holds a value outside its range, or a reserved one.
+    Range = 6,
+    /// The parts of a message do not belong together, or one of them is missing.
+    Torn = 7,
+    /// The stamp is older than the unit uses.
+    Stale = 8,
+    /// The stamp lies in the future by more than the clock's error.
+    Future = 9,
+    /// A sample with this stamp is held already.
+    Duplicate = 10,
+    /// A sample that is newer than this one is held already, and this one no longer fits the history.
+    OutOfOrder = 11,
+    /// A slot beyond the unit's capacity.
+    UnknownSlot = 12,
+    /// Another station claims a slot whose station is still alive.
+    StationConflict = 13,
+    /// A peer too far away to have anything to do with the unit.
+    TooFar = 14,
+    /// A follow-up without its sync message, or out of sequence.
+    SyncSequence = 15,
+    /// A position that cannot be reached from the sample before it.
+    Jump = 16,
+    /// A speed that does not fit the positions.
+    Implausible = 17,
+    /// A value that does not change though it has to.
+    Stuck = 18,
+    /// A time before one that the unit was given already.
+    ClockBackwards = 19,
+}
+
+impl Refusal {
+    /// Every cause, in the order of its number.
+    pub const ALL: [Self; 20] = [
+        Self::Length,
+        Self::Checksum,
+        Self::Repeated,
+        Self::CounterGap,
+        Self::CounterRange,
+        Self::NotYetTrusted,
+        Self::Range,
+        Self::Torn,
+        Self::Stale,
+        Self::Future,
+        Self::Duplicate,
+        Self::OutOfOrder,
+        Self::UnknownSlot,
+        Self::StationConflict,
+        Self::TooFar,
+        Self::SyncSequence,
+        Self::Jump,
+        Self::Implausible,
+        Self::Stuck,
+        Self::ClockBackwards,
+    ];
+
+    /// The name of the cause, as reports and the DBC spell it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Length => "length",
+            Self::Checksum => "checksum",
+            Self::Repeated => "repeated",
+            Self::CounterGap => "counter_gap",
+            Self::CounterRange => "counter_range",
+            Self::NotYetTrusted => "not_yet_trusted",
+            Self::Range => "range",
+            Self::Torn => "torn",
+            Self::Stale => "stale",
+            Self::Future => "future",
+            Self::Duplicate => "duplicate",
+            Self::OutOfOrder => "out_of_order",
+            Self::UnknownSlot => "unknown_slot",
+            Self::StationConflict => "station_conflict",
+            Self::TooFar => "too_far",
+            Self::SyncSequence => "sync_sequence",
+            Self::Jump => "jump",
+            Self::Implausible => "implausible",
+            Self::Stuck => "stuck",
+            Self::ClockBackwards => "clock_backwards",
+        }
+    }
+}
+
+/// How often each cause has been met since start; each count stops at its maximum.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    counts: [u32; Refusal::ALL.len()],
+}
+
+impl Health {
+    /// Nothing refused yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { counts: [0; Refusal::ALL.len()] }
+    }
+
+    /// Counts one refusal.
+    pub fn count(&mut self, cause: Refusal) {
+        if let Some(count) = self.counts.get_mut(cause as usize) {
+            *count = count.saturating_add(1);
+        }
+    }
+
+    /// How often this cause was met.
+    #[must_use]
+    pub fn of(&self, cause: Refusal) -> u32 {
+        self.counts.get(cause as usize).copied().unwrap_or(0)
+    }
+
+    /// Refusals of all causes together, saturating.
+    #[must_use]
+    pub fn total(&self) -> u32 {
+        self.counts.iter().fold(0, |sum, count| sum.saturating_add(*count))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cause_has_the_number_of_its_place_and_a_name_of_its_own() {
+        for (place, cause) in Refusal::ALL.iter().enumerate() {
+            assert_eq!(*cause as usize, place);
+            assert_eq!(Refusal::ALL.iter().filter(|other| other.name() == cause.name()).count(), 1);
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! **holdover** keeps a connected vehicle's cooperative control running while its V2X link is late or silent.
+//!
+//! ```text
+//! CAN frame -> wire -> peers -> estimator -> controller -> envelope -> wire -> CAN frame
+//!              Message  Track    Estimate     Demand        Command    encode
+//!                       per peer + Horizon               (each refusal is counted, by cause, in health)
+//! ```
+//!
+//! The two doors are [`OnboardUnit::receive`] and [`OnboardUnit::tick`]. Time is an argument, frames are
+//! [`embedded_can::Frame`]s; there is no clock, no bus, no allocator and no global in here. Same input, same output,
+//! bit for bit, on every target.
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::arithmetic_side_effects,
+        clippy::cast_possible_truncation,
+        clippy::float_arithmetic
+    )
+)]
+
+pub mod fixed;
+pub mod health;
+pub mod time;
+pub mod units;
+pub mod wire;

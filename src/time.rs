@@ -1,0 +1,219 @@
+//! Time as an argument: instants of the unit's own clock, durations, GNSS time, and the rule that unwraps V2X stamps.
+//!
+//! Nothing here reads a clock. [`Instant`] and [`GnssTime`] are microseconds in 64 bits and never wrap in practice;
+//! a [`Stamp`] is GNSS time modulo 2¹⁷ · 0.1 ms = 13.1072 s, and is unwrapped to the only instant inside
+//! `(reference - 12.0072 s, reference + 1.1 s]` ([`Stamp::unwrap_near`]). A modem must therefore drop what is older than
+//! 12 s; the unit refuses what is older than its own limit, which is less.
+
+use crate::fixed::{FineSecondsFormat, SecondsFormat, ratio, saturate_i32};
+use crate::units::{FineSeconds, Seconds};
+
+/// A span of time in microseconds, signed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Duration(i64);
+
+impl Duration {
+    /// No time.
+    pub const ZERO: Self = Self(0);
+    /// The longest span.
+    pub const MAX: Self = Self(i64::MAX);
+
+    /// From microseconds.
+    #[must_use]
+    pub const fn from_micros(micros: i64) -> Self {
+        Self(micros)
+    }
+
+    /// From milliseconds, saturating.
+    #[must_use]
+    pub const fn from_millis(millis: i64) -> Self {
+        Self(millis.saturating_mul(1000))
+    }
+
+    /// In microseconds.
+    #[must_use]
+    pub const fn as_micros(self) -> i64 {
+        self.0
+    }
+
+    /// In whole milliseconds, towards zero.
+    #[must_use]
+    pub const fn as_millis(self) -> i64 {
+        self.0 / 1000
+    }
+
+    /// Sum, saturating.
+    #[must_use]
+    pub const fn plus(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+
+    /// Difference, saturating.
+    #[must_use]
+    pub const fn minus(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+
+    /// A multiple, saturating.
+    #[must_use]
+    pub const fn times(self, factor: i64) -> Self {
+        Self(self.0.saturating_mul(factor))
+    }
+
+    /// As a factor for speeds, saturating at ±4 s.
+    #[must_use]
+    pub const fn seconds(self) -> Seconds {
+        Seconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, SecondsFormat::FRAC_NBITS)))
+    }
+
+    /// As a factor for accelerations, saturating at ±2 s.
+    #[must_use]
+    pub const fn fine_seconds(self) -> FineSeconds {
+        FineSeconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, FineSecondsFormat::FRAC_NBITS)))
+    }
+}
+
+/// An instant of the unit's own monotonic clock, in microseconds since it started.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Instant(u64);
+
+impl Instant {
+    /// The start of the clock.
+    pub const ZERO: Self = Self(0);
+
+    /// From microseconds since the clock's start.
+    #[must_use]
+    pub const fn from_micros(micros: u64) -> Self {
+        Self(micros)
+    }
+
+    /// Microseconds since the clock's start.
+    #[must_use]
+    pub const fn as_micros(self) -> u64 {
+        self.0
+    }
+
+    /// That much later (earlier if negative), saturating at the clock's start and end.
+    #[must_use]
+    pub const fn plus(self, duration: Duration) -> Self {
+        Self(self.0.saturating_add_signed(duration.0))
+    }
+
+    /// That much earlier, saturating at the clock's start and end.
+    #[must_use]
+    pub const fn minus(self, duration: Duration) -> Self {
+        self.plus(Duration(duration.0.saturating_neg()))
+    }
+
+    /// How much later this instant is than the other (negative if it is earlier), saturating.
+    #[must_use]
+    pub const fn since(self, earlier: Self) -> Duration {
+        Duration(if self.0 >= earlier.0 {
+            saturate(self.0.wrapping_sub(earlier.0))
+        } else {
+            saturate(earlier.0.wrapping_sub(self.0)).wrapping_neg()
+        })
+    }
+}
+
+#[allow(clippy::cast_possible_wrap)] // checked
+const fn saturate(magnitude: u64) -> i64 {
+    if magnitude > i64::MAX as u64 { i64::MAX } else { magnitude as i64 }
+}
+
+/// GNSS time in microseconds since its epoch: the common clock of all stations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct GnssTime(u64);
+
+impl GnssTime {
+    /// From microseconds since the epoch.
+    #[must_use]
+    pub const fn from_micros(micros: u64) -> Self {
+        Self(micros)
+    }
+
+    /// Microseconds since the epoch.
+    #[must_use]
+    pub const fn as_micros(self) -> u64 {
+        self.0
+    }
+
+    /// The stamp that a message of this time carries: rounded to nearest 0.1 ms, modulo the stamp's range.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation)] // the modulo is below 2¹⁷
+    pub const fn stamp(self) -> Stamp {
+        Stamp((self.0.saturating_add(50) / Stamp::MICROS % Stamp::MODULUS) as u32)
+    }
+}
+
+/// GNSS time modulo 13.1072 s in steps of 0.1 ms, as it stands in a message.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stamp(u32);
+
+impl Stamp {
+    /// Bits on the wire.
+    pub const BITS: u32 = 17;
+    const MODULUS: u64 = 1 << Self::BITS;
+    const MICROS: u64 = 100;
+    /// The span after which a stamp repeats.
+    pub const PERIOD: Duration = Duration(13_107_200);
+    /// How far after the reference an unwrapped stamp may lie.
+    pub const FUTURE: Duration = Duration(1_100_000);
+
+    /// From the raw field, taken modulo 2¹⁷.
+    #[must_use]
+    pub const fn from_raw(raw: u32) -> Self {
+        Self(raw & ((1 << Self::BITS) - 1))
+    }
+
+    /// The raw field.
+    #[must_use]
+    pub const fn raw(self) -> u32 {
+        self.0
+    }
+
+    /// The only GNSS time with this stamp inside `(reference + 1.1 s - 13.1072 s, reference + 1.1 s]`; the time itself,
+    /// not before the epoch.
+    #[must_use]
+    #[allow(clippy::arithmetic_side_effects)] // constants, and a remainder that is below the modulus
+    pub const fn unwrap_near(self, reference: GnssTime) -> GnssTime {
+        let latest = reference.0.saturating_add(Self::FUTURE.0.unsigned_abs());
+        let ticks = latest / Self::MICROS;
+        let back = (ticks % Self::MODULUS + Self::MODULUS - self.0 as u64) % Self::MODULUS;
+        GnssTime(ticks.saturating_sub(back) * Self::MICROS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stamp_unwraps_to_its_time_everywhere_in_the_window() {
+        let reference = GnssTime::from_micros(1_800_000_000_000_000);
+        for offset in (-12_000_000..=1_099_900i64).step_by(9_700) {
+            let time = GnssTime::from_micros(reference.as_micros().saturating_add_signed(offset));
+            let back = time.stamp().unwrap_near(reference).as_micros();
+            assert!(back.abs_diff(time.as_micros()) <= 50, "{offset}");
+        }
+    }
+
+    #[test]
+    fn one_period_older_is_taken_for_new_which_is_why_the_modem_drops_it() {
+        let reference = GnssTime::from_micros(100_000_000);
+        let old = GnssTime::from_micros(100_000_000 - 13_107_200);
+        assert_eq!(old.stamp().unwrap_near(reference), reference);
+    }
+
+    #[test]
+    fn differences_of_instants_saturate_and_keep_their_sign() {
+        let (a, b) = (Instant::from_micros(5), Instant::from_micros(u64::MAX));
+        assert_eq!(b.since(a), Duration::MAX);
+        assert_eq!(a.since(b), Duration::from_micros(-i64::MAX));
+        assert_eq!(a.minus(Duration::from_micros(10)), Instant::ZERO);
+    }
+}

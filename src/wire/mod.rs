@@ -1,0 +1,87 @@
+//! The unit's CAN messages: classic CAN frames enter and typed messages leave ([`Receiver`]), and the other way round
+//! ([`Sender`]).
+//!
+//! Contract of every decoder here: any 8 bytes in, a value or a named [`Refusal`] out; no panic, no allocation.
+//! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
+
+pub mod command;
+pub mod ego_intent;
+pub mod estimate;
+pub mod geo;
+pub mod horizon;
+pub mod intent;
+pub mod motion;
+pub mod range_sensor;
+pub mod route;
+pub mod status;
+pub mod sync;
+
+use crate::health::Refusal;
+
+/// An 8-bit hash of a station's identity: enough to notice that a slot has changed hands, not to identify anybody.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct StationHash(pub u8);
+
+/// Whom a vehicle says it follows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Predecessor {
+    /// It did not say.
+    #[default]
+    Unknown,
+    /// Nobody: it leads its string (index 0 of the paper).
+    None,
+    /// That station.
+    Station(StationHash),
+}
+
+/// A vehicle's slot on the bus; the modem assigns it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Slot(pub u8);
+
+/// What a vehicle says of itself over V2X; it stands on the bus as `Peer*` (heard by the modem, per slot), as `Own*`
+/// (for the modem to broadcast), and its motion and position also as `Ego*` (from the vehicle's own sensors).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[allow(clippy::large_enum_variant)] // a message lives for one call; boxing needs an allocator
+pub enum Said {
+    /// Where it is and how it moves.
+    Motion(motion::Motion),
+    /// How it will drive: the parameters of its law.
+    Intent(intent::Intent),
+    /// Its own horizon in a few knots.
+    Horizon(horizon::Knots),
+    /// Where it is on the globe.
+    Geo(geo::GeoPosition),
+    /// Where it is on its route.
+    Route(route::Route),
+}
+
+/// A whole message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[allow(clippy::large_enum_variant)] // as above
+pub enum Message {
+    /// First step of the time synchronisation.
+    Sync(sync::Sync),
+    /// Second step: when the first was really sent.
+    FollowUp(sync::FollowUp),
+    /// From the vehicle itself (only motion and position occur).
+    Ego(Said),
+    /// What the driver or the planner wants.
+    EgoIntent(ego_intent::EgoIntent),
+    /// An on-board sensor's view of the vehicle ahead.
+    Range(range_sensor::RangeSample),
+    /// Heard by the modem.
+    Peer(Slot, Said),
+    /// For the modem to broadcast.
+    Own(Said),
+    /// The unit's command to the actuators.
+    Command(command::Command),
+    /// The unit's estimate of its target.
+    Estimate(estimate::TargetEstimate),
+    /// The unit's state and its refusals.
+    Status(status::Status),
+}
