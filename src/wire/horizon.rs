@@ -1,8 +1,9 @@
-//! `PeerHorizon`, `OwnHorizon`: a vehicle's own horizon in a few knots, one multiplexed frame each.
+//! `PeerHorizon`, `OwnHorizon`: a vehicle's own horizon in a few knots, one multiplexed frame each; [`super::curve`] tells what
+//! lies between them.
 
 use super::bits::Payload;
 use super::field::{Field, TAG};
-use super::motion;
+use super::motion::{self, Motion};
 use crate::units::{Acceleration, Distance, Speed};
 
 /// Knots of a horizon on the wire.
@@ -17,7 +18,8 @@ pub struct Knot {
     pub displacement: Distance,
     /// 0 to 65.534 m/s by 2 mm/s.
     pub speed: Speed,
-    /// ±20.46 m/s² by 0.02 m/s². At standstill (speed 0) a negative one is that which brought the vehicle to rest.
+    /// ±20.46 m/s² by 0.02 m/s². At standstill (speed 0) it is the one with which the vehicle came to rest since the
+    /// knot before, not positive; it tells when that was.
     pub acceleration: Acceleration,
     /// How far midway since the knot before lies ahead of the curve through the two; -20 to 15 mm by 5 mm.
     pub bow: Distance,
@@ -59,6 +61,17 @@ impl Knot {
             speed: SPEED.get(a),
             acceleration: ACCELERATION.get(a),
             bow: BOW.get(a),
+        }
+    }
+
+    /// The start of a horizon: the motion that it begins with.
+    #[must_use]
+    pub fn of_motion(motion: &Motion) -> Self {
+        Self {
+            displacement: Distance::ZERO,
+            speed: motion.speed,
+            acceleration: motion.acceleration,
+            bow: Distance::ZERO,
         }
     }
 

@@ -8,6 +8,7 @@ mod assembly;
 pub mod bits;
 pub mod catalogue;
 pub mod command;
+pub mod curve;
 pub mod e2e;
 pub mod ego_intent;
 pub mod estimate;
