@@ -18,7 +18,6 @@
 //! without the bow 15 mm. The shares were found by dynamic programming over all pairs of 40 candidates.
 
 use super::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
-use super::motion::Motion;
 use crate::fixed::{ShareFormat, mul_hi, saturate_i32, shl_saturating};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Speed};
@@ -245,11 +244,11 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// From the state of the motion message with the same tag over the knots; the horizon is so long.
+    /// From the start ([`Knot::start`] of the motion message with the same tag) over the knots; the horizon is so long.
     #[must_use]
-    pub fn new(start: &Motion, knots: &Knots, length: Duration) -> Self {
+    pub fn new(start: Knot, knots: &Knots, length: Duration) -> Self {
         let [a, b, c, d, e] = knots.knots;
-        Self { states: [Knot::of_motion(start), a, b, c, d, e], length }
+        Self { states: [start, a, b, c, d, e], length }
     }
 
     /// All pieces in the order of time, each with its start.
@@ -274,14 +273,14 @@ impl Curve {
         found.map_or(Knot::default(), |(start, piece)| piece.at(micros.saturating_sub(start)))
     }
 
-    /// Way and speed on a uniform grid (steps of at least 1 µs), from this time after the motion's stamp (or the stamp,
+    /// Way and speed on a uniform grid (steps of at least 1 ms), from this time after the motion's stamp (or the stamp,
     /// if it is earlier) to the horizon's end.
     pub fn walk(&self, first: Duration, step: Duration) -> impl Iterator<Item = (Distance, Speed)> + use<> {
         Walk {
             pieces: self.pieces(),
             piece: Piece::NOTHING,
             next: first.as_micros().max(0),
-            step: step.as_micros().max(1),
+            step: step.as_micros().max(SHORTEST),
             left: 0,
             share: 0,
             share_step: 0,
@@ -333,10 +332,11 @@ const fn share_of(length: Duration, per_mille: u16) -> i64 {
 
 impl Knots {
     /// The knots that rebuild a predicted path, given as the state so long after the motion's stamp, its displacement
-    /// counted from the position in the motion message, `start`, which has to be as the receiver will decode it.
+    /// counted from the position in the motion message. Start and tag are that message's; the start has to be
+    /// [`Knot::rounded`], so that the sender sees it as the receiver will.
     #[must_use]
-    pub fn through(start: &Motion, length: Duration, mut path: impl FnMut(Duration) -> Knot) -> Self {
-        let mut from = (0, Knot::of_motion(start));
+    pub fn through(tag: u8, start: Knot, length: Duration, mut path: impl FnMut(Duration) -> Knot) -> Self {
+        let mut from = (0, start);
         let knots = SHARES_PER_MILLE.map(|per_mille| {
             let (time, before) = from;
             let end = share_of(length, per_mille);
@@ -364,7 +364,7 @@ impl Knots {
             from = (end, knot);
             knot
         });
-        Self { tag: start.tag, knots }
+        Self { tag: tag & 3, knots }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use super::bits::Payload;
 use super::field::{Field, TAG};
-use super::motion::{self, Motion};
+use super::motion;
 use crate::units::{Acceleration, Distance, Speed};
 
 /// Knots of a horizon on the wire.
@@ -64,15 +64,10 @@ impl Knot {
         }
     }
 
-    /// The start of a horizon: the motion that it begins with.
+    /// The start of a horizon, from the motion that it begins with.
     #[must_use]
-    pub fn of_motion(motion: &Motion) -> Self {
-        Self {
-            displacement: Distance::ZERO,
-            speed: motion.speed,
-            acceleration: motion.acceleration,
-            bow: Distance::ZERO,
-        }
+    pub const fn start(speed: Speed, acceleration: Acceleration) -> Self {
+        Self { displacement: Distance::ZERO, speed, acceleration, bow: Distance::ZERO }
     }
 
     /// As the receiver will read it.
