@@ -123,8 +123,8 @@ impl Filter {
         for i in 0..3 {
             let gain = row[i] / (row[component] + variance);
             self.state[i] += gain * innovation;
-            for j in 0..3 {
-                self.covariance[i][j] -= gain * row[j];
+            for (entry, carried) in self.covariance[i].iter_mut().zip(row) {
+                *entry -= gain * carried;
             }
         }
     }

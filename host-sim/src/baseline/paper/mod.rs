@@ -35,7 +35,7 @@ pub const UNPUBLISHED_LENGTH_M: f64 = 4.8;
 
 /// A time this small share of a step before a multiple of `δt` is that multiple: times are sums and products of
 /// decimal fractions, which float64 holds only nearly.
-const SAME_STEP: f64 = 1e-6;
+const SAME_STEP: f64 = 1e-7;
 
 /// What is known of one vehicle.
 #[derive(Clone, Debug)]
