@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod bus;
 pub mod channel;
 pub mod heard;
+pub mod metrics;
 pub mod modem;
 pub mod recording;
 pub mod reference;
