@@ -81,7 +81,7 @@ pub struct Prediction {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Law {
-    /// Desired time gap, `t_g`; 0.2 to 3.995 s.
+    /// Desired time gap, `t_g`; 0.1 to 3.995 s.
     pub time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
@@ -182,7 +182,7 @@ pub enum ConfigError {
     /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s² or than emergency
     /// braking.
     Limits,
-    /// `time_gap` is outside 0.2 to 3.995 s.
+    /// `time_gap` is outside 0.1 to 3.995 s.
     TimeGap,
     /// `standstill` is outside 0 to 10.23 m.
     Standstill,
@@ -212,7 +212,7 @@ impl core::fmt::Display for ConfigError {
             Self::Length => "length is outside 0 to 40.95 m",
             Self::Lag => "lag is outside 0 to 1.998 s",
             Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³)",
-            Self::TimeGap => "time_gap is outside 0.2 to 3.995 s",
+            Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
             Self::Standstill => "standstill is outside 0 to 10.23 m",
             Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
             Self::Unstable => "the prediction is unstable with this gain at this step; lower the gain or the step",
@@ -352,7 +352,7 @@ impl Config {
     fn check_law(&self) -> Result<(), ConfigError> {
         let law = &self.law;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
-        let gaps = Seconds::from_millis(200)..=Seconds::from_millis(3995);
+        let gaps = Seconds::from_millis(100)..=Seconds::from_millis(3995);
         ensure(gaps.contains(&law.time_gap), ConfigError::TimeGap)?;
         ensure((Distance::ZERO..=Distance::from_mm(10_230)).contains(&law.standstill), ConfigError::Standstill)?;
         let gains = Gain::from_milli(10)..=Gain::from_milli(3999);

@@ -1,0 +1,52 @@
+//! A listener on a vehicle's bus: the `Peer*` frames that its unit receives enter, the decoded messages in float64, as the
+//! baselines read them, leave. So they get what the unit gets, neither more nor less.
+
+use std::collections::BTreeMap;
+
+use holdover::units::Position;
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said};
+
+use crate::heard::{Heard, HeardIntent};
+use crate::vehicle::{BusFrame, EPOCH_US, PEERS, gnss, index_of};
+
+/// The listener.
+pub struct Observer {
+    receiver: Receiver<PEERS>,
+    intents: BTreeMap<u8, HeardIntent>,
+}
+
+impl Observer {
+    /// On a bus whose catalogue starts at `base_id`.
+    #[must_use]
+    pub fn new(base_id: u16) -> Self {
+        Self { receiver: Receiver::new(base_id, Role::Unit), intents: BTreeMap::new() }
+    }
+
+    /// Takes a frame in; a motion that it completes, with the latest intent from the same slot. `near` is a position to
+    /// unwrap positions near.
+    pub fn observe(&mut self, frame: &BusFrame, near: Position) -> Option<Heard> {
+        match self.receiver.receive(&frame.frame) {
+            Ok(Received::Whole(Message::Peer(slot, Said::Intent(intent)))) => {
+                let predecessor = match intent.predecessor {
+                    Predecessor::Station(station) => index_of(station),
+                    Predecessor::None | Predecessor::Unknown => None,
+                };
+                self.intents.insert(slot.0, HeardIntent::from_intent(&intent, predecessor));
+                None
+            }
+            Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
+                let time = motion.stamp.unwrap_near(gnss(frame.at_s)).as_micros();
+                #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+                let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
+                let vehicle = index_of(motion.station)?;
+                let position = motion.position.nearest_to(near);
+                let heard = Heard::from_motion(frame.at_s, stamp_s, vehicle, position, &motion);
+                Some(match self.intents.get(&slot.0) {
+                    Some(intent) => heard.with_intent(*intent),
+                    None => heard,
+                })
+            }
+            _ => None,
+        }
+    }
+}
