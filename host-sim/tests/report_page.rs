@@ -184,7 +184,8 @@ fn captions_say_what_the_series_hold() {
     assert!(channel.contains("Of 200 messages"), "{channel}");
     let modes = caption(&html, "Modes");
     assert!(
-        modes.contains("2 ego spends 0.300\u{a0}s in standby, 19.7\u{a0}s in cooperative, changing once."),
+        modes
+            .contains("In this run the ego spends 0.300\u{a0}s in standby, 19.7\u{a0}s in cooperative, changing once."),
         "{modes}"
     );
 }

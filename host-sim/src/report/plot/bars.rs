@@ -57,7 +57,7 @@ impl Figure for Bars {
         self.values().filter(|value| axis.draws(*value)).for_each(|value| extent.include(value));
         let y = axis.fit(extent, (bottom, top), 0.06);
         let ticks = y.ticks(Y_SPACING);
-        let area = Area { left: frame::tick_margin(&ticks), top, right: pixels - 6.0, bottom };
+        let area = Area { left: frame::left_margin(frame::labels(&ticks), width), top, right: pixels - 6.0, bottom };
 
         legend.draw(&mut svg);
         frame::draw_y_axis(&mut svg, &axis, &ticks, area, legend.height() + 12.0);

@@ -1,7 +1,7 @@
 //! A chart over two numeric axes: layers, shades and guides enter, an `<svg>` element leaves.
 
 use super::{
-    Figure, Interval, Layer, Width,
+    Figure, Interval, Layer, Tone, Width,
     frame::{self, BELOW, TITLE_ROW, Y_SPACING},
     legend::{self, Legend, Swatch},
     scale::{Axis, Extent},
@@ -20,7 +20,7 @@ pub struct Guide {
     pub label: String,
 }
 
-/// Layers over two numeric axes; later layers lie on top.
+/// Layers over two numeric axes; later layers lie on top, those of the ego above all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// What the figure shows, for a screen reader.
@@ -84,25 +84,30 @@ impl Figure for Chart {
         let y = self.y.fit(y_extent, (bottom, top), 0.06);
         let y_ticks = y.ticks(Y_SPACING);
         let names: Vec<String> = ends.iter().map(|layer| layer.entry().name).filter(|name| !name.is_empty()).collect();
-        let right = if names.is_empty() { 12.0 } else { legend::label_margin(names.iter().map(String::as_str)) };
-        let area = Area { left: frame::tick_margin(&y_ticks), top, right: pixels - right, bottom };
+        let right = frame::right_margin(legend::label_margin(names.iter().map(String::as_str)), width);
+        let left = frame::left_margin(frame::labels(&y_ticks), width);
+        let area = Area { left, top, right: pixels - right, bottom };
         let x = self.x.fit(x_extent, (area.left, area.right), 0.0);
 
         legend.draw(&mut svg);
         frame::draw_shades(&mut svg, &self.shades, &self.x, &x, area);
         frame::draw_y_axis(&mut svg, &self.y, &y_ticks, area, legend.height() + 12.0);
         frame::draw_x_axis(&mut svg, &self.x, &x, area);
-        svg.clipped(area, |svg| {
+        // Half a dot wider than the frame, so that marks on its edges stay whole.
+        svg.clipped(Area { left: area.left - 3.0, right: area.right + 3.0, ..area }, |svg| {
             for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
                 svg.line("guide", (area.left, y.at(guide.at)), (area.right, y.at(guide.at)));
             }
-            self.layers.iter().for_each(|layer| layer.draw(svg, self.axes(), &x, &y, area));
+            // A stable order: the vehicle under study last, all else as given.
+            let mut layers: Vec<&Layer> = self.layers.iter().collect();
+            layers.sort_by_key(|layer| layer.entry().tone == Tone::Ego);
+            layers.into_iter().for_each(|layer| layer.draw(svg, self.axes(), &x, &y, area));
         });
         for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
             let at = y.at(guide.at);
             if (area.top - 0.5..=area.bottom + 0.5).contains(&at) {
                 let baseline = if at - area.top < 14.0 { at + 12.0 } else { at - 4.0 };
-                svg.text("guide-label", Anchor::End, (area.right - 4.0, baseline), &guide.label);
+                svg.text("guide-label", Anchor::Start, (area.left + 6.0, baseline), &guide.label);
             }
         }
         let ends = ends.iter().filter(|layer| !layer.entry().name.is_empty());

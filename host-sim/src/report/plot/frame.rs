@@ -1,7 +1,7 @@
 //! What surrounds the data: axes, grid, shades. Mappings and areas in pixels enter, shapes leave.
 
 use super::{
-    Interval,
+    Interval, Width,
     scale::{Axis, Mapping, Tick},
     svg::{Anchor, Area, Svg, text_width},
 };
@@ -17,9 +17,22 @@ pub(super) const X_SPACING: f64 = 62.0;
 /// Pixels between ticks of a y axis.
 pub(super) const Y_SPACING: f64 = 40.0;
 
-/// The room that the labels of `ticks` need left of the frame.
-pub(super) fn tick_margin(ticks: &[Tick]) -> f64 {
-    ticks.iter().filter_map(|tick| tick.label.as_deref()).map(text_width).fold(20.0, f64::max) + 10.0
+/// The room left of the frame for labels like `names`: tick labels, names of rows. Wide figures have at least a common
+/// margin, so that the frames of figures over the same time stand in line on the page.
+pub(super) fn left_margin<'a>(names: impl IntoIterator<Item = &'a str>, width: Width) -> f64 {
+    let least = if width == Width::Wide { 68.0 } else { 34.0 };
+    (names.into_iter().map(text_width).fold(0.0, f64::max) + 11.0).max(least)
+}
+
+/// The room right of the frame; for labels that need more than the common margin, `needed`.
+pub(super) fn right_margin(needed: f64, width: Width) -> f64 {
+    let least = if width == Width::Wide { 108.0 } else { 12.0 };
+    needed.max(least)
+}
+
+/// The labels of `ticks`.
+pub(super) fn labels(ticks: &[Tick]) -> impl Iterator<Item = &str> {
+    ticks.iter().filter_map(|tick| tick.label.as_deref())
 }
 
 /// Whether any shade has a label, so that a row is needed for it.

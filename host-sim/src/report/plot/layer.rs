@@ -65,7 +65,7 @@ impl Layer {
     pub(super) fn entry(&self) -> Entry {
         let (name, tone, swatch) = match self {
             Self::Line { series, tone, .. } => (&series.name, *tone, Swatch::Line),
-            Self::Band { name, tone, .. } => (name, *tone, Swatch::Box),
+            Self::Band { name, tone, .. } => (name, *tone, Swatch::Band),
             Self::Dots { series, tone } => (&series.name, *tone, Swatch::Dot),
             Self::Rug { name, tone, .. } => (name, *tone, Swatch::Stroke),
             Self::Columns { name, tone, .. } => (name, *tone, Swatch::Box),

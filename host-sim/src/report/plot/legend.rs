@@ -7,6 +7,7 @@ use super::{
 };
 
 const ROW: f64 = 18.0;
+const BELOW: f64 = 5.0;
 const SWATCH: f64 = 22.0;
 const BETWEEN: f64 = 16.0;
 const LABEL_PITCH: f64 = TEXT_HEIGHT + 2.0;
@@ -18,6 +19,7 @@ const LABEL_MOST: f64 = 150.0;
 pub(super) enum Swatch {
     Line,
     Box,
+    Band,
     Dot,
     Stroke,
 }
@@ -54,7 +56,7 @@ impl Legend {
     }
 
     pub fn height(&self) -> f64 {
-        self.rows as f64 * ROW
+        self.rows as f64 * ROW + if self.rows > 0 { BELOW } else { 0.0 }
     }
 
     /// Draws the rows from the top of the figure down.
@@ -65,9 +67,10 @@ impl Legend {
                 Swatch::Line => svg.line(&format!("line {tone}"), (x, y), (x + 17.0, y)),
                 Swatch::Stroke => svg.line(&format!("rug {tone}"), (x + 8.5, y - 5.0), (x + 8.5, y + 5.0)),
                 Swatch::Dot => svg.line(&format!("dots {tone}"), (x + 8.5, y), (x + 8.5, y)),
-                Swatch::Box => {
+                Swatch::Box | Swatch::Band => {
+                    let kind = if entry.swatch == Swatch::Box { "fill" } else { "band" };
                     let area = Area { left: x + 2.0, top: y - 5.0, right: x + 16.0, bottom: y + 5.0 };
-                    svg.rectangle(&format!("fill {tone}"), area);
+                    svg.rectangle(&format!("{kind} {tone}"), area);
                 }
             }
             svg.text("label", Anchor::Start, (x + SWATCH, y + 4.0), &entry.name);
@@ -86,7 +89,8 @@ pub(super) fn shortened(text: &str, width: f64) -> String {
 
 /// The width that labels at the ends of lines need beside the frame.
 pub(super) fn label_margin<'a>(names: impl IntoIterator<Item = &'a str>) -> f64 {
-    names.into_iter().map(text_width).fold(0.0, f64::max).min(LABEL_MOST) + LABEL_OFFSET + 4.0
+    let widest = names.into_iter().map(text_width).fold(0.0, f64::max).min(LABEL_MOST);
+    if widest > 0.0 { widest + LABEL_OFFSET + 4.0 } else { 0.0 }
 }
 
 /// Labels lines at their ends, right of `area`: each as near to its line as the others allow.
@@ -147,7 +151,7 @@ mod tests {
 
     #[test]
     fn a_long_name_is_cut_visibly() {
-        assert_eq!(shortened("constant acceleration", 60.0), "constant…");
+        assert_eq!(shortened("constant acceleration", 64.0), "constant…");
         assert_eq!(shortened("ours", 60.0), "ours");
     }
 }

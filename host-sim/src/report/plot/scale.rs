@@ -1,6 +1,7 @@
 //! Axes: a description and the extent of the data enter, a mapping to pixels with ticks leaves.
 
-/// A value beyond this cannot be drawn: the differences of two such values still have to be finite.
+/// A value beyond this cannot be drawn (nor, on a logarithmic axis, one below its reciprocal): differences and quotients
+/// of two values that can be drawn still have to be finite.
 const DRAWABLE_BELOW: f64 = 1e100;
 
 /// The values that some data cover.
@@ -68,7 +69,7 @@ impl Axis {
 
     /// Whether `value` can be drawn here.
     pub(super) fn draws(&self, value: f64) -> bool {
-        value.abs() < DRAWABLE_BELOW && (!self.logarithmic || value > 0.0)
+        value.abs() < DRAWABLE_BELOW && (!self.logarithmic || value > DRAWABLE_BELOW.recip())
     }
 
     /// The mapping of the axis onto `[from, to]` pixels, with `margin` (a share of the span) around the data.
@@ -159,7 +160,8 @@ impl Mapping {
             for digit in 1..=9 {
                 let measured = f64::from(decade) + f64::from(digit).log10();
                 let inside = measured >= self.low - 1e-9 && measured <= self.high + 1e-9;
-                if !inside || (stride > 1 && digit > 1) {
+                let crowded = (stride > 1 && digit > 1) || (stride > 4 && decade % stride != 0);
+                if !inside || crowded {
                     continue;
                 }
                 let named = (digit == 1 && decade % stride == 0) || (few && (digit == 2 || digit == 5));
@@ -181,8 +183,15 @@ fn power(digit: f64, decade: i32) -> String {
     match decade {
         -4..=-1 => format!("{:.*}", decade.unsigned_abs() as usize, digit * 10f64.powi(decade)),
         0..=4 => format!("{:.0}", digit * 10f64.powi(decade)),
-        _ => format!("{digit:.0}e{decade}").replace('-', "\u{2212}"),
+        _ if digit == 1.0 => format!("10{}", superscript(decade)),
+        _ => format!("{digit:.0}·10{}", superscript(decade)),
     }
+}
+
+fn superscript(number: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    number.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]
@@ -223,6 +232,18 @@ mod tests {
                 let ticks = mapping.ticks(50.0);
                 assert!(!ticks.is_empty() && ticks.len() <= 30, "{low} {high}: {} ticks", ticks.len());
             }
+        }
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_no_place_for_what_is_not_clearly_positive() {
+        let axis = Axis::logarithmic("x", "");
+        for value in [f64::NAN, f64::INFINITY, -1.0, 0.0, f64::MIN_POSITIVE, 8.9e-309, 1e101] {
+            assert!(!axis.draws(value), "{value}");
+        }
+        for low in [1e-99, 1e-3, 1.0, 1e99] {
+            let mapping = axis.fit(Extent { low, high: 1e99 }, (0.0, 300.0), 0.05);
+            assert!((-1.0..=301.0).contains(&mapping.at(low)) && mapping.ticks(50.0).len() < 60, "{low}");
         }
     }
 

@@ -5,7 +5,7 @@ use super::{
     frame::{self, BELOW},
     legend::{Entry, Legend, Swatch, shortened},
     scale::{Axis, Extent},
-    svg::{Anchor, Area, Svg, pixel, text_width},
+    svg::{Anchor, Area, Svg, pixel},
 };
 
 const ROW: f64 = 26.0;
@@ -77,8 +77,9 @@ impl Figure for Strip {
         let legend = Legend::new(self.categories.iter().map(entry).collect(), 0.0, pixels);
         let top = legend.height() + 6.0 + frame::shade_row(&self.shades);
         let bottom = top + ROW * self.rows.len().max(1) as f64;
-        let widest = self.rows.iter().map(|row| text_width(&row.name)).fold(20.0, f64::max).min(ROW_LABEL_MOST);
-        let area = Area { left: widest + 10.0, top, right: pixels - 12.0, bottom };
+        let names: Vec<String> = self.rows.iter().map(|row| shortened(&row.name, ROW_LABEL_MOST)).collect();
+        let left = frame::left_margin(names.iter().map(String::as_str), width);
+        let area = Area { left, top, right: pixels - frame::right_margin(0.0, width), bottom };
         let mut extent = Extent::EMPTY;
         let starts = self.rows.iter().flat_map(|row| row.changes.iter().map(|change| change.0));
         starts.chain([self.end]).filter(|x| self.x.draws(*x)).for_each(|x| extent.include(x));
@@ -87,10 +88,9 @@ impl Figure for Strip {
         legend.draw(&mut svg);
         frame::draw_shades(&mut svg, &self.shades, &self.x, &x, area);
         frame::draw_x_axis(&mut svg, &self.x, &x, area);
-        for (index, row) in self.rows.iter().enumerate() {
+        for (index, (row, name)) in self.rows.iter().zip(&names).enumerate() {
             let line = top + ROW * index as f64;
-            let name = shortened(&row.name, ROW_LABEL_MOST);
-            svg.text("label", Anchor::End, (area.left - 8.0, line + ROW / 2.0 + 4.0), &name);
+            svg.text("label", Anchor::End, (area.left - 8.0, line + ROW / 2.0 + 4.0), name);
             let spans = row.spans(self.end);
             for (number, category) in self.categories.iter().enumerate() {
                 let mut data: Vec<String> = Vec::new();

@@ -9,7 +9,7 @@ pub(super) const TEXT_HEIGHT: f64 = 12.0;
 
 /// The width that `text` takes at most, in pixels; fonts differ, so this leans to the wide side.
 pub(super) fn text_width(text: &str) -> f64 {
-    6.6 * text.chars().count() as f64
+    7.0 * text.chars().count() as f64
 }
 
 /// Where a text's own coordinate lies.

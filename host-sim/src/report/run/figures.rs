@@ -47,11 +47,9 @@ impl RunReport {
         }
     }
 
-    /// A line for each vehicle, the ego's on top.
+    /// A line for each vehicle.
     fn vehicles(&self, series: &[Series]) -> Vec<Layer> {
-        let mut layers: Vec<Layer> = series.iter().map(|s| Layer::line(s.clone(), self.tone(&s.name))).collect();
-        layers.sort_by_key(|layer| matches!(layer, Layer::Line { tone: Tone::Ego, .. }));
-        layers
+        series.iter().map(|s| Layer::line(s.clone(), self.tone(&s.name))).collect()
     }
 
     pub(super) fn draw_trajectories(&self, page: &mut Page) {
@@ -64,14 +62,14 @@ impl RunReport {
 
     pub(super) fn draw_gaps(&self, page: &mut Page) {
         let (title, caption) = ("Gap to the vehicle ahead", self.say_gaps());
-        let mut chart = self.over_time(title, Axis::linear("bumper gap", "m").including(0.0), &caption);
+        let mut chart = self.over_time(title, grounded(Axis::linear("bumper gap", "m"), &self.gaps), &caption);
         chart.layers = self.vehicles(&self.gaps);
         page.figure(title, &caption, &[&chart]);
     }
 
     pub(super) fn draw_speeds(&self, page: &mut Page) {
         let (title, caption) = ("Speed", self.say_speeds());
-        let mut chart = self.over_time(title, Axis::linear("speed", "m/s").including(0.0), &caption);
+        let mut chart = self.over_time(title, grounded(Axis::linear("speed", "m/s"), &self.speeds), &caption);
         chart.layers = self.vehicles(&self.speeds);
         page.figure(title, &caption, &[&chart]);
     }
@@ -89,7 +87,7 @@ impl RunReport {
         }
         let mut zoomed = self.over_time("Our position error, enlarged", Axis::linear("ours, enlarged", "m"), &caption);
         zoomed.height = 150.0;
-        zoomed.layers = vec![Layer::line(self.error_ours.clone(), Tone::Ours)];
+        zoomed.layers = vec![Layer::line(Series::new("", self.error_ours.points.iter().copied()), Tone::Ours)];
         zoomed.shades = unlabelled(&self.silences);
         page.figure(title, &caption, &[&both, &zoomed]);
     }
@@ -110,7 +108,7 @@ impl RunReport {
         let (ours, paper) = (settled(&self.error_ours), settled(&self.error_paper));
         let (least, most) = decades(ours.iter().chain(&paper).copied());
         let x = Axis::logarithmic("magnitude of the position error", "m").over(least, most);
-        let mut chart = Chart::new(title, x, Axis::linear("samples at or below", "%").over(0.0, 100.0));
+        let mut chart = Chart::new(title, x, Axis::linear("samples at or below", "%").over(0.0, 104.0));
         chart.description = caption.clone();
         chart.guides = vec![Guide { at: 99.0, label: "99 %".into() }, Guide { at: 50.0, label: "half".into() }];
         let staircase = |name: &str, values: &[f64]| {
@@ -180,6 +178,14 @@ fn severity(mode: &str) -> (u8, Tone) {
         "fault" => (4, Tone::Alarm),
         _ => (5, Tone::Other(3)),
     }
+}
+
+/// `axis` down to 0 where the series come near it, so that the distance from a collision or a stop can be read off; where
+/// they stay far from it that distance is plain, and the room is better spent on what differs.
+fn grounded(axis: Axis, series: &[Series]) -> Axis {
+    let values = || series.iter().flat_map(finite);
+    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    if low < high * 0.6 { axis.including(0.0) } else { axis }
 }
 
 /// Whole decades around the positive ones of `values`, six of them at the most, ending with the largest.

@@ -16,6 +16,15 @@ impl RunReport {
         self.trajectories.get(self.ego).map_or("the ego", |ego| ego.name.as_str())
     }
 
+    /// What prose calls the vehicle of this name.
+    fn call(&self, name: &str) -> String {
+        match name.chars().next() {
+            _ if name == self.ego_name() => "the ego".into(),
+            Some(first) if first.is_ascii_digit() => format!("vehicle {name}"),
+            _ => name.into(),
+        }
+    }
+
     /// "Shaded: silence, 4–8 s." for the end of a caption; the first few silences by their times, many by their number.
     fn say_shades(&self) -> String {
         let times = |s: &super::Interval| format!("{}–{} s", plain(s.from), plain(s.to));
@@ -34,7 +43,7 @@ impl RunReport {
     pub(super) fn say_trajectories(&self) -> String {
         let Some((first, last)) = self.trajectories.get(self.ego).and_then(ends) else { return NOTHING.into() };
         format!(
-            "Front bumpers of {} vehicles; the ego (dark red, dashed) drives {} in {}.{}",
+            "Front bumpers of {} vehicles; the ego (red, dashed) drives {} in {}.{}",
             self.trajectories.len(),
             quantity(last.1 - first.1, "m"),
             quantity(last.0 - first.0, "s"),
@@ -44,15 +53,12 @@ impl RunReport {
 
     pub(super) fn say_gaps(&self) -> String {
         let Some((name, at, gap)) = lowest(&self.gaps) else { return NOTHING.into() };
-        let mut text = format!(
-            "The smallest gap of the run is {}, {name} behind the vehicle ahead of it at {} s",
-            quantity(gap, "m"),
-            plain(at)
-        );
+        let mut text =
+            format!("The smallest gap of the run is {} ({}, at {} s)", quantity(gap, "m"), self.call(name), plain(at));
         let ego: Vec<Series> = self.gaps.iter().filter(|s| s.name == self.ego_name()).cloned().collect();
         match lowest(&ego) {
             Some((_, at, gap)) if name != self.ego_name() => {
-                text.push_str(&format!("; the ego’s own smallest is {}, at {} s.", quantity(gap, "m"), plain(at)));
+                text.push_str(&format!("; the ego’s own is never below {} (at {} s).", quantity(gap, "m"), plain(at)));
             }
             _ => text.push('.'),
         }
@@ -63,8 +69,9 @@ impl RunReport {
         let Some((slowest, at, low)) = lowest(&self.speeds) else { return NOTHING.into() };
         let high = self.speeds.iter().flat_map(|s| &s.points).map(|p| p.1).filter(|v| v.is_finite()).reduce(f64::max);
         format!(
-            "The slowest is {slowest} with {} at {} s; the highest speed is {}.{}",
+            "The lowest speed is {} ({}, at {} s), the highest {}.{}",
             quantity(low, "m/s"),
+            self.call(slowest),
             plain(at),
             quantity(high.unwrap_or(low), "m/s"),
             self.say_shades()
@@ -116,7 +123,7 @@ impl RunReport {
         let share = 100.0 * lost as f64 / sent as f64;
         let mut text = format!("Of {} messages {} were lost", count(sent as u64), count(lost as u64));
         if lost > 0 {
-            text.push_str(&format!(" ({} %; strokes at the foot)", significant(share, 2)));
+            text.push_str(&format!(" ({} %; strokes at the foot)", significant(share, 3)));
         }
         let percentile = |percent| percentile_abs(&delays, percent).map(|delay| quantity(delay * 1000.0, "ms"));
         if let (Some(median), Some(p99), Some(most)) = (percentile(50.0), percentile(99.0), percentile(100.0)) {
@@ -155,7 +162,12 @@ impl RunReport {
             1 => "changing once".into(),
             n => format!("changing {} times", count(n as u64)),
         };
-        format!("{} spends {}, {changed}.{}", track.vehicle, shares.join(", "), self.say_shades())
+        format!(
+            "In this run {} spends {}, {changed}.{}",
+            self.call(&track.vehicle),
+            shares.join(", "),
+            self.say_shades()
+        )
     }
 }
 
