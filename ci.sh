@@ -7,10 +7,10 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
-image=target/$target/release/holdover-ecu
+image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
 steps=(fmt lint doc test cross package)
 skipped=77 # exit code of a step that cannot run here
-PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
+command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
 
 usage() {
@@ -113,7 +113,7 @@ source_files() {
     find src host-sim tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
 }
 
-# A step runs as a process of its own, so that its first failing command ends it and nothing of it reaches the next.
+# A step runs as a process of its own (`--one`), so that its first failing command ends it and nothing of it reaches the next.
 if [ "${1:-}" = --one ]; then
     "step_$2"
     exit

@@ -21,15 +21,16 @@ command -v cc >/dev/null || install gcc libc6-dev || {
 }
 
 if ! command -v cargo >/dev/null; then
-    command -v curl >/dev/null || install ca-certificates curl
-    curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs |
-        sh -s -- -y --profile minimal --component clippy --component rustfmt || {
-        echo "install-rust: the toolchain server cannot be reached; remedy: install Rust 1.93 or later" >&2
+    command -v curl >/dev/null || install ca-certificates curl || true
+    curl --proto '=https' --tlsv1.2 -sSf https://static.rust-lang.org/rustup/rustup-init.sh |
+        sh -s -- -y --profile minimal --component clippy --component rustfmt ||
+        install rustc-web cargo-web rustfmt-web rust-web-clippy || {
+        echo "install-rust: neither rustup nor apt-get can be used; remedy: install Rust 1.93 or later" >&2
         exit 1
     }
+    PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 fi
 
-PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 for component in clippy rustfmt; do
     cargo "${component/rustfmt/fmt}" --version >/dev/null 2>&1 || rustup component add "$component"
 done

@@ -75,7 +75,7 @@ if command -v rustup >/dev/null; then
         echo "$bin"
         exit
     fi
-    if timeout 300 rustup target add "$target" >&2; then
+    if timeout 300 rustup target add "$target" >&2 && has_core "$bin"; then
         say "$target by rustup"
         echo "$bin"
         exit

@@ -24,7 +24,7 @@ mod firmware {
                 UNIT.receive(at, &frame);
             }
             if let Some(now) = board.tick() {
-                if let Some(frame) = UNIT.tick(now) {
+                for frame in UNIT.tick(now) {
                     board.transmit(&frame);
                 }
             }
@@ -49,13 +49,13 @@ mod firmware {
             }
         }
 
-        fn tick(&mut self, _now: Instant) -> Option<CanFrame> {
+        fn tick(&mut self, _now: Instant) -> impl Iterator<Item = CanFrame> {
             self.ticks = self.ticks.wrapping_add(1);
             let mut data = [0; 8];
             let (ticks, refused) = data.split_at_mut(4);
             ticks.copy_from_slice(&self.ticks.to_be_bytes());
             refused.copy_from_slice(&self.health.total().to_be_bytes());
-            CanFrame::new(StandardId::MAX, &data)
+            CanFrame::new(StandardId::MAX, &data).into_iter()
         }
     }
 }
