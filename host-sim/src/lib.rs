@@ -4,8 +4,12 @@
 pub mod baseline;
 pub mod bus;
 pub mod channel;
+pub mod error;
 pub mod modem;
+pub mod output;
 pub mod recording;
 pub mod reference;
 pub mod report;
 pub mod scenario;
+pub mod streams;
+pub mod verdict;
