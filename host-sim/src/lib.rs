@@ -3,6 +3,7 @@
 
 pub mod baseline;
 pub mod bus;
+pub mod candump;
 pub mod channel;
 pub mod error;
 pub mod modem;
