@@ -7,7 +7,8 @@ use holdover::units::Position;
 use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said};
 
 use crate::heard::{Heard, HeardIntent};
-use crate::vehicle::{BusFrame, EPOCH_US, PEERS, gnss, index_of};
+use crate::bus::Frame;
+use crate::vehicle::{EPOCH_US, PEERS, gnss, index_of};
 
 /// The listener.
 pub struct Observer {
@@ -22,10 +23,10 @@ impl Observer {
         Self { receiver: Receiver::new(base_id, Role::Unit), intents: BTreeMap::new() }
     }
 
-    /// Takes a frame in; a motion that it completes, with the latest intent from the same slot. `near` is a position to
+    /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest intent from the same slot. `near` is a position to
     /// unwrap positions near.
-    pub fn observe(&mut self, frame: &BusFrame, near: Position) -> Option<Heard> {
-        match self.receiver.receive(&frame.frame) {
+    pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
+        match self.receiver.receive(frame) {
             Ok(Received::Whole(Message::Peer(slot, Said::Intent(intent)))) => {
                 let predecessor = match intent.predecessor {
                     Predecessor::Station(station) => index_of(station),
@@ -35,12 +36,12 @@ impl Observer {
                 None
             }
             Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
-                let time = motion.stamp.unwrap_near(gnss(frame.at_s)).as_micros();
+                let time = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
                 #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
                 let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
                 let vehicle = index_of(motion.station)?;
                 let position = motion.position.nearest_to(near);
-                let heard = Heard::from_motion(frame.at_s, stamp_s, vehicle, position, &motion);
+                let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, &motion);
                 Some(match self.intents.get(&slot.0) {
                     Some(intent) => heard.with_intent(*intent),
                     None => heard,

@@ -41,6 +41,9 @@ pub struct Motion {
     rows: Vec<MotionRow>,
 }
 
+/// Speeds of this long make an acceleration where the file has none, in seconds.
+const SLOPE_WINDOW_S: f64 = 0.5;
+
 /// Position, speed and acceleration at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionState {
@@ -100,6 +103,19 @@ impl Motion {
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.rows[self.rows.len() - 1].t_s
+    }
+
+    /// The acceleration that a sender knows at a time: the recorded one of the last sample at or before it; if the file has
+    /// none, the least-squares slope of the speeds of the last 0.5 s, 0 with fewer than 3 samples.
+    #[must_use]
+    pub fn past_slope(&self, t_s: f64) -> f64 {
+        let end = self.rows.partition_point(|row| row.t_s <= t_s);
+        let Some(newest) = self.rows[..end].last() else { return 0.0 };
+        if let Some(recorded) = newest.acceleration_mps2 {
+            return recorded;
+        }
+        let start = self.rows[..end].partition_point(|row| row.t_s < newest.t_s - SLOPE_WINDOW_S);
+        slope(&self.rows[start..end])
     }
 
     /// From the first sample to the last.
@@ -198,6 +214,21 @@ impl ChannelTrace {
         let next = self.rows.partition_point(|row| row.t_s <= t_s);
         self.rows[next.saturating_sub(1)].delay_s
     }
+}
+
+/// The least-squares slope of the speeds; 0 with fewer than 3 samples.
+fn slope(rows: &[MotionRow]) -> f64 {
+    if rows.len() < 3 {
+        return 0.0;
+    }
+    #[allow(clippy::cast_precision_loss)]
+    let count = rows.len() as f64;
+    let mean = |of: fn(&MotionRow) -> f64| rows.iter().map(of).sum::<f64>() / count;
+    let (t, v) = (mean(|row| row.t_s), mean(|row| row.speed_mps));
+    let (above, below) = rows.iter().fold((0.0, 0.0), |(above, below), row| {
+        (above + (row.t_s - t) * (row.speed_mps - v), below + (row.t_s - t) * (row.t_s - t))
+    });
+    above / below
 }
 
 #[cfg(test)]

@@ -128,7 +128,7 @@ pub fn simulate(
             .in_file(Path::new("scenario"))
     })?;
     let start = Instant::now();
-    let trace = world.run(progress);
+    let trace = world.run(progress).map_err(|error| Error::new(format!("the bus failed: {error}"), "see the system's log"))?;
     let realtime_factor = scenario.duration_s / start.elapsed().as_secs_f64().max(1e-9);
     let summary = summarise(scenario, &trace, realtime_factor);
     Ok((trace, summary))

@@ -1,15 +1,19 @@
 //! One vehicle: its body, its onboard unit, its own bus between the two, and its modem. What its sensors and its modem put
 //! on the bus enters the unit; what the unit commands moves the body.
 
+use std::io;
+
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{Frame, Message, Predecessor, Received, Receiver, Role, Said, Sender, StationHash};
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender, StationHash};
 use holdover::{Config, ConfigError, OnboardUnit};
 
+use crate::bus::Bus;
+use crate::bus::memory::{MemoryBus, MemoryNode};
 use crate::modem::{Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 
@@ -51,15 +55,6 @@ pub fn micros(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64
 }
 
-/// What happens on a vehicle's bus, for whoever listens.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BusFrame {
-    /// When, in seconds of the run.
-    pub at_s: f64,
-    /// What.
-    pub frame: Frame,
-}
-
 /// A vehicle of a run.
 pub struct Vehicle {
     /// Its place in the string; 0 leads.
@@ -82,10 +77,9 @@ pub struct Vehicle {
     relay: Relay,
     listener: Receiver<PEERS>,
     transmitter: Transmitter,
-    inbox: Vec<BusFrame>,
-    heard: Vec<BusFrame>,
-    outbox: Option<V2xMessage>,
-    log: Option<Vec<BusFrame>>,
+    bus: MemoryBus,
+    ecu: MemoryNode,
+    harness: MemoryNode,
     tag: u8,
     synced: u8,
 }
@@ -103,6 +97,7 @@ impl Vehicle {
         wish: EgoIntent,
         clock_offset_us: u64,
     ) -> Result<Self, ConfigError> {
+        let bus = MemoryBus::new();
         Ok(Self {
             index,
             plant,
@@ -117,24 +112,18 @@ impl Vehicle {
             relay: Relay::new(config.base_id, PEERS),
             listener: Receiver::new(config.base_id, Role::Harness),
             transmitter: Transmitter::default(),
-            inbox: Vec::new(),
-            heard: Vec::new(),
-            outbox: None,
-            log: None,
+            ecu: bus.node(),
+            harness: bus.node(),
+            bus,
             tag: 0,
             synced: 0,
         })
     }
 
-    /// Keeps everything on the bus from now on.
-    pub fn keep_log(&mut self) {
-        self.log = Some(Vec::new());
-    }
-
-    /// Everything on the bus since [`Vehicle::keep_log`].
+    /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
     #[must_use]
-    pub fn log(&self) -> &[BusFrame] {
-        self.log.as_deref().unwrap_or(&[])
+    pub fn listen(&self) -> MemoryNode {
+        self.bus.node()
     }
 
     /// Messages that its modem had no slot for.
@@ -149,20 +138,33 @@ impl Vehicle {
         Instant::from_micros(self.clock_offset_us.saturating_add_signed(micros(at_s)))
     }
 
+    /// The time of the run at an instant of the unit's clock.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+    pub fn time_of(&self, at: Instant) -> f64 {
+        at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
+    }
+
     /// The time base's two messages.
-    pub fn synchronise(&mut self, at_s: f64) {
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
         self.synced = (self.synced + 1) % 16;
         let time = gnss(at_s).as_micros();
         #[allow(clippy::cast_possible_truncation)] // 32 bits of seconds last until 2116
         let sync = Sync { sequence: self.synced, seconds: (time / 1_000_000) as u32 };
         #[allow(clippy::cast_possible_truncation)] // below a million
         let follow_up = FollowUp { sequence: self.synced, micros: (time % 1_000_000) as u32 };
-        self.put(at_s, &Message::Sync(sync));
-        self.put(at_s, &Message::FollowUp(follow_up));
+        self.put(at_s, &Message::Sync(sync))?;
+        self.put(at_s, &Message::FollowUp(follow_up))
     }
 
     /// The vehicle's own motion, as its sensors see it now.
-    pub fn sense(&mut self, at_s: f64) {
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn sense(&mut self, at_s: f64) -> io::Result<()> {
         self.tag = (self.tag + 1) % 4;
         let motion = Motion {
             tag: self.tag,
@@ -175,45 +177,52 @@ impl Vehicle {
             speed_accuracy: Some(Speed::from_mm_per_s(20)),
             station: station(self.index),
         };
-        self.put(at_s, &Message::Ego(Said::Motion(motion)));
+        self.put(at_s, &Message::Ego(Said::Motion(motion)))
     }
 
     /// What the driver wants.
-    pub fn wish(&mut self, at_s: f64) {
-        self.put(at_s, &Message::EgoIntent(self.wish));
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn wish(&mut self, at_s: f64) -> io::Result<()> {
+        self.put(at_s, &Message::EgoIntent(self.wish))
     }
 
     /// A message from the channel.
-    pub fn hear(&mut self, at_s: f64, message: &V2xMessage) {
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
         let mut frames = Vec::new();
         self.relay.hear(at_s, message, &mut frames);
-        for frame in frames {
-            self.heard.push(BusFrame { at_s, frame });
-            self.inbox.push(BusFrame { at_s, frame });
+        let at = self.instant(at_s);
+        frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
+    }
+
+    /// Lets the unit receive all that has been on the bus up to now, without a tick.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn receive(&mut self, at_s: f64) -> io::Result<()> {
+        let now = self.instant(at_s);
+        while let Some((at, frame)) = self.ecu.receive(now)? {
+            let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
         }
+        Ok(())
     }
 
-    /// The frames that its modem put on the bus since the last call: what baselines get to decode.
-    pub fn take_heard(&mut self) -> Vec<BusFrame> {
-        std::mem::take(&mut self.heard)
-    }
-
-    /// Lets the unit receive all that is on the bus, without a tick.
-    pub fn receive(&mut self) {
-        for BusFrame { at_s, frame } in std::mem::take(&mut self.inbox) {
-            // A refusal is the unit's to count.
-            let _ = self.unit.receive(self.instant(at_s), &frame);
-            self.note(BusFrame { at_s, frame });
+    /// One period of the unit: receive, tick, transmit. What its modem broadcasts then, if anything.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
+        self.receive(at_s)?;
+        let now = self.instant(at_s);
+        for frame in self.unit.tick(now).frames {
+            self.ecu.send(now, (&frame).into())?;
         }
-    }
-
-    /// One period of the unit: receive, tick, transmit.
-    pub fn tick(&mut self, at_s: f64) {
-        self.receive();
-        let answer = self.unit.tick(self.instant(at_s));
         self.estimate = None;
-        for frame in answer.frames {
-            self.note(BusFrame { at_s, frame });
+        while let Some((_, frame)) = self.harness.receive(now)? {
             match self.listener.receive(&frame) {
                 Ok(Received::Whole(Message::Own(said))) => self.transmitter.take(&said),
                 Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
@@ -223,23 +232,19 @@ impl Vehicle {
                 _ => {}
             }
         }
-        self.outbox = self.transmitter.broadcast();
+        Ok(self.transmitter.broadcast())
     }
 
-    /// What the modem broadcasts after this tick.
-    pub fn take_broadcast(&mut self) -> Option<V2xMessage> {
-        self.outbox.take()
-    }
-
-    fn put(&mut self, at_s: f64, message: &Message) {
-        let inbox = &mut self.inbox;
-        self.sensors.send(message, &mut |frame| inbox.push(BusFrame { at_s, frame }));
-    }
-
-    fn note(&mut self, frame: BusFrame) {
-        if let Some(log) = &mut self.log {
-            log.push(frame);
-        }
+    fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
+        let at = self.instant(at_s);
+        let mut result = Ok(());
+        let harness = &mut self.harness;
+        self.sensors.send(message, &mut |frame| {
+            if result.is_ok() {
+                result = harness.send(at, (&frame).into());
+            }
+        });
+        result
     }
 }
 

@@ -8,23 +8,24 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::io;
 
 use holdover::controller::Mode;
 use holdover::health::Refusal;
+use holdover::time::Instant;
 use holdover::{Config, ConfigError};
 
 use crate::baseline::Baseline;
 use crate::baseline::paper::Paper;
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
 use crate::channel::{Channel, Link};
 use crate::modem::V2xMessage;
 use crate::observer::Observer;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::streams::{Purpose, stream, unit};
-use crate::vehicle::{BusFrame, Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
-
-/// The buses are up this long before the run begins: the units get the time and their own motion, and do not tick yet.
-const WARM_UP_S: f64 = 1.5;
+use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
 
 /// Cycle of the time base, in seconds.
 const SYNC_EVERY_S: f64 = 0.5;
@@ -73,8 +74,8 @@ pub struct Trace {
     pub refusals: Vec<(Refusal, u64)>,
     /// The channel with all that happened on it.
     pub channel: Channel,
-    /// The bus of one vehicle, if it was asked for.
-    pub log: Vec<BusFrame>,
+    /// The bus of one vehicle, if it was asked for: times of the run and frames.
+    pub log: Vec<(f64, Frame)>,
     /// Messages that found no slot in a modem.
     pub turned_away: u64,
 }
@@ -130,6 +131,10 @@ pub struct World<'a> {
     flights: BinaryHeap<Reverse<Flight>>,
     sent: u64,
     observer: Observer,
+    /// Listens where the measuring vehicle's unit does.
+    tap: MemoryNode,
+    /// Listens on the bus that is logged.
+    log: Option<(usize, MemoryNode)>,
     paper: Paper,
     measured: Measured,
     leader_start_m: f64,
@@ -155,21 +160,19 @@ impl<'a> World<'a> {
             let wish =
                 wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
             let clock_offset_us = clock_offset(seed, index);
-            let mut vehicle = Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us)?;
-            if logged == Some(index) {
-                vehicle.keep_log();
-            }
-            vehicles.push(vehicle);
+            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us)?);
         }
         let measured = Measured::of(scenario);
         let leader_start_m = vehicles[0].plant.position_m;
         Ok(Self {
             scenario,
-            vehicles,
             channel: Channel::new(&scenario.channel, seed),
             flights: BinaryHeap::new(),
             sent: 0,
             observer: Observer::new(holdover::wire::DEFAULT_BASE_ID),
+            tap: vehicles[measured.by].listen(),
+            log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
+            vehicles,
             paper: Paper::new(measured.vehicle, scenario.step_s),
             measured,
             leader_start_m,
@@ -177,8 +180,11 @@ impl<'a> World<'a> {
     }
 
     /// Runs it to its end; `progress` is told the share that is done, now and then.
-    pub fn run(mut self, mut progress: impl FnMut(f64)) -> Trace {
-        self.warm_up();
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn run(mut self, mut progress: impl FnMut(f64)) -> io::Result<Trace> {
+        self.warm_up()?;
         let period_s = self.scenario.period_s;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a day of milliseconds at most
         let ticks = (self.scenario.duration_s / period_s).round() as usize;
@@ -195,7 +201,7 @@ impl<'a> World<'a> {
         for tick in 0..ticks {
             #[allow(clippy::cast_precision_loss)]
             let at_s = tick as f64 * period_s;
-            self.tick(at_s, &mut trace);
+            self.tick(at_s, &mut trace)?;
             if tick % 100 == 0 {
                 #[allow(clippy::cast_precision_loss)]
                 progress(tick as f64 / ticks as f64);
@@ -205,81 +211,92 @@ impl<'a> World<'a> {
             .iter()
             .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
             .collect();
-        trace.log = self.vehicles.iter().flat_map(|vehicle| vehicle.log().iter().copied()).collect();
+        if let Some((index, node)) = &mut self.log {
+            while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+                trace.log.push((self.vehicles[*index].time_of(at), frame));
+            }
+        }
         trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
         trace.channel = self.channel;
-        trace
+        Ok(trace)
     }
 
-    fn warm_up(&mut self) {
+    fn warm_up(&mut self) -> io::Result<()> {
         for vehicle in &mut self.vehicles {
-            let mut at_s = -WARM_UP_S;
-            while at_s < -1e-9 {
-                vehicle.synchronise(at_s);
-                for wait in 0..5 {
-                    vehicle.wish(at_s + f64::from(wait) * WISH_EVERY_S);
-                }
-                vehicle.receive();
-                at_s += SYNC_EVERY_S;
+            for half_seconds in (1..=3).rev() {
+                let at_s = -f64::from(half_seconds) * SYNC_EVERY_S;
+                vehicle.synchronise(at_s)?;
+                vehicle.wish(at_s)?;
+                vehicle.receive(at_s)?;
             }
-            vehicle.sense(-self.scenario.period_s);
-            vehicle.receive();
+            for periods in [2.0, 1.0] {
+                let at_s = -periods * self.scenario.period_s;
+                vehicle.sense(at_s)?;
+                vehicle.receive(at_s)?;
+            }
         }
+        Ok(())
     }
 
-    fn tick(&mut self, at_s: f64, trace: &mut Trace) {
-        self.deliver(at_s);
+    fn tick(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
+        self.deliver(at_s)?;
         self.place_recorded_leader(at_s);
-        let measured_m = self.vehicles[self.measured.vehicle].plant.position_m;
-        for heard in self.vehicles[self.measured.by].take_heard() {
-            if let Some(heard) = self.observer.observe(&heard, metres(measured_m)) {
-                self.paper.hear(&heard);
-            }
-        }
+        self.show_to_paper(at_s)?;
+        let mut broadcasts = Vec::new();
         for vehicle in &mut self.vehicles {
-            vehicle.sense(at_s);
+            vehicle.sense(at_s)?;
             if is_due(at_s, WISH_EVERY_S, self.scenario.period_s) {
-                vehicle.wish(at_s);
+                vehicle.wish(at_s)?;
             }
             if is_due(at_s, SYNC_EVERY_S, self.scenario.period_s) {
-                vehicle.synchronise(at_s);
+                vehicle.synchronise(at_s)?;
             }
-            vehicle.tick(at_s);
+            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
         }
         trace.times_s.push(at_s);
         trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
         for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
             ticks.push(record(vehicle));
         }
-        self.broadcast(at_s);
+        for (from, message) in broadcasts {
+            self.broadcast(at_s, from, message);
+        }
         for vehicle in self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged) {
             vehicle.plant.drive(vehicle.command_mps2, self.scenario.period_s);
         }
+        Ok(())
+    }
+
+    /// The literal paper decodes what the measuring vehicle's unit receives.
+    fn show_to_paper(&mut self, at_s: f64) -> io::Result<()> {
+        let by = &self.vehicles[self.measured.by];
+        let near = metres(self.vehicles[self.measured.vehicle].plant.position_m);
+        while let Some((at, frame)) = self.tap.receive(by.instant(at_s))? {
+            if let Some(heard) = self.observer.observe(by.time_of(at), &frame, near) {
+                self.paper.hear(&heard);
+            }
+        }
+        Ok(())
     }
 
     /// Everything that has arrived by now, in the order of arrival.
-    fn deliver(&mut self, at_s: f64) {
+    fn deliver(&mut self, at_s: f64) -> io::Result<()> {
         let now_us = crate::vehicle::micros(at_s);
         while self.flights.peek().is_some_and(|Reverse(flight)| flight.arrives_us <= now_us) {
-            let Some(Reverse(flight)) = self.flights.pop() else { return };
+            let Some(Reverse(flight)) = self.flights.pop() else { break };
             #[allow(clippy::cast_precision_loss)]
             let arrives_s = flight.arrives_us as f64 * 1e-6;
-            for copy in self.vehicles.iter_mut().filter(|vehicle| vehicle.index == flight.to) {
-                copy.hear(arrives_s, &flight.message);
-            }
+            self.vehicles[flight.to].hear(arrives_s, &flight.message)?;
         }
+        Ok(())
     }
 
-    fn broadcast(&mut self, at_s: f64) {
-        for from in 0..self.vehicles.len() {
-            let Some(message) = self.vehicles[from].take_broadcast() else { continue };
-            for to in (0..self.vehicles.len()).filter(|to| *to != from) {
-                for arrives_s in self.channel.send(Link { from, to }, at_s) {
-                    self.sent += 1;
-                    let flight =
-                        Flight { arrives_us: crate::vehicle::micros(arrives_s), number: self.sent, to, message };
-                    self.flights.push(Reverse(flight));
-                }
+    fn broadcast(&mut self, at_s: f64, from: usize, message: V2xMessage) {
+        for to in (0..self.vehicles.len()).filter(|to| *to != from) {
+            for arrives_s in self.channel.send(Link { from, to }, at_s) {
+                self.sent += 1;
+                let arrives_us = crate::vehicle::micros(arrives_s);
+                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
             }
         }
     }
