@@ -107,10 +107,14 @@ pub fn collisions(gaps: &[(f64, f64)]) -> usize {
     usize::from(first) + gaps.windows(2).filter(|pair| !overlaps(pair[0].1) && overlaps(pair[1].1)).count()
 }
 
+/// The errors of `(t_s, error)` samples from `from_s` on.
+pub fn errors_since(samples: &[(f64, f64)], from_s: f64) -> Vec<f64> {
+    samples.iter().filter(|sample| sample.0 >= from_s - TIME_TOLERANCE_S).map(|sample| sample.1).collect()
+}
+
 /// The figures of `(t_s, error)` samples from `from_s` on.
-pub fn errors_from(samples: &[(f64, f64)], from_s: f64) -> ErrorStatistics {
-    let errors: Vec<f64> = samples.iter().filter(|s| s.0 >= from_s - TIME_TOLERANCE_S).map(|s| s.1).collect();
-    ErrorStatistics::of(&errors)
+pub fn error_statistics_since(samples: &[(f64, f64)], from_s: f64) -> ErrorStatistics {
+    ErrorStatistics::of(&errors_since(samples, from_s))
 }
 
 /// The figures of `(age_s, error)` samples in each of [`AGE_CLASSES_S`], whose bounds are taken exactly. An age below 0

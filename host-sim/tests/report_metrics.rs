@@ -129,7 +129,7 @@ fn errors_count_from_their_first_second_on() {
     let summed: f64 = [0.1; 10].iter().sum();
     assert!(summed < 1.0);
     let samples = [(0.0, 9.0), (0.99, 9.0), (1.0 - 1e-6, 9.0), (summed, 3.0), (1.0, -4.0), (1.01, 0.0), (2.0, 0.0)];
-    let statistics = errors_from(&samples, SETTLED_FROM_S);
+    let statistics = error_statistics_since(&samples, SETTLED_FROM_S);
     assert_eq!(statistics, ErrorStatistics { count: 4, rms: Some(2.5), p99: Some(4.0), max: Some(4.0) });
 }
 

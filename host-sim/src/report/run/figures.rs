@@ -2,7 +2,7 @@
 
 use super::RunReport;
 use crate::{
-    metrics::{SETTLED_FROM_S, max_abs},
+    metrics::{SETTLED_FROM_S, errors_since, max_abs},
     report::{
         page::Page,
         plot::{Axis, Category, Chart, Guide, Interval, Layer, Series, Strip, StripRow, Tone, cumulative},
@@ -102,8 +102,7 @@ impl RunReport {
     pub(super) fn draw_distribution(&self, page: &mut Page) {
         let (title, caption) = ("Distribution of the position error", self.say_distribution());
         let settled = |series: &Series| -> Vec<f64> {
-            let settled = series.points.iter().filter(|point| point.0 >= SETTLED_FROM_S && point.1.is_finite());
-            settled.map(|point| point.1.abs()).collect()
+            errors_since(&series.points, SETTLED_FROM_S).into_iter().map(f64::abs).filter(|e| e.is_finite()).collect()
         };
         let (ours, paper) = (settled(&self.error_ours), settled(&self.error_paper));
         let (least, most) = decades(ours.iter().chain(&paper).copied());

@@ -2,7 +2,7 @@
 
 use super::RunReport;
 use crate::{
-    metrics::{SETTLED_FROM_S, errors_from, percentile_abs},
+    metrics::{SETTLED_FROM_S, error_statistics_since, percentile_abs},
     report::{
         markup::{count, quantity, significant},
         plot::{Series, StripRow},
@@ -173,7 +173,7 @@ impl RunReport {
 
 fn settled(series: &Series) -> crate::metrics::ErrorStatistics {
     let points: Vec<(f64, f64)> = series.points.iter().copied().filter(|point| point.1.is_finite()).collect();
-    errors_from(&points, SETTLED_FROM_S)
+    error_statistics_since(&points, SETTLED_FROM_S)
 }
 
 /// First and last point of a series that are finite.
