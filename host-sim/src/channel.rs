@@ -150,7 +150,6 @@ impl Channel {
     }
 
     /// Sends a message over a link at a time in seconds since the start of the run, and says when its copies arrive.
-    #[allow(clippy::cast_possible_truncation)] // vehicles are counted in units
     pub fn send(&mut self, link: Link, at_s: f64) -> Arrivals {
         let seed = self.seed;
         let (generator, record) = self.links.entry(link).or_insert_with(|| {

@@ -205,7 +205,6 @@ impl ChannelTrace {
     #[must_use]
     pub fn delay_at(&self, since_start_s: f64) -> Option<f64> {
         let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);
-        #[allow(clippy::cast_precision_loss)] // far fewer rows than 2⁵³
         let cycle_s = match self.rows.len() {
             1 => return first.delay_s,
             rows => (last.t_s - first.t_s) * (rows as f64 / (rows - 1) as f64),

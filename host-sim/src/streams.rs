@@ -40,7 +40,6 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
 
 /// A number uniform in [0, 1) by steps of 2⁻⁵³.
 pub fn unit(generator: &mut ChaCha8Rng) -> f64 {
-    #[allow(clippy::cast_precision_loss)] // 53 bits are exact
     let mantissa = (generator.next_u64() >> 11) as f64;
     mantissa / (1u64 << 53) as f64
 }

@@ -3,6 +3,7 @@
 use holdover_sim::channel::{AppliesTo, Impairment};
 use holdover_sim::error::Error;
 use holdover_sim::scenario::{Overrides, Scenario, Span, Start};
+use proptest::prelude::*;
 use std::fs;
 use std::path::Path;
 
@@ -262,4 +263,17 @@ fn a_run_cannot_be_longer_than_its_leaders_recording() {
     let wanted = "s.toml:1: `duration_s` is 31, and the leader's recorded motion ends after 30 s; shorten it, or leave \
                   it out to drive the whole recording";
     assert!(message.ends_with(wanted), "{message}");
+}
+
+proptest! {
+    #[test]
+    fn a_damaged_scenario_is_read_or_refused_in_one_line(from in 0usize..4000, length in 0usize..40, insert in "[-0-9a-z\\[\\]=\"\n.#]{0,6}") {
+        let mut text = fs::read_to_string("scenarios/paper.toml").unwrap().replace('δ', "d").replace('∞', "0");
+        let from = from.min(text.len());
+        text.replace_range(from..(from + length).min(text.len()), &insert);
+        if let Err(error) = parse(&text) {
+            prop_assert!(!error.to_string().contains('\n'), "{error}");
+            prop_assert!(error.to_string().starts_with("s.toml:"), "{error}");
+        }
+    }
 }

@@ -63,7 +63,6 @@ impl<B: Bus> Faults<B> {
         self.counts
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_sign_loss)]
     fn arrive(&mut self, at: Instant, frame: Frame) {
         // All drawn whatever happens, so that one kind of fault does not shift the others.
         let mut draw = || unit(&mut self.generator);

@@ -77,7 +77,7 @@ fn logged(id: &str, data: &str) -> Result<Content, Error> {
     // `_9` to `_F` behind eight bytes is a raw length code, which means eight too.
     let data = data.split_once('_').map_or(data, |(data, _)| data);
     let mut bytes = heapless::Vec::<u8, 8>::new();
-    if data.len() % 2 != 0 {
+    if !data.len().is_multiple_of(2) {
         return Err(Error::new(format!("the data {} has half a byte", quoted(data)), "complete or delete the line"));
     }
     for pair in data.as_bytes().chunks_exact(2) {

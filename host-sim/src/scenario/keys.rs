@@ -45,6 +45,9 @@ pub struct Found<T> {
     pub line: Option<u64>,
 }
 
+/// Two numbers that belong together.
+pub type Pair = Found<[f64; 2]>;
+
 /// A file and its text, for the errors.
 #[derive(Clone, Copy)]
 pub struct Document<'a> {
@@ -145,7 +148,7 @@ impl<'a> Section<'a> {
     }
 
     /// A list of pairs of numbers, each with its line, if given.
-    pub fn pairs(&mut self, number: &Number) -> Result<Option<Found<Vec<Found<[f64; 2]>>>>, Error> {
+    pub fn pairs(&mut self, number: &Number) -> Result<Option<Found<Vec<Pair>>>, Error> {
         let Some(value) = self.value(number.key) else { return Ok(None) };
         let wrong = |at| self.mismatch(number.key, at, "a list of pairs such as [[4, 6]]");
         let array = value.get_ref().as_array().ok_or_else(|| wrong(value))?;
@@ -238,7 +241,6 @@ impl<'a> Section<'a> {
     fn float(&self, number: &Number, value: &Spanned<DeValue<'_>>) -> Result<f64, Error> {
         let found = match value.get_ref() {
             DeValue::Float(text) => text.as_str().parse().ok(),
-            #[allow(clippy::cast_precision_loss)] // no limit is anywhere near 2⁵³
             DeValue::Integer(text) => i64::from_str_radix(text.as_str(), text.radix()).ok().map(|whole| whole as f64),
             _ => None,
         };
