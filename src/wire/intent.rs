@@ -1,6 +1,10 @@
 //! `PeerIntent`, `OwnIntent`: the parameters of the law that a vehicle drives by, in three multiplexed frames.
 
 use super::Predecessor;
+use super::bits::Payload;
+use super::field::{Field, TAG};
+use super::motion::speed;
+use super::predecessor;
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 
 /// What a vehicle can and will do to its acceleration; all magnitudes.
@@ -41,4 +45,88 @@ pub struct Intent {
     pub limits: Limits,
     /// How far its horizon reaches; 0 to 25.5 s by 0.1 s, in tenths of a second.
     pub horizon_tenths: u8,
+}
+
+const PART: Field = Field::selector("Part", 14, 2, 3);
+const LENGTH: Field = Field::unsigned("Length", 16, 12).steps(100, "m").part(0);
+const STANDSTILL: Field = Field::unsigned("Standstill", 28, 10).steps(100, "m").part(0);
+const PREDECESSOR: predecessor::Fields = predecessor::fields(38).part(0);
+const TARGET_SPEED: Field = speed("TargetSpeed", 48).part(0);
+const TIME_GAP: Field = time_gap(16).part(1);
+const GAIN: Field = Field::unsigned("Gain", 26, 12).limits(0, 3999).steps(1000, "1/s2").part(1);
+const DAMPING: Field = Field::unsigned("Damping", 38, 12).limits(0, 3999).steps(1000, "s").part(1);
+const LAG: Field = Field::unsigned("Lag", 50, 10).limits(0, 999).steps(500, "s").part(1);
+const ACCELERATION: Field = Field::unsigned("AccelerationLimit", 16, 10).steps(50, "m/s2").part(2);
+const BRAKING: Field = Field::unsigned("BrakingLimit", 26, 10).steps(50, "m/s2").part(2);
+const JERK: Field = Field::unsigned("JerkLimit", 36, 10).steps(20, "m/s3").part(2);
+const EMERGENCY: Field = Field::unsigned("EmergencyBraking", 46, 10).steps(50, "m/s2").part(2);
+const HORIZON: Field = Field::unsigned("HorizonLength", 56, 8).steps(10, "s").part(2);
+
+/// Desired time gap, shared with `EgoIntent`; 800 and above are reserved.
+pub(super) const fn time_gap(start: u32) -> Field {
+    Field::unsigned("TimeGap", start, 10).limits(0, 799).steps(200, "s")
+}
+
+/// The three parts.
+pub const FIELDS: &[Field] = &[
+    TAG,
+    PART,
+    LENGTH,
+    STANDSTILL,
+    PREDECESSOR.kind(),
+    PREDECESSOR.station(),
+    TARGET_SPEED,
+    TIME_GAP,
+    GAIN,
+    DAMPING,
+    LAG,
+    ACCELERATION,
+    BRAKING,
+    JERK,
+    EMERGENCY,
+    HORIZON,
+];
+
+impl Intent {
+    /// The three parts' payloads under this tag (modulo 4); what does not fit is limited to its field's range.
+    #[must_use]
+    pub fn encode(&self, tag: u8) -> [Payload; 3] {
+        let begin = |part| PART.with_raw(TAG.with_raw(Payload::EMPTY, i64::from(tag & 3)), part);
+        let a = LENGTH.with(begin(0), self.length);
+        let a = STANDSTILL.with(a, self.standstill);
+        let a = PREDECESSOR.with(a, self.predecessor);
+        let a = TARGET_SPEED.with(a, self.target_speed);
+        let b = TIME_GAP.with(begin(1), self.time_gap);
+        let b = GAIN.with(b, self.gain);
+        let b = DAMPING.with(b, self.damping);
+        let b = LAG.with(b, self.lag);
+        let c = ACCELERATION.with(begin(2), self.limits.acceleration);
+        let c = BRAKING.with(c, self.limits.braking);
+        let c = JERK.with(c, self.limits.jerk);
+        let c = EMERGENCY.with(c, self.limits.emergency_braking);
+        let c = HORIZON.with_raw(c, i64::from(self.horizon_tenths));
+        [a, b, c]
+    }
+
+    /// From the three parts' payloads; every payload within the fields' limits is an intent.
+    #[must_use]
+    pub fn decode([a, b, c]: &[Payload; 3]) -> Self {
+        Self {
+            length: LENGTH.get(*a),
+            standstill: STANDSTILL.get(*a),
+            predecessor: PREDECESSOR.get(*a),
+            target_speed: TARGET_SPEED.get(*a),
+            time_gap: TIME_GAP.get(*b),
+            gain: GAIN.get(*b),
+            damping: DAMPING.get(*b),
+            lag: LAG.get(*b),
+            limits: Limits {
+                acceleration: ACCELERATION.get(*c),
+                braking: BRAKING.get(*c),
+                jerk: JERK.get(*c),
+                emergency_braking: EMERGENCY.get(*c),
+            },
+            horizon_tenths: HORIZON.byte(*c),
+        }
+    }
 }

@@ -1,22 +1,36 @@
 //! The unit's CAN messages: classic CAN frames enter and typed messages leave ([`Receiver`]), and the other way round
 //! ([`Sender`]).
 //!
-//! Contract of every decoder here: any 8 bytes in, a value or a named [`Refusal`] out; no panic, no allocation.
+//! Contract of every decoder here: any 8 bytes in, a value or a named [`Refusal`](crate::health::Refusal) out; no panic, no allocation.
 //! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
 
+mod assembly;
+pub mod bits;
+pub mod catalogue;
 pub mod command;
+pub mod e2e;
 pub mod ego_intent;
 pub mod estimate;
+pub mod field;
+pub mod frame;
 pub mod geo;
 pub mod horizon;
 pub mod intent;
+pub mod load;
 pub mod motion;
+mod predecessor;
+pub mod quantity;
 pub mod range_sensor;
+pub mod receiver;
 pub mod route;
+pub mod sender;
 pub mod status;
 pub mod sync;
 
-use crate::health::Refusal;
+pub use catalogue::BaseId;
+pub use frame::Frame;
+pub use receiver::{Received, Receiver, Role};
+pub use sender::{Sender, Unsent};
 
 /// An 8-bit hash of a station's identity: enough to notice that a slot has changed hands, not to identify anybody.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,5 +1,7 @@
 //! `RangeSensor`: an on-board sensor's view of the vehicle ahead, in one frame.
 
+use super::bits::Payload;
+use super::field::Field;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
 
@@ -11,10 +13,46 @@ pub struct RangeSample {
     pub distance: Distance,
     /// Its speed less our own; ±65.534 m/s by 2 mm/s.
     pub speed_difference: Speed,
-    /// 95 % of distance errors are below this: 0 to 1.55 m by 0.05 m.
+    /// 95 % of distance errors are below this: 0 to 1.55 m by 0.05 m, rounded up. A worse measurement is not to be sent.
     pub distance_accuracy: Distance,
-    /// 95 % of speed errors are below this: 0 to 1.5 m/s by 0.1 m/s.
+    /// 95 % of speed errors are below this: 0 to 1.5 m/s by 0.1 m/s, rounded up; likewise.
     pub speed_accuracy: Speed,
-    /// How old the measurement was when the frame was sent; 0 to 63 ms.
+    /// How old the measurement was when the frame was sent; 0 to 63 ms by 1 ms, rounded up; likewise.
     pub age: Duration,
+}
+
+const DISTANCE: Field = Field::unsigned("Distance", 12, 18).steps(1000, "m");
+const SPEED_DIFFERENCE: Field = Field::signed("SpeedDifference", 30, 16).steps(500, "m/s");
+const DISTANCE_ACCURACY: Field = Field::unsigned("DistanceAccuracy", 46, 5).steps(20, "m");
+const SPEED_ACCURACY: Field = Field::unsigned("SpeedAccuracy", 51, 4).steps(10, "m/s");
+const AGE: Field = Field::unsigned("Age", 55, 6).steps(1000, "s");
+
+/// The frame.
+pub const FIELDS: &[Field] = &[DISTANCE, SPEED_DIFFERENCE, DISTANCE_ACCURACY, SPEED_ACCURACY, AGE];
+
+const AGE_STEP_MICROS: i64 = 1000;
+
+impl RangeSample {
+    /// The frame's payload; what does not fit is limited to its field's range.
+    #[must_use]
+    pub fn encode(&self) -> [Payload; 1] {
+        let a = DISTANCE.with(Payload::EMPTY, self.distance);
+        let a = SPEED_DIFFERENCE.with(a, self.speed_difference);
+        let a = DISTANCE_ACCURACY.with_up(a, self.distance_accuracy);
+        let a = SPEED_ACCURACY.with_up(a, self.speed_accuracy);
+        let steps = self.age.as_micros().saturating_add(AGE_STEP_MICROS.saturating_sub(1)).div_euclid(AGE_STEP_MICROS);
+        [AGE.with_raw(a, steps)]
+    }
+
+    /// From the frame's payload; every payload within the fields' limits is a measurement.
+    #[must_use]
+    pub fn decode([a]: &[Payload; 1]) -> Self {
+        Self {
+            distance: DISTANCE.get(*a),
+            speed_difference: SPEED_DIFFERENCE.get(*a),
+            distance_accuracy: DISTANCE_ACCURACY.get(*a),
+            speed_accuracy: SPEED_ACCURACY.get(*a),
+            age: Duration::from_micros(AGE.raw(*a).saturating_mul(AGE_STEP_MICROS)),
+        }
+    }
 }

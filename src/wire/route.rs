@@ -1,6 +1,9 @@
 //! `PeerRoute`, `OwnRoute`: where a vehicle is on its route towards an intersection, in two multiplexed frames.
 
 use super::Predecessor;
+use super::bits::Payload;
+use super::field::{Field, TAG, stamp, stamp_of};
+use super::predecessor;
 use crate::time::Stamp;
 use crate::units::Distance;
 
@@ -22,4 +25,44 @@ pub struct Route {
     pub arrival: u32,
     /// Whom it takes to be ahead of it in the order.
     pub predecessor: Predecessor,
+}
+
+const PART: Field = Field::selector("Part", 14, 1, 2);
+const DISTANCE: Field = Field::signed("Distance", 15, 21).steps(1000, "m").part(0);
+const STAMP: Field = stamp(36).part(0);
+const LEG: Field = Field::unsigned("Leg", 53, 3).part(0);
+const INTERSECTION: Field = Field::unsigned("Intersection", 56, 8).part(0);
+const ARRIVAL: Field = Field::unsigned("Arrival", 15, 20).steps(100, "s").part(1);
+const PREDECESSOR: predecessor::Fields = predecessor::fields(35).part(1);
+
+/// The two parts.
+pub const FIELDS: &[Field] =
+    &[TAG, PART, DISTANCE, STAMP, LEG, INTERSECTION, ARRIVAL, PREDECESSOR.kind(), PREDECESSOR.station()];
+
+impl Route {
+    /// The two parts' payloads; what does not fit is limited to its field's range, but the arrival is taken modulo 2²⁰.
+    #[must_use]
+    pub fn encode(&self) -> [Payload; 2] {
+        let begin = |part| PART.with_raw(TAG.with_raw(Payload::EMPTY, i64::from(self.tag & 3)), part);
+        let a = DISTANCE.with(begin(0), self.distance);
+        let a = STAMP.with_raw(a, i64::from(self.stamp.raw()));
+        let a = LEG.with_raw(a, i64::from(self.leg));
+        let a = INTERSECTION.with_raw(a, i64::from(self.intersection));
+        let b = ARRIVAL.with_raw(begin(1), i64::from(self.arrival & 0xF_FFFF));
+        [a, PREDECESSOR.with(b, self.predecessor)]
+    }
+
+    /// From the two parts' payloads; every payload within the fields' limits is a route.
+    #[must_use]
+    pub fn decode([a, b]: &[Payload; 2]) -> Self {
+        Self {
+            tag: TAG.byte(*a),
+            intersection: INTERSECTION.byte(*a),
+            leg: LEG.byte(*a),
+            distance: DISTANCE.get(*a),
+            stamp: stamp_of(*a, &STAMP),
+            arrival: ARRIVAL.word(*b),
+            predecessor: PREDECESSOR.get(*b),
+        }
+    }
 }

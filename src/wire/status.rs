@@ -1,6 +1,8 @@
 //! `Health`: one refusal count in each frame, cause after cause, with the mode and the state of the time base.
 
+use super::bits::Payload;
 use super::command::ModeCode;
+use super::field::Field;
 use crate::health::Refusal;
 
 /// One page of the unit's state.
@@ -19,4 +21,57 @@ pub struct Status {
     pub synchronised: bool,
     /// Peers whose link is on.
     pub links_on: u8,
+}
+
+/// Every cause with its number.
+static CAUSES: [(i64, &str); Refusal::ALL.len()] = causes();
+
+#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
+const fn causes() -> [(i64, &'static str); Refusal::ALL.len()] {
+    let mut causes = [(0, ""); Refusal::ALL.len()];
+    let mut number = 0;
+    while number < causes.len() {
+        causes[number] = (number as i64, Refusal::ALL[number].name());
+        number += 1;
+    }
+    causes
+}
+
+const CAUSE: Field = Field::unsigned("Cause", 12, 8).named(&CAUSES);
+const COUNT: Field = Field::unsigned("Count", 20, 24);
+const MODE: Field = ModeCode::field(44);
+const DETAIL: Field = Field::unsigned("Detail", 47, 5);
+const SYNCHRONISED: Field =
+    Field::unsigned("Synchronised", 52, 1).named(&[(0, "no GNSS time"), (1, "GNSS time known")]);
+const LINKS_ON: Field = Field::unsigned("LinksOn", 53, 8);
+
+/// The frame.
+pub const FIELDS: &[Field] = &[CAUSE, COUNT, MODE, DETAIL, SYNCHRONISED, LINKS_ON];
+
+impl Status {
+    /// The frame's payload; what does not fit is limited to its field's range.
+    #[must_use]
+    pub fn encode(&self) -> [Payload; 1] {
+        let a = CAUSE.with_raw(Payload::EMPTY, self.cause as i64);
+        let a = COUNT.with_raw(a, i64::from(self.count));
+        let a = MODE.with_raw(a, self.mode as i64);
+        let a = DETAIL.with_raw(a, i64::from(self.detail));
+        let a = SYNCHRONISED.with_raw(a, i64::from(self.synchronised));
+        [LINKS_ON.with_raw(a, i64::from(self.links_on))]
+    }
+
+    /// From the frame's payload.
+    ///
+    /// # Errors
+    /// `Range` for the number of a cause that there is not.
+    pub fn decode([a]: &[Payload; 1]) -> Result<Self, Refusal> {
+        Ok(Self {
+            cause: Refusal::ALL.get(usize::from(CAUSE.byte(*a))).copied().ok_or(Refusal::Range)?,
+            count: COUNT.word(*a),
+            mode: ModeCode::from_raw(MODE.raw(*a)),
+            detail: DETAIL.byte(*a),
+            synchronised: SYNCHRONISED.raw(*a) != 0,
+            links_on: LINKS_ON.byte(*a),
+        })
+    }
 }

@@ -1,0 +1,202 @@
+//! Frames in, whole messages out: identifier, length, E2E, ranges and the parts of a message are judged here, in this
+//! order, and each failure is a named [`Refusal`].
+//!
+//! A refused frame changes the E2E state of its identifier and, if it is `Torn`, begins a new message; nothing else. A
+//! frame of another identifier costs two comparisons.
+
+use embedded_can::{Frame, Id};
+
+use super::assembly::Assembly;
+use super::bits::Payload;
+use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, Line, Node, PEERS_OFFSET, Speaker};
+use super::command::Command;
+use super::e2e::Check;
+use super::ego_intent::EgoIntent;
+use super::estimate::TargetEstimate;
+use super::geo::GeoPosition;
+use super::horizon::{KNOTS, Knots};
+use super::intent::Intent;
+use super::motion::Motion;
+use super::range_sensor::RangeSample;
+use super::route::Route;
+use super::status::Status;
+use super::sync::{FollowUp, Sync};
+use super::{Message, Said, Slot};
+use crate::health::Refusal;
+
+/// On which side of the bus the receiver stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Role {
+    /// The unit: hears the vehicle and the modem.
+    Unit,
+    /// The modem, the harness or a tool: hears the unit. Needs no peers.
+    Modem,
+}
+
+impl Role {
+    const fn hears(self, sender: Node) -> bool {
+        match self {
+            Self::Unit => !matches!(sender, Node::Unit),
+            Self::Modem => matches!(sender, Node::Unit),
+        }
+    }
+}
+
+/// What a frame brought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[allow(clippy::large_enum_variant)] // lives for one call; boxing needs an allocator
+pub enum Received {
+    /// Not for this receiver.
+    Foreign,
+    /// A good part of a message that is not whole yet.
+    Pending,
+    /// The whole message.
+    Whole(Message),
+}
+
+/// What one vehicle's frames have brought so far.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Parts {
+    motion: Assembly<2>,
+    horizon: Assembly<KNOTS>,
+    intent: Assembly<3>,
+    geo: Assembly<2>,
+    route: Assembly<2>,
+}
+
+impl Parts {
+    const NEW: Self = Self {
+        motion: Assembly::new(),
+        horizon: Assembly::new(),
+        intent: Assembly::new(),
+        geo: Assembly::new(),
+        route: Assembly::new(),
+    };
+
+    fn add(&mut self, about: About, part: u8, tag: u8, payload: Payload) -> Result<Option<Said>, Refusal> {
+        Ok(match about {
+            About::MotionA => self.motion.add(0, tag, payload)?.map(|parts| Said::Motion(Motion::decode(&parts))),
+            About::MotionB => self.motion.add(1, tag, payload)?.map(|parts| Said::Motion(Motion::decode(&parts))),
+            About::Horizon => self.horizon.add(part, tag, payload)?.map(|parts| Said::Horizon(Knots::decode(&parts))),
+            About::Intent => self.intent.add(part, tag, payload)?.map(|parts| Said::Intent(Intent::decode(&parts))),
+            About::Geo => self.geo.add(part, tag, payload)?.map(|parts| Said::Geo(GeoPosition::decode(&parts))),
+            About::Route => self.route.add(part, tag, payload)?.map(|parts| Said::Route(Route::decode(&parts))),
+        })
+    }
+}
+
+/// One slot's state.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Peer {
+    checks: [Check; ABOUTS],
+    parts: Parts,
+}
+
+impl Peer {
+    const NEW: Self = Self { checks: [Check::new(); ABOUTS], parts: Parts::NEW };
+}
+
+/// The receiving side of the bus, with so many slots.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Receiver<const PEERS: usize> {
+    base: BaseId,
+    role: Role,
+    /// By place in the catalogue; those of the peers' lines are not used.
+    checks: [Check; LINES],
+    /// Of the one vehicle that is not a peer: the ego for the unit, the unit's own for the modem.
+    own: Parts,
+    estimate: Assembly<2>,
+    peers: [Peer; PEERS],
+}
+
+impl<const PEERS: usize> Receiver<PEERS> {
+    /// Nothing received yet.
+    #[must_use]
+    pub const fn new(base: BaseId, role: Role) -> Self {
+        Self {
+            base,
+            role,
+            checks: [Check::new(); LINES],
+            own: Parts::NEW,
+            estimate: Assembly::new(),
+            peers: [const { Peer::NEW }; PEERS],
+        }
+    }
+
+    /// Takes one frame.
+    ///
+    /// # Errors
+    /// `UnknownSlot`, `Length` (also for a remote frame), the E2E refusals (`Checksum`, `CounterRange`, `Repeated`,
+    /// `CounterGap`, `NotYetTrusted`), `Range`, `Torn`, tested in this order.
+    pub fn receive(&mut self, frame: &impl Frame) -> Result<Received, Refusal> {
+        let Id::Standard(id) = frame.id() else { return Ok(Received::Foreign) };
+        let Some(offset) = self.base.offset_of(id.as_raw()) else { return Ok(Received::Foreign) };
+        let Some((place, line, slot)) = catalogue::find(offset) else { return Ok(Received::Foreign) };
+        if !self.role.hears(line.sender) {
+            return Ok(Received::Foreign);
+        }
+        if line.is_per_slot() && usize::from(slot.0) >= PEERS {
+            return Err(Refusal::UnknownSlot);
+        }
+        let data: &[u8; 8] = match (frame.is_remote_frame(), frame.data().try_into()) {
+            (false, Ok(data)) => data,
+            _ => return Err(Refusal::Length),
+        };
+        let data_id = catalogue::data_id(offset);
+        self.check_of(place, line, slot)?.receive(line.limits(), data_id, data)?;
+        let payload = Payload::from_bytes(*data);
+        line.check(payload)?;
+        Ok(self.assemble(line, slot, payload)?.map_or(Received::Pending, Received::Whole))
+    }
+
+    fn check_of(&mut self, place: usize, line: &Line, slot: Slot) -> Result<&mut Check, Refusal> {
+        let check = if line.is_per_slot() {
+            let about = usize::from(line.offset.saturating_sub(PEERS_OFFSET));
+            self.peers.get_mut(usize::from(slot.0)).and_then(|peer| peer.checks.get_mut(about))
+        } else {
+            self.checks.get_mut(place)
+        };
+        check.ok_or(Refusal::UnknownSlot)
+    }
+
+    fn assemble(&mut self, line: &Line, slot: Slot, payload: Payload) -> Result<Option<Message>, Refusal> {
+        let (part, tag) = (line.part_of(payload), super::field::TAG.byte(payload));
+        let whole = [payload];
+        Ok(match line.content {
+            Content::Sync => Some(Message::Sync(Sync::decode(&whole))),
+            Content::FollowUp => Some(Message::FollowUp(FollowUp::decode(&whole))),
+            Content::Command => Some(Message::Command(Command::decode(&whole))),
+            Content::EgoIntent => Some(Message::EgoIntent(EgoIntent::decode(&whole))),
+            Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
+            Content::Status => Some(Message::Status(Status::decode(&whole)?)),
+            Content::EstimateA => self.add_estimate(0, tag, payload)?,
+            Content::EstimateB => self.add_estimate(1, tag, payload)?,
+            Content::Said(Speaker::Ego, about) => self.own.add(about, part, tag, payload)?.map(Message::Ego),
+            Content::Said(Speaker::Own, about) => self.own.add(about, part, tag, payload)?.map(Message::Own),
+            Content::Said(Speaker::Peer, about) => {
+                let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Refusal::UnknownSlot)?;
+                peer.parts.add(about, part, tag, payload)?.map(|said| Message::Peer(slot, said))
+            }
+        })
+    }
+
+    fn add_estimate(&mut self, part: u8, tag: u8, payload: Payload) -> Result<Option<Message>, Refusal> {
+        match self.estimate.add(part, tag, payload)? {
+            Some(parts) => Ok(Some(Message::Estimate(TargetEstimate::decode(&parts)?))),
+            None => Ok(None),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_receiver_for_eight_peers_takes_less_than_two_kilobytes() {
+        let size = size_of::<Receiver<8>>();
+        assert!(size <= 2048, "{size} bytes");
+    }
+}

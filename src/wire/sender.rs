@@ -1,0 +1,130 @@
+//! Messages in, protected frames out: the sending side of the bus, for the unit (`Own*`, command, estimate, status) as
+//! for the modem, the vehicle's sensors and the harness (the rest).
+//!
+//! A tag that stands in a message is its producer's: a horizon has to carry the tag of its motion. [`Intent`] has none,
+//! so the sender counts one for it.
+//!
+//! [`Intent`]: super::intent::Intent
+
+use super::bits::Payload;
+use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, Line, PEERS_OFFSET, Speaker};
+use super::{Frame, Message, Said, Slot, e2e};
+
+/// Why a message was not sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Unsent {
+    /// The catalogue has no line for it: of the ego there are only motion and position.
+    NoLine,
+    /// A slot beyond the sender's.
+    UnknownSlot,
+}
+
+/// The E2E counters of all identifiers, and the tags of intents; with so many slots (0 for the unit).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sender<const PEERS: usize> {
+    base: BaseId,
+    /// By place in the catalogue; those of the peers' lines are not used.
+    counters: [u8; LINES],
+    intent_tag: u8,
+    peers: [Peer; PEERS],
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Peer {
+    counters: [u8; ABOUTS],
+    intent_tag: u8,
+}
+
+impl Peer {
+    const NEW: Self = Self { counters: [0; ABOUTS], intent_tag: 0 };
+}
+
+impl<const PEERS: usize> Sender<PEERS> {
+    /// Nothing sent yet: every counter starts at 0.
+    #[must_use]
+    pub const fn new(base: BaseId) -> Self {
+        Self { base, counters: [0; LINES], intent_tag: 0, peers: [const { Peer::NEW }; PEERS] }
+    }
+
+    /// Emits the message's frames, in order.
+    ///
+    /// # Errors
+    /// [`Unsent`]; nothing was emitted then.
+    pub fn send(&mut self, message: &Message, emit: &mut impl FnMut(Frame)) -> Result<(), Unsent> {
+        let none = Slot(0);
+        match message {
+            Message::Sync(sync) => self.emit(Content::Sync, none, &sync.encode(), emit),
+            Message::FollowUp(follow_up) => self.emit(Content::FollowUp, none, &follow_up.encode(), emit),
+            Message::EgoIntent(intent) => self.emit(Content::EgoIntent, none, &intent.encode(), emit),
+            Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
+            Message::Command(command) => self.emit(Content::Command, none, &command.encode(), emit),
+            Message::Status(status) => self.emit(Content::Status, none, &status.encode(), emit),
+            Message::Estimate(estimate) => {
+                let [a, b] = estimate.encode();
+                self.emit(Content::EstimateA, none, &[a], emit)?;
+                self.emit(Content::EstimateB, none, &[b], emit)
+            }
+            Message::Ego(said) => self.say(Speaker::Ego, none, said, emit),
+            Message::Own(said) => self.say(Speaker::Own, none, said, emit),
+            Message::Peer(slot, said) => self.say(Speaker::Peer, *slot, said, emit),
+        }
+    }
+
+    fn say(&mut self, speaker: Speaker, slot: Slot, said: &Said, emit: &mut impl FnMut(Frame)) -> Result<(), Unsent> {
+        match said {
+            Said::Motion(motion) => {
+                let [a, b] = motion.encode();
+                self.emit(Content::Said(speaker, About::MotionA), slot, &[a], emit)?;
+                self.emit(Content::Said(speaker, About::MotionB), slot, &[b], emit)
+            }
+            Said::Horizon(knots) => self.emit(Content::Said(speaker, About::Horizon), slot, &knots.encode(), emit),
+            Said::Geo(position) => self.emit(Content::Said(speaker, About::Geo), slot, &position.encode(), emit),
+            Said::Route(route) => self.emit(Content::Said(speaker, About::Route), slot, &route.encode(), emit),
+            Said::Intent(intent) => {
+                let tag = self.intent_tag(speaker, slot)?;
+                self.emit(Content::Said(speaker, About::Intent), slot, &intent.encode(tag), emit)
+            }
+        }
+    }
+
+    fn intent_tag(&mut self, speaker: Speaker, slot: Slot) -> Result<u8, Unsent> {
+        let tag = match speaker {
+            Speaker::Peer => &mut self.peers.get_mut(usize::from(slot.0)).ok_or(Unsent::UnknownSlot)?.intent_tag,
+            Speaker::Own | Speaker::Ego => &mut self.intent_tag,
+        };
+        *tag = tag.wrapping_add(1) & 3;
+        Ok(*tag)
+    }
+
+    fn emit(
+        &mut self,
+        content: Content,
+        slot: Slot,
+        payloads: &[Payload],
+        emit: &mut impl FnMut(Frame),
+    ) -> Result<(), Unsent> {
+        let (place, line) = catalogue::find_content(content).ok_or(Unsent::NoLine)?;
+        let offset = line.offset_for(slot);
+        let id = self.base.plus(offset);
+        let counter = self.counter(place, line, slot)?;
+        for payload in payloads {
+            emit(Frame { id, data: e2e::protect(payload.to_bytes(), catalogue::data_id(offset), *counter) });
+            *counter = e2e::next(*counter);
+        }
+        Ok(())
+    }
+
+    fn counter(&mut self, place: usize, line: &Line, slot: Slot) -> Result<&mut u8, Unsent> {
+        if line.is_per_slot() {
+            if u16::from(slot.0) >= catalogue::SLOTS {
+                return Err(Unsent::UnknownSlot);
+            }
+            let about = usize::from(line.offset.saturating_sub(PEERS_OFFSET));
+            let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Unsent::UnknownSlot)?;
+            peer.counters.get_mut(about).ok_or(Unsent::NoLine)
+        } else {
+            self.counters.get_mut(place).ok_or(Unsent::NoLine)
+        }
+    }
+}

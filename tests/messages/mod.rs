@@ -1,0 +1,209 @@
+//! Random messages whose values all stand on the wire exactly; the ranges are written out here once more on purpose,
+//! apart from the catalogue.
+
+use holdover::health::Refusal;
+use holdover::time::{Duration, Stamp};
+use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::wire::command::{Command, Effort, ModeCode};
+use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::estimate::{Ends, TargetEstimate};
+use holdover::wire::geo::GeoPosition;
+use holdover::wire::horizon::{KNOTS, Knot, Knots};
+use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::quantity::Quantity;
+use holdover::wire::range_sensor::RangeSample;
+use holdover::wire::route::Route;
+use holdover::wire::status::Status;
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
+use proptest::option;
+use proptest::prelude::*;
+
+fn steps<Q: Quantity + std::fmt::Debug>(raw: std::ops::RangeInclusive<i64>, per_unit: i64) -> BoxedStrategy<Q> {
+    let (low, high) = (*raw.start(), *raw.end());
+    prop_oneof![8 => raw, 1 => Just(low), 1 => Just(high)].prop_map(move |raw| Q::from_steps(raw, per_unit)).boxed()
+}
+
+fn position() -> impl Strategy<Value = WirePosition> {
+    (-(1i64 << 24)..1 << 24).prop_map(WirePosition::from_mm)
+}
+
+fn speed() -> BoxedStrategy<Speed> {
+    steps(0..=32_767, 500)
+}
+
+fn acceleration() -> BoxedStrategy<Acceleration> {
+    steps(-1023..=1023, 50)
+}
+
+fn stamp() -> impl Strategy<Value = Stamp> {
+    (0u32..1 << 17).prop_map(Stamp::from_raw)
+}
+
+fn predecessor() -> impl Strategy<Value = Predecessor> {
+    prop_oneof![
+        Just(Predecessor::Unknown),
+        Just(Predecessor::None),
+        any::<u8>().prop_map(|hash| Predecessor::Station(StationHash(hash))),
+    ]
+}
+
+fn mode() -> impl Strategy<Value = ModeCode> {
+    use ModeCode::{Cooperative, Fallback, Fault, Holdover, Standby};
+    proptest::sample::select(vec![Standby, Cooperative, Holdover, Fallback, Fault])
+}
+
+prop_compose! {
+    pub fn motion()(
+        tag in 0u8..4, position in position(), speed in speed(), acceleration in acceleration(), demand in acceleration(),
+        stamp in stamp(), position_accuracy in option::of(steps(0..=126, 20)),
+        speed_accuracy in option::of(steps(0..=62, 50)), station: u8,
+    ) -> Motion {
+        let station = StationHash(station);
+        Motion { tag, position, speed, acceleration, demand, stamp, position_accuracy, speed_accuracy, station }
+    }
+}
+
+prop_compose! {
+    fn limits()(
+        acceleration in steps(0..=1023, 50), braking in steps(0..=1023, 50), jerk in steps::<Jerk>(0..=1023, 20),
+        emergency_braking in steps(0..=1023, 50),
+    ) -> Limits {
+        Limits { acceleration, braking, jerk, emergency_braking }
+    }
+}
+
+prop_compose! {
+    pub fn intent()(
+        length in steps(0..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
+        target_speed in speed(), time_gap in steps(0..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
+        damping in steps(0..=3999, 1000), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
+        horizon_tenths: u8,
+    ) -> Intent {
+        Intent {
+            length, standstill, predecessor, target_speed, time_gap, gain, damping, lag, limits, horizon_tenths,
+        }
+    }
+}
+
+prop_compose! {
+    fn knot()(
+        displacement in steps(0..=262_143, 1000), speed in speed(), acceleration in acceleration(),
+        bow in steps::<Distance>(-4..=3, 200),
+    ) -> Knot {
+        Knot { displacement, speed, acceleration, bow }
+    }
+}
+
+pub fn knots() -> impl Strategy<Value = Knots> {
+    (0u8..4, proptest::array::uniform::<_, KNOTS>(knot())).prop_map(|(tag, knots)| Knots { tag, knots })
+}
+
+prop_compose! {
+    pub fn geo()(
+        tag in 0u8..4, latitude in -900_000_000i32..=900_000_000, longitude in -1_800_000_000i32..=1_800_000_000,
+        heading in 0u16..28_800, stamp in stamp(),
+    ) -> GeoPosition {
+        GeoPosition { tag, latitude, longitude, heading, stamp }
+    }
+}
+
+prop_compose! {
+    pub fn route()(
+        tag in 0u8..4, intersection: u8, leg in 0u8..8, distance in steps(-1_048_575..=1_048_575, 1000),
+        stamp in stamp(), arrival in 0u32..1 << 20, predecessor in predecessor(),
+    ) -> Route {
+        Route { tag, intersection, leg, distance, stamp, arrival, predecessor }
+    }
+}
+
+prop_compose! {
+    pub fn ego_intent()(
+        engaged: bool, predecessor in predecessor(), target_speed in speed(),
+        time_gap in option::of(steps::<Seconds>(0..=799, 200)),
+    ) -> EgoIntent {
+        EgoIntent { engaged, predecessor, target_speed, time_gap }
+    }
+}
+
+prop_compose! {
+    pub fn range_sample()(
+        distance in steps(0..=262_143, 1000), speed_difference in steps(-32_767..=32_767, 500),
+        distance_accuracy in steps(0..=31, 20), speed_accuracy in steps(0..=15, 10), age in 0i64..64,
+    ) -> RangeSample {
+        RangeSample { distance, speed_difference, distance_accuracy, speed_accuracy, age: Duration::from_millis(age) }
+    }
+}
+
+prop_compose! {
+    pub fn command()(
+        acceleration in steps(-8191..=8191, 500),
+        effort in prop_oneof![
+            (0u16..=65_534).prop_map(Effort::Force), (0u16..=65_534).prop_map(Effort::BrakeTorque),
+        ],
+        mode in mode(), limited: bool, tick in 0u8..64,
+    ) -> Command {
+        Command { acceleration, effort, mode, limited, tick }
+    }
+}
+
+prop_compose! {
+    fn ends()(
+        behind in steps(0..=16_382, 50), ahead in steps(0..=16_382, 50), slower in steps(0..=510, 5),
+        faster in steps(0..=510, 5),
+    ) -> Ends {
+        Ends { behind, ahead, slower, faster }
+    }
+}
+
+prop_compose! {
+    pub fn estimate()(
+        tag in 0u8..4, position in position(), speed in speed(), age in 0i64..=8190, ends in option::of(ends()),
+    ) -> TargetEstimate {
+        TargetEstimate { tag, position, speed, age: Duration::from_millis(2 * age), ends }
+    }
+}
+
+prop_compose! {
+    pub fn status()(
+        cause in proptest::sample::select(&Refusal::ALL[..]), count in 0u32..1 << 24, mode in mode(), detail in 0u8..32,
+        synchronised: bool, links_on: u8,
+    ) -> Status {
+        Status { cause, count, mode, detail, synchronised, links_on }
+    }
+}
+
+/// What a vehicle says of itself.
+pub fn said() -> impl Strategy<Value = Said> {
+    prop_oneof![
+        motion().prop_map(Said::Motion),
+        intent().prop_map(Said::Intent),
+        knots().prop_map(Said::Horizon),
+        geo().prop_map(Said::Geo),
+        route().prop_map(Said::Route),
+    ]
+}
+
+/// What the unit hears.
+pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
+    prop_oneof![
+        1 => (0u8..16, any::<u32>()).prop_map(|(sequence, seconds)| Message::Sync(Sync { sequence, seconds })),
+        1 => (0u8..16, any::<u32>()).prop_map(|(sequence, micros)| Message::FollowUp(FollowUp { sequence, micros })),
+        1 => motion().prop_map(|motion| Message::Ego(Said::Motion(motion))),
+        1 => geo().prop_map(|position| Message::Ego(Said::Geo(position))),
+        1 => ego_intent().prop_map(Message::EgoIntent),
+        1 => range_sample().prop_map(Message::Range),
+        5 => (0..slots, said()).prop_map(|(slot, said)| Message::Peer(Slot(slot), said)),
+    ]
+}
+
+/// What the unit says.
+pub fn from_unit() -> impl Strategy<Value = Message> {
+    prop_oneof![
+        2 => said().prop_map(Message::Own),
+        1 => command().prop_map(Message::Command),
+        1 => estimate().prop_map(Message::Estimate),
+        1 => status().prop_map(Message::Status),
+    ]
+}

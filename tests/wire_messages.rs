@@ -1,0 +1,218 @@
+//! Facts about every message on the bus: what is sent is received; no byte is a panic; what is refused leaves no trace.
+
+mod messages;
+
+use embedded_can::{ExtendedId, Id, StandardId};
+use holdover::health::Refusal;
+use holdover::wire::catalogue::{CATALOGUE, data_id};
+use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
+use messages::{from_unit, geo, intent, knots, motion, to_unit};
+use proptest::prelude::*;
+
+const BASE: BaseId = BaseId::DEFAULT;
+
+fn frames_of<const PEERS: usize>(sender: &mut Sender<PEERS>, message: &Message) -> Vec<Frame> {
+    let mut frames = Vec::new();
+    sender.send(message, &mut |frame| frames.push(frame)).unwrap();
+    frames
+}
+
+/// A sender and a receiver that trust one another on every identifier.
+fn acquainted<const PEERS: usize>(role: Role) -> (Sender<PEERS>, Receiver<PEERS>) {
+    let mut receiver = Receiver::<PEERS>::new(BASE, role);
+    // a frame with the counter before the sender's first, on every identifier; the receiver knows it by it
+    for line in &CATALOGUE {
+        for slot in 0..if line.is_per_slot() { PEERS as u8 } else { 1 } {
+            let offset = line.offset_for(Slot(slot));
+            let frame = Frame { id: BASE.plus(offset), data: e2e::protect([0; 8], data_id(offset), 14) };
+            let heard = receiver.receive(&frame);
+            assert!(matches!(heard, Err(Refusal::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
+        }
+    }
+    (Sender::new(BASE), receiver)
+}
+
+fn sent_is_received(role: Role, sent: &[Message]) {
+    let (mut sender, mut receiver) = acquainted::<8>(role);
+    for message in sent {
+        let frames = frames_of(&mut sender, message);
+        let (last, before) = frames.split_last().unwrap();
+        for frame in before {
+            assert_eq!(receiver.receive(frame), Ok(Received::Pending));
+        }
+        assert_eq!(receiver.receive(last), Ok(Received::Whole(*message)));
+    }
+}
+
+/// A frame of any kind: extended, remote, short.
+#[derive(Clone, Debug)]
+struct Odd {
+    id: Id,
+    remote: bool,
+    data: Vec<u8>,
+}
+
+impl embedded_can::Frame for Odd {
+    fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
+        Some(Self { id: id.into(), remote: false, data: data.to_vec() })
+    }
+    fn new_remote(id: impl Into<Id>, dlc: usize) -> Option<Self> {
+        Some(Self { id: id.into(), remote: true, data: vec![0; dlc] })
+    }
+    fn is_extended(&self) -> bool {
+        matches!(self.id, Id::Extended(_))
+    }
+    fn is_remote_frame(&self) -> bool {
+        self.remote
+    }
+    fn id(&self) -> Id {
+        self.id
+    }
+    fn dlc(&self) -> usize {
+        self.data.len()
+    }
+    fn data(&self) -> &[u8] {
+        &self.data
+    }
+}
+
+fn odd() -> impl Strategy<Value = Odd> {
+    let id = prop_oneof![
+        (0x478u16..0x548).prop_map(|id| Id::Standard(StandardId::new(id).unwrap())),
+        (0u16..0x800).prop_map(|id| Id::Standard(StandardId::new(id).unwrap())),
+        (0x478u32..0x548).prop_map(|id| Id::Extended(ExtendedId::new(id).unwrap())),
+    ];
+    let data =
+        prop_oneof![4 => proptest::collection::vec(any::<u8>(), 8), 1 => proptest::collection::vec(any::<u8>(), 0..=8)];
+    (id, proptest::bool::weighted(0.1), data).prop_map(|(id, remote, data)| Odd { id, remote, data })
+}
+
+proptest! {
+    #[test]
+    fn what_the_modem_and_the_vehicle_send_the_unit_receives(sent in proptest::collection::vec(to_unit(8), 1..20)) {
+        sent_is_received(Role::Unit, &sent);
+    }
+
+    #[test]
+    fn what_the_unit_sends_the_modem_receives(sent in proptest::collection::vec(from_unit(), 1..20)) {
+        sent_is_received(Role::Modem, &sent);
+    }
+
+    #[test]
+    fn no_frame_is_a_panic_and_a_refused_one_does_not_disturb_the_messages_under_way(
+        noise in proptest::collection::vec(odd(), 1..200), sent in to_unit(8),
+    ) {
+        let (mut sender, mut receiver) = acquainted::<8>(Role::Unit);
+        let mut whole = None;
+        let mut noise = noise.iter();
+        for frame in frames_of(&mut sender, &sent) {
+            for odd in noise.by_ref().take(20) {
+                let before = receiver.clone();
+                match receiver.receive(odd) {
+                    Ok(Received::Foreign) => prop_assert_eq!(&before, &receiver),
+                    // one frame of noise in 256 has the right CRC; it may be trusted if its counter fits too
+                    Ok(_) | Err(Refusal::Torn) => receiver = before,
+                    Err(Refusal::Length | Refusal::UnknownSlot | Refusal::CounterRange) => {
+                        prop_assert_eq!(&before, &receiver);
+                    }
+                    Err(Refusal::Checksum) => {}
+                    Err(_) => receiver = before,
+                }
+            }
+            whole = Some(receiver.receive(&frame));
+        }
+        prop_assert_eq!(whole, Some(Ok(Received::Whole(sent))));
+    }
+
+    #[test]
+    fn protected_noise_on_any_identifier_is_a_value_or_a_refusal_and_a_value_is_sent_as_it_was_heard(
+        offset in 0u16..0xC0, words in proptest::collection::vec(any::<[u8; 8]>(), 1..40), role in any::<bool>(),
+    ) {
+        let role = if role { Role::Unit } else { Role::Modem };
+        let mut receiver = Receiver::<16>::new(BASE, role);
+        let mut counter = 0;
+        for word in words {
+            let frame = Frame { id: BASE.plus(offset), data: e2e::protect(word, data_id(offset), counter) };
+            counter = e2e::next(counter);
+            match receiver.receive(&frame) {
+                Ok(Received::Whole(message)) => {
+                    let (mut sender, mut other) = acquainted::<16>(role);
+                    let heard = frames_of(&mut sender, &message).iter().map(|frame| other.receive(frame)).last();
+                    prop_assert_eq!(heard, Some(Ok(Received::Whole(message))));
+                }
+                Ok(Received::Foreign | Received::Pending) => {}
+                Err(refusal) => prop_assert!(
+                    matches!(refusal, Refusal::NotYetTrusted | Refusal::Range | Refusal::Torn), "{:?}", refusal
+                ),
+            }
+        }
+    }
+
+    #[test]
+    fn a_lost_part_costs_its_message_and_is_counted_once(
+        first in knots(), second in knots(), lost in 0usize..5,
+    ) {
+        prop_assume!(first.tag != second.tag);
+        let (mut sender, mut receiver) = acquainted::<8>(Role::Unit);
+        let mut frames = frames_of(&mut sender, &Message::Peer(Slot(3), Said::Horizon(first)));
+        frames.remove(lost);
+        frames.extend(frames_of(&mut sender, &Message::Peer(Slot(3), Said::Horizon(second))));
+        let heard: Vec<_> = frames.iter().map(|frame| receiver.receive(frame)).collect();
+        prop_assert_eq!(heard.iter().filter(|heard| **heard == Err(Refusal::Torn)).count(), 1);
+        prop_assert_eq!(heard.last(), Some(&Ok(Received::Whole(Message::Peer(Slot(3), Said::Horizon(second))))));
+    }
+
+    #[test]
+    fn halves_of_two_motions_are_never_one(first in motion(), second in motion()) {
+        prop_assume!(first.tag != second.tag);
+        let (mut sender, mut receiver) = acquainted::<8>(Role::Unit);
+        let a = frames_of(&mut sender, &Message::Ego(Said::Motion(first)));
+        let b = frames_of(&mut sender, &Message::Ego(Said::Motion(second)));
+        prop_assert_eq!(receiver.receive(&a[0]), Ok(Received::Pending));
+        prop_assert_eq!(receiver.receive(&b[1]), Err(Refusal::Torn));
+        prop_assert_eq!(receiver.receive(&b[0]), Ok(Received::Whole(Message::Ego(Said::Motion(second)))));
+    }
+
+    #[test]
+    fn intents_in_a_row_carry_tags_that_differ(intents in proptest::collection::vec(intent(), 5)) {
+        let mut sender = Sender::<0>::new(BASE);
+        let tags: Vec<_> = intents
+            .iter()
+            .map(|intent| {
+                let frames = frames_of(&mut sender, &Message::Own(Said::Intent(*intent)));
+                let tags: Vec<_> = frames.iter().map(|frame| frame.data[1] >> 4 & 3).collect();
+                assert!(tags.windows(2).all(|pair| pair[0] == pair[1]));
+                tags[0]
+            })
+            .collect();
+        prop_assert!(tags.windows(2).all(|pair| pair[0] != pair[1]), "{:?}", tags);
+    }
+
+    #[test]
+    fn what_the_catalogue_does_not_have_is_not_sent(intent in intent(), position in geo()) {
+        let mut sender = Sender::<2>::new(BASE);
+        let mut emitted = 0;
+        let mut emit = |_| emitted += 1;
+        prop_assert_eq!(sender.send(&Message::Ego(Said::Intent(intent)), &mut emit), Err(Unsent::NoLine));
+        let beyond = Message::Peer(Slot(2), Said::Geo(position));
+        prop_assert_eq!(sender.send(&beyond, &mut emit), Err(Unsent::UnknownSlot));
+        prop_assert_eq!(emitted, 0);
+    }
+}
+
+#[test]
+fn frames_that_are_not_ours_to_read_are_told_apart_from_bad_ones() {
+    let id = |id| Id::Standard(StandardId::new(id).unwrap());
+    let odd = |id, remote, length| Odd { id, remote, data: vec![0; length] };
+    let mut receiver = Receiver::<2>::new(BASE, Role::Unit);
+    let mut heard = |frame: Odd| receiver.receive(&frame);
+    assert_eq!(heard(odd(id(0x47F), false, 8)), Ok(Received::Foreign));
+    assert_eq!(heard(odd(id(0x540), false, 8)), Ok(Received::Foreign));
+    assert_eq!(heard(odd(id(0x483), false, 8)), Ok(Received::Foreign), "an identifier without a line");
+    assert_eq!(heard(odd(id(0x482), false, 8)), Ok(Received::Foreign), "the unit's own command");
+    assert_eq!(heard(odd(Id::Extended(ExtendedId::new(0x480).unwrap()), false, 8)), Ok(Received::Foreign));
+    assert_eq!(heard(odd(id(0x480), true, 8)), Err(Refusal::Length));
+    assert_eq!(heard(odd(id(0x480), false, 7)), Err(Refusal::Length));
+    assert_eq!(heard(odd(id(0x4C8), false, 8)), Err(Refusal::Checksum), "slot 1 of 2, a checksum of 0");
+    assert_eq!(heard(odd(id(0x4D0), false, 8)), Err(Refusal::UnknownSlot), "slot 2 of 2");
+}
