@@ -6,7 +6,7 @@ use crate::dynamics::Body;
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
-use crate::wire::StationHash;
+use crate::wire::{BaseId, StationHash};
 use crate::wire::intent::Limits;
 
 /// Which parts of the prediction model are used. [`Model::HOLDOVER`] is the default; [`Model::PAPER`] is the paper's
@@ -142,7 +142,7 @@ pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
     /// First CAN identifier of the catalogue.
-    pub base_id: u16,
+    pub base_id: BaseId,
     /// Period of the task that calls `tick`; 1 to 100 ms.
     pub period: Duration,
     /// Bumper to bumper.
@@ -167,8 +167,6 @@ pub struct Config {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ConfigError {
-    /// `base_id` leaves no room for the catalogue below 0x7FF.
-    BaseId,
     /// `period` is outside 1 to 100 ms.
     Period,
     /// `step` is outside 1 ms to 1 s.
@@ -205,7 +203,6 @@ pub enum ConfigError {
 impl core::fmt::Display for ConfigError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Self::BaseId => "base_id leaves no room for the catalogue below 0x7FF; choose a lower one",
             Self::Period => "period is outside 1 to 100 ms",
             Self::Step => "step is outside 1 ms to 1 s",
             Self::Horizon => "horizon is shorter than two steps, longer than 25.5 s, or needs more steps than there is room for",
@@ -237,7 +234,7 @@ impl Config {
     pub const fn car(station: StationHash) -> Self {
         Self {
             station,
-            base_id: crate::wire::DEFAULT_BASE_ID,
+            base_id: BaseId::DEFAULT,
             period: Duration::from_millis(10),
             length: parameters::DEFAULT_LENGTH,
             lag: FineSeconds::from_millis(300),
@@ -298,7 +295,6 @@ impl Config {
     pub fn check(&self, capacity: usize) -> Result<(), ConfigError> {
         let positive = |d: Duration| d > Duration::ZERO;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
-        ensure(crate::wire::catalogue::fits(self.base_id), ConfigError::BaseId)?;
         let millis = Duration::from_millis;
         ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
         let Prediction { step, horizon, .. } = self.prediction;

@@ -66,7 +66,7 @@ pub struct Answer {
 pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
     config: Config,
     receiver: Receiver<PEERS>,
-    sender: Sender,
+    sender: Sender<0>,
     clock: Clock,
     ego: Option<Sample>,
     wish: Option<EgoIntent>,

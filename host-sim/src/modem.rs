@@ -11,7 +11,10 @@
 use holdover::wire::horizon::Knots;
 use holdover::wire::intent::Intent;
 use holdover::wire::motion::Motion;
-use holdover::wire::{Frame, Message, Said, Sender, Slot, StationHash};
+use holdover::wire::{BaseId, Frame, Message, Said, Sender, Slot, StationHash};
+
+/// Slots of the unit.
+pub const PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
@@ -68,16 +71,16 @@ struct Tenant {
 /// The receiving side.
 #[derive(Clone, Debug)]
 pub struct Relay {
-    sender: Sender,
+    sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
     turned_away: u64,
 }
 
 impl Relay {
-    /// With that many slots, on a bus whose catalogue starts at `base_id`.
+    /// On a bus whose catalogue starts at `base`.
     #[must_use]
-    pub fn new(base_id: u16, slots: usize) -> Self {
-        Self { sender: Sender::new(base_id), slots: vec![None; slots], turned_away: 0 }
+    pub fn new(base: BaseId) -> Self {
+        Self { sender: Sender::new(base), slots: vec![None; PEERS], turned_away: 0 }
     }
 
     /// Messages that found no slot.
@@ -99,7 +102,8 @@ impl Relay {
         said.extend(message.horizon.map(Said::Horizon));
         for said in said {
             #[allow(clippy::cast_possible_truncation)] // at most 16 slots
-            self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
+            let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
+            debug_assert!(sent.is_ok(), "a peer says nothing that the catalogue has no line for");
         }
     }
 

@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 
 use holdover::units::Position;
-use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said};
+use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
 
 use crate::heard::{Heard, HeardIntent};
 use crate::bus::Frame;
-use crate::vehicle::{EPOCH_US, PEERS, gnss, index_of};
+use crate::modem::PEERS;
+use crate::vehicle::{EPOCH_US, gnss, index_of};
 
 /// The listener.
 pub struct Observer {
@@ -17,10 +18,10 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// On a bus whose catalogue starts at `base_id`.
+    /// On a bus whose catalogue starts at `base`.
     #[must_use]
-    pub fn new(base_id: u16) -> Self {
-        Self { receiver: Receiver::new(base_id, Role::Unit), intents: BTreeMap::new() }
+    pub fn new(base: BaseId) -> Self {
+        Self { receiver: Receiver::new(base, Role::Unit), intents: BTreeMap::new() }
     }
 
     /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest intent from the same slot. `near` is a position to

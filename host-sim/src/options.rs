@@ -20,6 +20,8 @@ pub struct RunOptions {
     pub scenario: Scenario,
     /// The file that it came from; `None`: it is the paper's.
     pub scenario_file: Option<PathBuf>,
+    /// What else the command line says of the scenario, as it would have to be typed again.
+    pub arguments: Vec<String>,
     /// Results as JSON.
     pub json: bool,
     /// Folder of the report; `None`: no report.
@@ -61,6 +63,7 @@ impl RunOptions {
             leader_motion: settings.leader_motion.clone(),
             channel_trace: settings.channel_trace.clone(),
         };
+        let arguments = typed(&overrides);
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
         let vehicle = settings.candump_vehicle.unwrap_or(scenario.ego);
         let last = scenario.vehicles.len() - 1;
@@ -82,8 +85,17 @@ impl RunOptions {
             }
         }
         let candump = settings.candump.map(|file| Candump { file, vehicle });
-        Ok(Self { scenario, scenario_file, json: settings.json, report, trace: settings.trace, candump })
+        Ok(Self { scenario, scenario_file, arguments, json: settings.json, report, trace: settings.trace, candump })
     }
+}
+
+/// The options that change the scenario, but for the seed.
+fn typed(overrides: &Overrides) -> Vec<String> {
+    let file = |option: &str, file: &Option<PathBuf>| file.as_ref().map(|file| format!("{option} {}", file.display()));
+    let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
+    let motion = file("--leader-motion", &overrides.leader_motion);
+    let trace = file("--channel-trace", &overrides.channel_trace);
+    [step, motion, trace].into_iter().flatten().collect()
 }
 
 /// That the report's folder is not a file; missing folders are created when it is written.

@@ -14,11 +14,9 @@ use holdover::{Config, ConfigError, OnboardUnit};
 
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
-use crate::modem::{Relay, Transmitter, V2xMessage};
+use crate::modem::{PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 
-/// Slots of the simulated units.
-pub const PEERS: usize = 8;
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
@@ -73,7 +71,7 @@ pub struct Vehicle {
     pub estimate: Option<TargetEstimate>,
     wish: EgoIntent,
     clock_offset_us: u64,
-    sensors: Sender,
+    sensors: Sender<0>,
     relay: Relay,
     listener: Receiver<PEERS>,
     transmitter: Transmitter,
@@ -109,8 +107,8 @@ impl Vehicle {
             wish,
             clock_offset_us,
             sensors: Sender::new(config.base_id),
-            relay: Relay::new(config.base_id, PEERS),
-            listener: Receiver::new(config.base_id, Role::Harness),
+            relay: Relay::new(config.base_id),
+            listener: Receiver::new(config.base_id, Role::Modem),
             transmitter: Transmitter::default(),
             ecu: bus.node(),
             harness: bus.node(),
@@ -239,11 +237,12 @@ impl Vehicle {
         let at = self.instant(at_s);
         let mut result = Ok(());
         let harness = &mut self.harness;
-        self.sensors.send(message, &mut |frame| {
+        let sent = self.sensors.send(message, &mut |frame| {
             if result.is_ok() {
                 result = harness.send(at, (&frame).into());
             }
         });
+        debug_assert!(sent.is_ok(), "the vehicle says nothing that the catalogue has no line for");
         result
     }
 }

@@ -13,6 +13,7 @@ use std::io;
 use holdover::controller::Mode;
 use holdover::health::Refusal;
 use holdover::time::Instant;
+use holdover::wire::BaseId;
 use holdover::{Config, ConfigError};
 
 use crate::baseline::Baseline;
@@ -169,7 +170,7 @@ impl<'a> World<'a> {
             channel: Channel::new(&scenario.channel, seed),
             flights: BinaryHeap::new(),
             sent: 0,
-            observer: Observer::new(holdover::wire::DEFAULT_BASE_ID),
+            observer: Observer::new(BaseId::DEFAULT),
             tap: vehicles[measured.by].listen(),
             log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
             vehicles,

