@@ -29,8 +29,8 @@ pub type Interface = heapless::String<INTERFACE_CHARS>;
 /// One line of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// When the frame was on the bus, on the log's clock, by 1 µs (finer digits are cut off); `None` in the screen form
-    /// without a time. Times as differences (`-t d`) cannot be told from others and are read as they stand.
+    /// When the frame was on the bus, on the log's clock, by 1 µs (finer digits are cut off); `None` in the screen
+    /// form without a time. Times as differences (`-t d`) cannot be told from others and are read as they stand.
     pub at: Option<Instant>,
     /// Where it was heard.
     pub interface: Interface,

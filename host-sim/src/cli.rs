@@ -7,9 +7,9 @@ use std::path::PathBuf;
 /// Drives simulated vehicles, each with the onboard unit's own code, over an impaired V2X channel.
 ///
 /// Without a command it does `run`, and without a scenario that is the paper's: five vehicles, the third of them (the
-/// ego) on a channel with delay, loss and a silence of four seconds. It prints how far each position that the ego
-/// estimates for the vehicle ahead is from the truth, beside the literal paper on the same messages, and writes a
-/// report with plots.
+/// ego) on a channel with delay, loss and a silence of four seconds. It prints how far from the truth the ego's
+/// follower believes the ego to be, beside what the literal paper makes of the same messages, and writes a report with
+/// plots.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
 pub struct Cli {
@@ -71,7 +71,7 @@ pub struct RunSettings {
     #[arg(long, conflicts_with = "out")]
     pub no_report: bool,
 
-    /// Write every tick of the ego: time, truth, estimate, age, mode, command
+    /// Write every tick: time, truth, estimate, age, mode, command
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 

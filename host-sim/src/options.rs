@@ -26,7 +26,7 @@ pub struct RunOptions {
     pub json: bool,
     /// Folder of the report; `None`: no report.
     pub report: Option<PathBuf>,
-    /// Where to write every tick of the ego.
+    /// Where to write every tick.
     pub trace: Option<PathBuf>,
     /// Which bus to record.
     pub candump: Option<Candump>,

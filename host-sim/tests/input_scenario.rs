@@ -267,7 +267,11 @@ fn a_run_cannot_be_longer_than_its_leaders_recording() {
 
 proptest! {
     #[test]
-    fn a_damaged_scenario_is_read_or_refused_in_one_line(from in 0usize..4000, length in 0usize..40, insert in "[-0-9a-z\\[\\]=\"\n.#]{0,6}") {
+    fn a_damaged_scenario_is_read_or_refused_in_one_line(
+        from in 0usize..4000,
+        length in 0usize..40,
+        insert in "[-0-9a-z\\[\\]=\"\n.#]{0,6}",
+    ) {
         let mut text = fs::read_to_string("scenarios/paper.toml").unwrap().replace('δ', "d").replace('∞', "0");
         let from = from.min(text.len());
         text.replace_range(from..(from + length).min(text.len()), &insert);
