@@ -7,7 +7,7 @@ use super::driver::{Driver, Stride};
 use super::horizon::{Anchor, Grid, Horizon};
 use crate::config::Model;
 use crate::peers::Sample;
-use crate::time::{Duration, Instant};
+use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
 use crate::wire::horizon::Knots;
 use crate::wire::intent::Intent;
