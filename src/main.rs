@@ -9,53 +9,34 @@ mod board;
 /// The shell around the unit. It holds no logic of its own: receive, tick, transmit.
 #[cfg(target_os = "none")]
 mod firmware {
-    use crate::board::{Board, CanFrame};
-    use embedded_can::{Frame, StandardId};
-    use holdover::health::{Health, Refusal};
-    use holdover::time::Instant;
+    use crate::board::{self, Board};
+    use core::mem::MaybeUninit;
+    use holdover::wire::StationHash;
+    use holdover::{Config, OnboardUnit};
+
+    type Unit = OnboardUnit<8, 8, 400>;
+
+    /// What an integrator calibrates.
+    const CONFIG: Config = Config::car(StationHash(1));
 
     #[cortex_m_rt::entry]
     fn start() -> ! {
-        // The entry attribute hands this static out as `&'static mut`, once. Its symbol is what `ci.sh cross` sizes.
-        static mut UNIT: Unit = Unit::new();
+        // The entry attribute hands this static out as `&'static mut`, once. `ci.sh cross` finds it by its name, and the
+        // size of the unit with it.
+        static mut UNIT: MaybeUninit<Unit> = MaybeUninit::uninit();
+        let Ok(unit) = Unit::new(&CONFIG) else { board::stop() };
+        let unit = UNIT.write(unit);
         let mut board = Board::start();
         loop {
             while let Some((at, frame)) = board.receive() {
-                UNIT.receive(at, &frame);
+                // A refusal is counted in the unit, and its Health message tells.
+                let _ = unit.receive(at, &frame);
             }
             if let Some(now) = board.tick() {
-                for frame in UNIT.tick(now) {
-                    board.transmit(&frame);
+                for frame in &unit.tick(now).frames {
+                    board.transmit(frame);
                 }
             }
-        }
-    }
-
-    /// Holds the place of the onboard unit, with its two doors: it counts what it cannot take, and says each period
-    /// that it lives.
-    struct Unit {
-        health: Health,
-        ticks: u32,
-    }
-
-    impl Unit {
-        const fn new() -> Self {
-            Self { health: Health::new(), ticks: 0 }
-        }
-
-        fn receive(&mut self, _at: Instant, frame: &CanFrame) {
-            if frame.data().len() != 8 {
-                self.health.count(Refusal::Length);
-            }
-        }
-
-        fn tick(&mut self, _now: Instant) -> impl Iterator<Item = CanFrame> {
-            self.ticks = self.ticks.wrapping_add(1);
-            let mut data = [0; 8];
-            let (ticks, refused) = data.split_at_mut(4);
-            ticks.copy_from_slice(&self.ticks.to_be_bytes());
-            refused.copy_from_slice(&self.health.total().to_be_bytes());
-            CanFrame::new(StandardId::MAX, &data).into_iter()
         }
     }
 }
@@ -64,16 +45,31 @@ mod firmware {
 fn main() -> std::io::Result<()> {
     use std::io::{ErrorKind, Write, stdout};
     // A reader that has seen enough (`| head`) is no error.
-    writeln!(stdout(), "{}", catalogue()).or_else(|error| match error.kind() {
+    stdout().write_all(catalogue().as_bytes()).or_else(|error| match error.kind() {
         ErrorKind::BrokenPipe => Ok(()),
         _ => Err(error),
     })
 }
 
-/// What this program prints on a host.
+/// The messages, a line each: those of peers for slot 0, with the distance to the next slot below the table. Where the
+/// fields lie in the frame, and their scale and range, stands in `holdover.dbc`.
 #[cfg(not(target_os = "none"))]
-fn catalogue() -> impl std::fmt::Display {
-    use holdover::health::Refusal;
-    let causes: Vec<_> = Refusal::ALL.iter().map(|cause| format!("{:>5}  {}", *cause as u8, cause.name())).collect();
-    format!("cause  of a refusal, as the Health message numbers it\n{}", causes.join("\n"))
+fn catalogue() -> String {
+    use holdover::wire::catalogue::{BaseId, CATALOGUE, SLOT_STRIDE, SLOTS, data_id};
+    let mut table = String::from("   id  data id  name                 sender   cycle  timeout  frames  fields\n");
+    for line in &CATALOGUE {
+        let id = BaseId::DEFAULT.plus(line.offset);
+        let fields: Vec<_> = line.fields.iter().map(|field| field.name).collect();
+        table += &format!(
+            "{id:#05x}   {:#06x}  {:<19}  {:<7} {:>3} ms  {:>4} ms  {:>6}  {}\n",
+            data_id(line.offset),
+            line.name,
+            format!("{:?}", line.sender),
+            line.cycle_ms,
+            line.timeout_ms,
+            line.frames,
+            fields.join(" ")
+        );
+    }
+    table + &format!("{{slot}}: 0 to {}, {SLOT_STRIDE} identifiers and data ids apart\n", SLOTS - 1)
 }

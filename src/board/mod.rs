@@ -13,6 +13,7 @@ mod slcan;
 pub use frame::CanFrame;
 
 use clock::Clock;
+use embedded_can::Frame;
 use holdover::time::Instant;
 use serial::Serial;
 use slcan::Line;
@@ -47,17 +48,21 @@ impl Board {
     }
 
     /// Queues a frame. One that finds the queue full is dropped whole: a later one says the same, but newer.
-    pub fn transmit(&mut self, frame: &CanFrame) {
+    pub fn transmit(&mut self, frame: &impl Frame) {
         self.serial.queue(&slcan::encode(frame));
     }
 }
 
-/// Stops for good, with interrupts off. The actuators' own timeout on the command is the safe reaction to a panic; a
-/// reset loop would look alive.
-#[panic_handler]
-fn panicked(_: &core::panic::PanicInfo) -> ! {
+/// Stops for good, with interrupts off. The actuators' own timeout on the command is the safe reaction; a reset loop
+/// would look alive.
+pub fn stop() -> ! {
     cortex_m::interrupt::disable();
     loop {
         cortex_m::asm::nop();
     }
+}
+
+#[panic_handler]
+fn panicked(_: &core::panic::PanicInfo) -> ! {
+    stop()
 }

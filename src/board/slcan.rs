@@ -66,7 +66,7 @@ fn hexadecimal(digits: &[u8]) -> Option<u32> {
 }
 
 /// The line of a frame, with its end.
-pub fn encode(frame: &CanFrame) -> Vec<u8, { LONGEST + 1 }> {
+pub fn encode(frame: &impl Frame) -> Vec<u8, { LONGEST + 1 }> {
     let mut line = Vec::new();
     let (kind, id, digits) = match frame.id() {
         Id::Standard(id) => (b't', u32::from(id.as_raw()), 3),
