@@ -70,23 +70,20 @@ pub const fn shl_saturating<const BITS: u32>(x: i32) -> i32 {
 }
 
 /// `numerator / denominator` as a word with `fraction` bits, rounded to nearest (ties away from zero), saturating to
-/// 64 bits. A denominator of 0 gives the extreme of the numerator's sign.
+/// 64 bits (exact while `numerator · 2^fraction` fits). A denominator of 0 gives the extreme of the numerator's sign.
 #[must_use]
-#[allow(clippy::arithmetic_side_effects)] // 128-bit intermediates hold every 64-bit numerator shifted by up to 62
 pub const fn ratio(numerator: i64, denominator: i64, fraction: u32) -> i64 {
     if denominator == 0 {
         return if numerator < 0 { i64::MIN } else { i64::MAX };
     }
-    let scaled = (numerator as i128) << fraction;
-    saturate_i64(divide_rounding(scaled, denominator as i128))
+    divide_rounding(numerator.saturating_mul(1i64.wrapping_shl(fraction)), denominator)
 }
 
 /// `word / 2^fraction · denominator`, rounded to nearest (ties away from zero): the inverse of [`ratio`] wherever the
-/// format is finer than `1/denominator`.
+/// format is finer than `1/denominator`. Saturates like it.
 #[must_use]
-#[allow(clippy::arithmetic_side_effects)] // 64 by 64 bits fits 128
 pub const fn unratio(word: i64, denominator: i64, fraction: u32) -> i64 {
-    saturate_i64(divide_rounding(word as i128 * denominator as i128, 1i128 << fraction))
+    divide_rounding(word.saturating_mul(denominator), 1i64.wrapping_shl(fraction))
 }
 
 /// Narrows to 32 bits, saturating.
@@ -103,19 +100,9 @@ pub const fn saturate_i32(x: i64) -> i32 {
     }
 }
 
-#[allow(clippy::cast_possible_truncation)] // checked
-const fn saturate_i64(x: i128) -> i64 {
-    if x > i64::MAX as i128 {
-        i64::MAX
-    } else if x < i64::MIN as i128 {
-        i64::MIN
-    } else {
-        x as i64
-    }
-}
-
-#[allow(clippy::arithmetic_side_effects)] // the divisor is never 0 or -1 with an extreme dividend: callers' contract
-const fn divide_rounding(dividend: i128, divisor: i128) -> i128 {
-    let half = divisor.abs() / 2;
-    if dividend >= 0 { (dividend + half) / divisor } else { (dividend - half) / divisor }
+/// Quotient rounded to nearest, ties away from zero.
+#[allow(clippy::arithmetic_side_effects)] // callers never pass a divisor of 0, and -1 only divides what is not the minimum
+const fn divide_rounding(dividend: i64, divisor: i64) -> i64 {
+    let half = divisor.saturating_abs() / 2;
+    if dividend >= 0 { dividend.saturating_add(half) / divisor } else { dividend.saturating_sub(half) / divisor }
 }

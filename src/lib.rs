@@ -25,8 +25,20 @@
     )
 )]
 
+pub mod clock;
+pub mod config;
+pub mod controller;
+pub mod dynamics;
+pub mod envelope;
+pub mod estimator;
 pub mod fixed;
 pub mod health;
+pub mod parameters;
+pub mod peers;
 pub mod time;
+mod unit;
 pub mod units;
 pub mod wire;
+
+pub use config::{Config, ConfigError};
+pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};

@@ -3,9 +3,24 @@
 
 pub mod baseline;
 pub mod bus;
+pub mod candump;
 pub mod channel;
+pub mod cli;
+pub mod error;
+pub mod figures;
+pub mod heard;
+pub mod metrics;
 pub mod modem;
+pub mod observer;
+pub mod options;
+pub mod output;
+pub mod plant;
 pub mod recording;
 pub mod reference;
 pub mod report;
+pub mod run;
 pub mod scenario;
+pub mod streams;
+pub mod vehicle;
+pub mod verdict;
+pub mod world;

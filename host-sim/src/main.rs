@@ -1,3 +1,21 @@
-//! `holdover-sim`: the command line of the host harness.
+//! `holdover-sim`: the command line of the host harness. Parse, validate, dispatch, exit code.
 
-fn main() {}
+use clap::Parser;
+use holdover_sim::cli::Cli;
+use holdover_sim::options::Options;
+use holdover_sim::verdict::Verdict;
+use holdover_sim::{output, run};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let verdict = Options::read(Cli::parse()).and_then(|options| match options {
+        Options::Run(options) => run::run(&options),
+    });
+    match verdict {
+        Ok(verdict) => verdict.into(),
+        Err(error) => {
+            output::say(&format!("error: {error}"));
+            Verdict::BAD_INPUT.into()
+        }
+    }
+}

@@ -1,1 +1,16 @@
-//! The HTML report: results enter, one self-contained page with plots leaves.
+//! The HTML report: results enter, one self-contained page with plots leaves. No script, no font, no image and no
+//! address of anything outside; no time of day, so the same results are the same bytes.
+//!
+//! ```text
+//! results -> run -> plot (figures) -> page (tables, prose, style) -> String
+//! ```
+//!
+//! [`plot`] knows axes and shapes but nothing of vehicles; [`page`] knows HTML; [`run`] says which figures the report of
+//! one run has. Everything is escaped in one place, [`markup`].
+
+pub mod markup;
+pub mod page;
+pub mod plot;
+pub mod run;
+
+pub use run::RunReport;

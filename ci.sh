@@ -1,0 +1,158 @@
+#!/usr/bin/env bash
+# ci.sh: everything that has to hold, as one script with named steps. `./ci.sh --help` lists them.
+#
+# A step that cannot run on this machine says why and counts as skipped; where CI=true is set, it counts as failed.
+# The last line is always the count: `N passed, N failed, N skipped`.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+target=thumbv7em-none-eabihf
+image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
+steps=(fmt lint doc test cross package)
+skipped=77 # exit code of a step that cannot run here
+command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
+export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
+
+usage() {
+    cat <<'TEXT'
+usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
+
+  fmt       every file is formatted
+  lint      no warning of the compiler or of clippy; unsafe code only in src/board/
+  doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
+  test      unit, property, integration and documentation tests, with overflow checks
+  cross     core and firmware for a Cortex-M4F, and what they take of its memory
+  package   the package that would be published builds by itself and holds what it should
+
+exit code: 0 all passed; 1 a step failed; 2 no such step
+TEXT
+}
+
+skip() {
+    echo "SKIPPED: $*"
+    exit "$skipped"
+}
+
+step_fmt() {
+    cargo fmt --all --check
+}
+
+step_lint() {
+    cargo clippy --locked --workspace --all-targets -- -D warnings
+    cargo clippy --locked -p holdover --lib --features defmt -- -D warnings
+    local outside
+    outside=$(source_files | grep -v '^src/board/' | xargs grep -nE '\bunsafe\s*(\{|fn|impl|extern)' || true)
+    [ -z "$outside" ] || {
+        printf 'unsafe code outside src/board/:\n%s\n' "$outside"
+        return 1
+    }
+}
+
+step_doc() {
+    RUSTDOCFLAGS='-D warnings' cargo doc --locked --no-deps --workspace
+    local bad=0 file first lines
+    while read -r file; do
+        first=$(head -c 3 "$file")
+        lines=$(wc -l <"$file")
+        [ "$first" = '//!' ] || { echo "$file: has to open with //! and what enters and leaves" && bad=1; }
+        [ "$lines" -le 400 ] || { echo "$file: $lines lines, of at most 400; split it by concept" && bad=1; }
+    done < <(source_files)
+    return "$bad"
+}
+
+step_test() {
+    cargo test --locked --workspace --profile checked
+}
+
+step_cross() {
+    local bin sizes unit
+    bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
+    PATH=$bin:$PATH
+    cargo build --locked --release --target "$target" --lib
+    cargo build --locked --release --target "$target" --bin holdover-ecu
+    # The host's binutils read any ELF file. A linker for the host is always there, and they with it.
+    sizes=$(size -A "$image")
+    echo
+    echo "$image, bytes:"
+    for section in .vector_table .text .rodata .data .bss; do
+        printf '  %-28s %7d\n' "$section" "$(awk -v name=$section '$1 == name { print $2 }' <<<"$sizes")"
+    done
+    # The firmware keeps its unit in a static of that name, and the symbol tells the size: 8 peers, 400 steps.
+    unit=$(readelf --syms --wide "$image" | awk '$4 == "OBJECT" && $8 ~ /4UNIT(17h|$|E)/ { print $3 }')
+    [ -n "$unit" ] || {
+        echo "no static UNIT in the image, so the size of the unit is not known"
+        return 1
+    }
+    printf '  %-28s %7d of at most 65536\n' 'OnboardUnit<8, 8, 400>' "$unit"
+    [ "$unit" -le 65536 ]
+    cargo clippy --locked --release --target "$target" -- -D warnings
+}
+
+step_package() {
+    local dirty=() contents wanted=0 name
+    if [ "${CI:-}" != true ] && [ -n "$(git status --porcelain 2>/dev/null)" ]; then
+        echo "note: the working tree has changes, and they are packaged as they are"
+        dirty=(--allow-dirty)
+    fi
+    contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
+    for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
+        memory.x src/lib.rs src/main.rs src/board/mod.rs; do
+        grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
+    done
+    if grep -E '^(host-sim|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then
+        echo "the package holds files that are not part of it (above)"
+        wanted=1
+    fi
+    [ "$wanted" = 0 ]
+    cargo package --locked -p holdover "${dirty[@]}"
+    wc -l <<<"$contents" | xargs printf '%d files in the package\n'
+}
+
+# Every source file that is ours.
+source_files() {
+    find src host-sim tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
+}
+
+# A step runs as a process of its own (`--one`), so that its first failing command ends it and nothing of it reaches the next.
+if [ "${1:-}" = --one ]; then
+    "step_$2"
+    exit
+fi
+
+case "${1:-}" in
+-h | --help)
+    usage
+    exit
+    ;;
+esac
+for name in "$@"; do
+    if [[ " ${steps[*]} " != *" $name "* ]]; then
+        echo "ci.sh: no step '$name'" >&2
+        usage >&2
+        exit 2
+    fi
+done
+[ $# -gt 0 ] && steps=("$@")
+
+passed=0 failed=0 not_run=0 summary=
+exec 2>&1 # one stream, so that a log keeps the order
+scripts/install-rust.sh || true # what is missing then fails its steps, by name
+for name in "${steps[@]}"; do
+    printf '\n==> %s\n' "$name"
+    started=$SECONDS
+    code=0
+    bash "$PWD/ci.sh" --one "$name" || code=$?
+    if [ "$code" = 0 ]; then
+        verdict=passed passed=$((passed + 1))
+    elif [ "$code" = "$skipped" ] && [ "${CI:-}" != true ]; then
+        verdict=SKIPPED not_run=$((not_run + 1))
+    elif [ "$code" = "$skipped" ]; then
+        verdict='FAILED (skipped, which CI does not allow)' failed=$((failed + 1))
+    else
+        verdict="FAILED (exit code $code)" failed=$((failed + 1))
+    fi
+    summary+=$(printf '%-8s %4d s  %s' "$name" $((SECONDS - started)) "$verdict")$'\n'
+done
+
+printf '\n==> summary\n%s%d passed, %d failed, %d skipped\n' "$summary" "$passed" "$failed" "$not_run"
+[ "$failed" = 0 ]

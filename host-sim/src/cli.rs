@@ -1,0 +1,104 @@
+//! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
+//! decided in [`crate::options`].
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Drives simulated vehicles, each with the onboard unit's own code, over an impaired V2X channel.
+///
+/// Without a command it does `run`, and without a scenario that is the paper's: five vehicles, the third of them (the
+/// ego) on a channel with delay, loss and a silence of four seconds. It prints how far from the truth the ego's
+/// follower believes the ego to be, beside what the literal paper makes of the same messages, and writes a report with
+/// plots.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
+pub struct Cli {
+    /// What to do; `run` if nothing is said.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The settings of `run`, which may stand without the command.
+    #[command(flatten)]
+    pub run: RunSettings,
+}
+
+/// The commands.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Run a scenario and report on it
+    #[command(after_help = AFTER_HELP)]
+    Run(RunArguments),
+}
+
+/// What can follow `run`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RunArguments {
+    /// The scenario; the paper's if none is given (scenarios/paper.toml states and explains it)
+    #[arg(value_name = "SCENARIO.toml")]
+    pub scenario: Option<PathBuf>,
+    /// The rest.
+    #[command(flatten)]
+    pub settings: RunSettings,
+}
+
+/// The options of `run`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RunSettings {
+    /// Seed of everything random, instead of the scenario's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+
+    /// Prediction step of the core, instead of the scenario's
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+
+    /// Let the leader drive this recording: t_s,position_m,speed_mps[,acceleration_mps2]
+    #[arg(long, value_name = "FILE.csv")]
+    pub leader_motion: Option<PathBuf>,
+
+    /// Replace the random channel by this recording: t_s,delay_s (an empty delay is a lost message)
+    #[arg(long, value_name = "FILE.csv")]
+    pub channel_trace: Option<PathBuf>,
+
+    /// Print the results as one JSON value on stdout
+    #[arg(long)]
+    pub json: bool,
+
+    /// Folder for the HTML report; it is created
+    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
+    pub out: PathBuf,
+
+    /// Write no report
+    #[arg(long, conflicts_with = "out")]
+    pub no_report: bool,
+
+    /// Write every tick: time, truth, estimate, age, mode, command
+    #[arg(long, value_name = "FILE.csv")]
+    pub trace: Option<PathBuf>,
+
+    /// Write the traffic on one vehicle's bus as a candump log
+    #[arg(long, value_name = "FILE")]
+    pub candump: Option<PathBuf>,
+
+    /// Whose bus that is; the ego's unless given
+    #[arg(long, value_name = "INDEX", requires = "candump")]
+    pub candump_vehicle: Option<usize>,
+}
+
+const AFTER_HELP: &str = "\
+Examples:
+  holdover-sim                           the paper's scenario
+  holdover-sim --seed 3 --json           with other random numbers, as JSON
+  holdover-sim run city.toml --out city  your scenario, its report in city/
+  holdover-sim --leader-motion drive.csv --channel-trace link.csv
+                                         your recordings of a drive and a link
+
+Output:
+  Results go to stdout, as a table or with --json as one JSON value; progress
+  goes to stderr. The report is one HTML file in the folder of --out. Equal
+  seeds give equal bytes, but for what stands under \"timing\".
+
+Exit codes:
+  0  the verdict is: passed
+  1  the verdict is: failed
+  2  bad input; one line on stderr names file, line, cause and remedy
+  3  inconclusive: this program itself was late";

@@ -1,0 +1,183 @@
+//! A decoded message in float64: the core's fixed-point message enters, the same numbers leave as the baselines read
+//! them. Every conversion here is exact, because each of the core's formats fits into a float64.
+
+use holdover::units::Position;
+use holdover::wire::Predecessor;
+use holdover::wire::intent::Intent;
+use holdover::wire::motion::Motion;
+
+/// A vehicle's state as a receiver decoded it, with when it was true and when it came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heard {
+    /// When it arrived, in seconds of the run's clock.
+    pub at_s: f64,
+    /// When it was true, in seconds of the same clock.
+    pub stamp_s: f64,
+    /// Whose state it is.
+    pub vehicle: usize,
+    /// Front bumper along the lane.
+    pub position_m: f64,
+    /// Speed along the lane.
+    pub speed_mps: f64,
+    /// Acceleration along the lane.
+    pub acceleration_mps2: f64,
+    /// The acceleration last demanded of the actuators.
+    pub demand_mps2: f64,
+    /// How the vehicle will drive; `None`: this message says nothing about it, and what was said before still holds.
+    pub intent: Option<HeardIntent>,
+}
+
+/// The parameters of the law that a vehicle says it drives by; limits are magnitudes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeardIntent {
+    /// Bumper to bumper, `l`.
+    pub length_m: f64,
+    /// Distance kept at standstill, `s_0`.
+    pub standstill_m: f64,
+    /// It says that it follows nobody.
+    pub leads: bool,
+    /// Whom it follows, as far as the receiver knows that vehicle.
+    pub predecessor: Option<usize>,
+    /// Speed that it wants on a free road, `v_∞`.
+    pub target_speed_mps: f64,
+    /// Desired time gap, `t_g`.
+    pub time_gap_s: f64,
+    /// Gain `k` in 1/s², with the adjacency `α` = 1.
+    pub gain: f64,
+    /// Damping `γ`.
+    pub damping_s: f64,
+    /// Time constant of its actuators, `T`.
+    pub lag_s: f64,
+    /// Largest acceleration that its controller demands.
+    pub acceleration_mps2: f64,
+    /// Hardest braking that its controller demands.
+    pub braking_mps2: f64,
+    /// Fastest change of its demand.
+    pub jerk_mps3: f64,
+}
+
+impl Heard {
+    /// What a decoded motion message says. Its position and stamp stand on the wire modulo their range, so the receiver
+    /// gives them unwrapped, on the clock that `at_s` is read from too.
+    #[must_use]
+    pub fn from_motion(at_s: f64, stamp_s: f64, vehicle: usize, position: Position, motion: &Motion) -> Self {
+        Self {
+            at_s,
+            stamp_s,
+            vehicle,
+            position_m: position.get().to_num(),
+            speed_mps: motion.speed.get().to_num(),
+            acceleration_mps2: motion.acceleration.get().to_num(),
+            demand_mps2: motion.demand.get().to_num(),
+            intent: None,
+        }
+    }
+
+    /// The same, with what the vehicle's latest intent message says.
+    #[must_use]
+    pub fn with_intent(self, intent: HeardIntent) -> Self {
+        Self { intent: Some(intent), ..self }
+    }
+}
+
+impl HeardIntent {
+    /// What a decoded intent message says. It names the predecessor by the hash of its station; which vehicle of the run
+    /// that is, the receiver says.
+    #[must_use]
+    pub fn from_intent(intent: &Intent, predecessor: Option<usize>) -> Self {
+        Self {
+            length_m: intent.length.get().to_num(),
+            standstill_m: intent.standstill.get().to_num(),
+            leads: intent.predecessor == Predecessor::None,
+            predecessor,
+            target_speed_mps: intent.target_speed.get().to_num(),
+            time_gap_s: intent.time_gap.get().to_num(),
+            gain: intent.gain.get().to_num(),
+            damping_s: intent.damping.get().to_num(),
+            lag_s: intent.lag.get().to_num(),
+            acceleration_mps2: intent.limits.acceleration.get().to_num(),
+            braking_mps2: intent.limits.braking.get().to_num(),
+            jerk_mps3: intent.limits.jerk.get().to_num(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use holdover::time::Stamp;
+    use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+    use holdover::wire::StationHash;
+    use holdover::wire::intent::Limits;
+    use holdover::wire::motion::WirePosition;
+
+    #[test]
+    fn a_motion_keeps_its_numbers() {
+        let motion = Motion {
+            tag: 1,
+            position: WirePosition::default(),
+            speed: Speed::from_bits(3 << 22),
+            acceleration: Acceleration::from_bits(-(5 << 23)),
+            demand: Acceleration::from_bits(1 << 22),
+            stamp: Stamp::from_raw(7),
+            position_accuracy: None,
+            speed_accuracy: None,
+            station: StationHash(9),
+        };
+        let heard = Heard::from_motion(2.5, 2.0, 4, Position::from_bits(-7 << 18), &motion);
+        assert_eq!(
+            heard,
+            Heard {
+                at_s: 2.5,
+                stamp_s: 2.0,
+                vehicle: 4,
+                position_m: -1.75,
+                speed_mps: 1.5,
+                acceleration_mps2: -1.25,
+                demand_mps2: 0.125,
+                intent: None
+            }
+        );
+    }
+
+    #[test]
+    fn an_intent_keeps_its_numbers_and_tells_a_leader_from_a_silent_one() {
+        let intent = |predecessor| Intent {
+            length: Distance::from_bits(9 << 19),
+            standstill: Distance::from_bits(2 << 20),
+            predecessor,
+            target_speed: Speed::from_bits(11 << 23),
+            time_gap: Seconds::from_bits(3 << 28),
+            gain: Gain::from_bits(1 << 28),
+            damping: Seconds::from_bits(5 << 27),
+            lag: FineSeconds::from_bits(1 << 28),
+            limits: Limits {
+                acceleration: Acceleration::from_bits(2 << 25),
+                braking: Acceleration::from_bits(7 << 24),
+                jerk: Jerk::from_bits(5 << 24),
+                emergency_braking: Acceleration::from_bits(8 << 25),
+            },
+            horizon_tenths: 50,
+        };
+        let heard = HeardIntent::from_intent(&intent(Predecessor::Station(StationHash(3))), Some(2));
+        assert_eq!(
+            heard,
+            HeardIntent {
+                length_m: 4.5,
+                standstill_m: 2.0,
+                leads: false,
+                predecessor: Some(2),
+                target_speed_mps: 11.0,
+                time_gap_s: 1.5,
+                gain: 0.5,
+                damping_s: 1.25,
+                lag_s: 0.25,
+                acceleration_mps2: 2.0,
+                braking_mps2: 3.5,
+                jerk_mps3: 2.5
+            }
+        );
+        assert!(HeardIntent::from_intent(&intent(Predecessor::None), None).leads);
+        assert!(!HeardIntent::from_intent(&intent(Predecessor::Unknown), None).leads);
+    }
+}

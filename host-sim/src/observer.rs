@@ -1,0 +1,54 @@
+//! A listener on a vehicle's bus: the `Peer*` frames that its unit receives enter, the decoded messages in float64, as the
+//! baselines read them, leave. So they get what the unit gets, neither more nor less.
+
+use std::collections::BTreeMap;
+
+use holdover::units::Position;
+use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
+
+use crate::heard::{Heard, HeardIntent};
+use crate::bus::Frame;
+use crate::modem::PEERS;
+use crate::vehicle::{EPOCH_US, gnss, index_of};
+
+/// The listener.
+pub struct Observer {
+    receiver: Receiver<PEERS>,
+    intents: BTreeMap<u8, HeardIntent>,
+}
+
+impl Observer {
+    /// On a bus whose catalogue starts at `base`.
+    #[must_use]
+    pub fn new(base: BaseId) -> Self {
+        Self { receiver: Receiver::new(base, Role::Unit), intents: BTreeMap::new() }
+    }
+
+    /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest intent from the same slot. `near` is a position to
+    /// unwrap positions near.
+    pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
+        match self.receiver.receive(frame) {
+            Ok(Received::Whole(Message::Peer(slot, Said::Intent(intent)))) => {
+                let predecessor = match intent.predecessor {
+                    Predecessor::Station(station) => index_of(station),
+                    Predecessor::None | Predecessor::Unknown => None,
+                };
+                self.intents.insert(slot.0, HeardIntent::from_intent(&intent, predecessor));
+                None
+            }
+            Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
+                let time = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
+                #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+                let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
+                let vehicle = index_of(motion.station)?;
+                let position = motion.position.nearest_to(near);
+                let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, &motion);
+                Some(match self.intents.get(&slot.0) {
+                    Some(intent) => heard.with_intent(*intent),
+                    None => heard,
+                })
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The checks that every recorded table goes through: bytes and column names enter, numbers or errors with their
+//! line leave.
+
+use crate::error::{Error, quoted};
+use csv::{ReaderBuilder, StringRecord};
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+/// A column of numbers.
+pub struct Column {
+    /// Its name in the header.
+    pub name: &'static str,
+    /// Its unit, for the remedy.
+    pub unit: &'static str,
+    /// What a number in it may be.
+    pub limits: RangeInclusive<f64>,
+}
+
+/// A column that the file has.
+pub struct FoundColumn {
+    column: &'static Column,
+    index: usize,
+}
+
+/// A table of text, not yet of numbers.
+pub struct Table<'a> {
+    file: &'a Path,
+    columns: &'static str,
+    header: Record,
+    records: Vec<Record>,
+}
+
+struct Record {
+    /// Where it stands in the file, counted from 1 as an editor counts.
+    line: u64,
+    fields: StringRecord,
+}
+
+/// One line of a [`Table`].
+pub struct Line<'a> {
+    file: &'a Path,
+    record: &'a Record,
+}
+
+impl<'a> Table<'a> {
+    /// Splits a file into header and lines. `columns` is the header it should have, for the remedies.
+    pub fn parse(file: &'a Path, bytes: &[u8], columns: &'static str) -> Result<Self, Error> {
+        let text = text_of(bytes).ok_or_else(|| {
+            Error::new("is not a text file", format!("give a CSV file with the columns {columns}")).in_file(file)
+        })?;
+        let mut reader = ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text);
+        let mut records: Vec<Record> = Vec::new();
+        let (mut line, mut counted_to) = (1, 0);
+        for fields in reader.records() {
+            let fields = fields.map_err(|_| {
+                Error::new("is not CSV after this line", "write plain numbers with commas between")
+                    .in_file(file)
+                    .at_line(line)
+            })?;
+            // The reader's position of a record is where it began to look for it, before any blank lines.
+            let looked_from = fields.position().map_or(0, |position| position.byte() as usize);
+            let blank = text[looked_from..].iter().take_while(|byte| b"\r\n".contains(byte)).count();
+            let starts = looked_from + blank;
+            line += text[counted_to..starts].iter().filter(|&&byte| byte == b'\n').count() as u64;
+            counted_to = starts;
+            // A line of blanks alone comes out as one empty field.
+            if fields.iter().ne([""]) {
+                records.push(Record { line, fields });
+            }
+        }
+        if records.is_empty() {
+            let remedy = format!("give a CSV file with the columns {columns}");
+            return Err(Error::new("is empty", remedy).in_file(file));
+        }
+        let header = records.remove(0);
+        Ok(Self { file, columns, header, records })
+    }
+
+    /// The column, which the file must have.
+    pub fn column(&self, column: &'static Column) -> Result<FoundColumn, Error> {
+        self.optional_column(column).ok_or_else(|| {
+            let found = self.header.fields.iter().collect::<Vec<_>>().join(",");
+            Error::new(
+                format!("no column `{}` in the header {}", column.name, quoted(&found)),
+                format!("name the columns {}", self.columns),
+            )
+            .in_file(self.file)
+            .at_line(self.header.line)
+        })
+    }
+
+    /// The column, if the file has it.
+    pub fn optional_column(&self, column: &'static Column) -> Option<FoundColumn> {
+        let index = self.header.fields.iter().position(|name| name == column.name)?;
+        Some(FoundColumn { column, index })
+    }
+
+    /// The lines below the header.
+    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+        self.records.iter().map(|record| Line { file: self.file, record })
+    }
+
+    /// That there are enough of them.
+    pub fn has_rows(&self, rows: usize, least: usize) -> Result<(), Error> {
+        if rows >= least {
+            return Ok(());
+        }
+        let cause = match rows {
+            0 => "has a header but no rows".to_owned(),
+            1 => "has only one row".to_owned(),
+            _ => format!("has only {rows} rows"),
+        };
+        let line = self.records.last().unwrap_or(&self.header).line;
+        let remedy = format!("give a recording of at least {}", counted(least, "row"));
+        Err(Error::new(cause, remedy).in_file(self.file).at_line(line))
+    }
+}
+
+impl Line<'_> {
+    /// The number in that column.
+    pub fn number(&self, found: &FoundColumn) -> Result<f64, Error> {
+        self.number_or_empty(found)?.ok_or_else(|| {
+            let remedy = format!("give a number of {}, or delete the line", found.column.unit);
+            self.error(format!("`{}` is empty", found.column.name), remedy)
+        })
+    }
+
+    /// The number in that column, or `None` where there is nothing.
+    pub fn number_or_empty(&self, found: &FoundColumn) -> Result<Option<f64>, Error> {
+        let Column { name, unit, limits } = found.column;
+        let Some(text) = self.record.fields.get(found.index) else {
+            let cause = format!("has {}, so `{name}` is missing", counted(self.record.fields.len(), "field"));
+            return Err(self.error(cause, "complete or delete the line (a comma stands before an empty last field)"));
+        };
+        if text.is_empty() {
+            return Ok(None);
+        }
+        let number: f64 = text.parse().map_err(|_| {
+            self.error(format!("`{name}` is {}, not a number", quoted(text)), format!("give a number of {unit}"))
+        })?;
+        if limits.contains(&number) {
+            return Ok(Some(number));
+        }
+        let range = format!("give {unit} from {} to {}", limits.start(), limits.end());
+        let remedy = if name.starts_with("speed") { format!("{range} (km/h / 3.6)") } else { range };
+        Err(self.error(format!("`{name}` is {}", quoted(text)), remedy))
+    }
+
+    /// That time goes on from line to line.
+    pub fn follows(&self, previous_t_s: Option<f64>, t_s: f64) -> Result<(), Error> {
+        match previous_t_s {
+            Some(previous) if t_s == previous => {
+                Err(self.error(format!("time {t_s} s stands there twice"), "delete one of the two lines"))
+            }
+            Some(previous) if t_s < previous => Err(self.error(
+                format!("time runs backwards, from {previous} s to {t_s} s"),
+                "sort the lines by t_s, or split the recording here",
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn error(&self, cause: impl Into<String>, remedy: impl Into<String>) -> Error {
+        Error::new(cause, remedy).in_file(self.file).at_line(self.record.line)
+    }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The bytes without a byte order mark, if they are text at all.
+fn text_of(bytes: &[u8]) -> Option<&[u8]> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    if text.contains('\0') {
+        return None;
+    }
+    Some(text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes())
+}

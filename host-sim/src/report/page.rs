@@ -1,0 +1,178 @@
+//! The HTML page: headings, tables, prose and figures enter in order, one self-contained document leaves.
+//!
+//! The document is well-formed XML as well as HTML, so that any parser can check it.
+
+use std::fmt::Write;
+
+use super::{
+    markup::{count, escape},
+    plot::{Figure, Width},
+};
+
+const STYLE: &str = include_str!("style.css");
+
+/// One cell of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    text: String,
+    class: &'static str,
+}
+
+impl Cell {
+    /// Text, on the left.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self { text: text.into(), class: "" }
+    }
+
+    /// A number, on the right.
+    pub fn number(text: impl Into<String>) -> Self {
+        Self { text: text.into(), class: "number" }
+    }
+
+    /// A number that matters more than its neighbours.
+    pub fn strong(text: impl Into<String>) -> Self {
+        Self { text: text.into(), class: "number strong" }
+    }
+
+    /// A limit that was met or missed.
+    pub fn limit(text: impl Into<String>, met: bool) -> Self {
+        Self { text: text.into(), class: if met { "met" } else { "missed" } }
+    }
+}
+
+/// A page that grows from top to bottom.
+pub struct Page {
+    title: String,
+    body: String,
+    figures: usize,
+}
+
+impl Page {
+    /// A page called `title`; `kicker` says above it what kind of page this is.
+    pub fn new(kicker: &str, title: &str) -> Self {
+        let body = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
+        Self { title: title.into(), body, figures: 0 }
+    }
+
+    // Writing to a String cannot fail, so the results of `write!` below carry nothing.
+
+    /// The verdict with its reasons.
+    pub fn verdict(&mut self, passed: bool, reasons: &[String]) {
+        let (class, word) = if passed { ("passed", "Passed") } else { ("failed", "Failed") };
+        let _ = write!(self.body, "<div class=\"verdict {class}\"><b>{word}</b>");
+        match reasons {
+            [] => {}
+            [only] => {
+                let _ = write!(self.body, "<p>{}</p>", escape(only));
+            }
+            several => {
+                self.body.push_str("<ul>");
+                several.iter().for_each(|reason| self.item(reason));
+                self.body.push_str("</ul>");
+            }
+        }
+        self.body.push_str("</div>\n");
+    }
+
+    /// A heading.
+    pub fn section(&mut self, title: &str) {
+        let _ = writeln!(self.body, "<h2>{}</h2>", escape(title));
+    }
+
+    /// A paragraph.
+    pub fn paragraph(&mut self, text: &str) {
+        let _ = writeln!(self.body, "<p>{}</p>", escape(text));
+    }
+
+    /// A bulleted list.
+    pub fn list(&mut self, items: &[String]) {
+        self.body.push_str("<ul>");
+        items.iter().for_each(|item| self.item(item));
+        self.body.push_str("</ul>\n");
+    }
+
+    fn item(&mut self, text: &str) {
+        let _ = write!(self.body, "<li>{}</li>", escape(text));
+    }
+
+    /// A command line, to be copied.
+    pub fn command(&mut self, command: &str) {
+        let _ = writeln!(self.body, "<pre><code>{}</code></pre>", escape(command));
+    }
+
+    /// Names with their values.
+    pub fn facts(&mut self, facts: &[(String, String)]) {
+        self.body.push_str("<dl>");
+        for (name, value) in facts {
+            let _ = write!(self.body, "<div><dt>{}</dt><dd>{}</dd></div>", escape(name), escape(value));
+        }
+        self.body.push_str("</dl>\n");
+    }
+
+    /// A table; the first cell of each row is its heading, and a column is aligned as its cells in the first row are.
+    pub fn table(&mut self, caption: &str, header: &[&str], rows: &[Vec<Cell>]) {
+        let _ = write!(self.body, "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escape(caption));
+        for (index, name) in header.iter().enumerate() {
+            let number = rows.first().and_then(|row| row.get(index)).is_some_and(|c| c.class.starts_with("number"));
+            let class = if number { " class=\"number\"" } else { "" };
+            let _ = write!(self.body, "<th scope=\"col\"{class}>{}</th>", escape(name));
+        }
+        self.body.push_str("</tr></thead>\n<tbody>\n");
+        for row in rows {
+            self.body.push_str("<tr>");
+            for (index, cell) in row.iter().enumerate() {
+                let (open, close) = if index == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
+                let class = if cell.class.is_empty() { String::new() } else { format!(" class=\"{}\"", cell.class) };
+                let _ = write!(self.body, "<{open}{class}>{}</{close}>", escape(&cell.text));
+            }
+            self.body.push_str("</tr>\n");
+        }
+        self.body.push_str("</tbody></table></div>\n");
+    }
+
+    /// A numbered figure of one or more panels, one above the other. `title` names it; `caption` says what one sees.
+    pub fn figure(&mut self, title: &str, caption: &str, panels: &[&dyn Figure]) {
+        self.figures += 1;
+        let _ = writeln!(self.body, "<figure id=\"figure-{}\">", self.figures);
+        for width in [Width::Wide, Width::Narrow] {
+            let _ = writeln!(self.body, "<div class=\"{}\">", width.class());
+            for (index, panel) in panels.iter().enumerate() {
+                let id = format!("figure-{}-{}-{}", self.figures, width.class(), index + 1);
+                self.body.push_str(&panel.draw(&id, width));
+            }
+            self.body.push_str("</div>\n");
+        }
+        let number = self.figures;
+        let _ = write!(self.body, "<figcaption><span class=\"figure\">Figure {number}. {}.</span> ", escape(title));
+        self.body.push_str(&escape(caption));
+        match panels.iter().map(|panel| panel.undrawable()).sum::<usize>() {
+            0 => {}
+            1 => self.body.push_str(" One value is not drawn because it is not finite or not on the axis."),
+            n => {
+                let n = count(n as u64);
+                let _ = write!(self.body, " {n} values are not drawn because they are not finite or not on the axis.");
+            }
+        }
+        self.body.push_str("</figcaption>\n</figure>\n");
+    }
+
+    /// The finished document.
+    pub fn finish(self) -> String {
+        let Self { title, body, .. } = self;
+        format!(
+            concat!(
+                "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n",
+                "<meta charset=\"utf-8\"/>\n",
+                "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n",
+                "<meta name=\"color-scheme\" content=\"light dark\"/>\n",
+                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}</main>\n",
+                "<footer>Written by holdover-sim {version}. This file is complete in itself; it loads nothing.</footer>\n",
+                "</body>\n</html>\n"
+            ),
+            title = escape(&title),
+            style = STYLE,
+            body = body,
+            version = env!("CARGO_PKG_VERSION")
+        )
+    }
+}

@@ -1,0 +1,85 @@
+//! What surrounds the data: axes, grid, shades. Mappings and areas in pixels enter, shapes leave.
+
+use super::{
+    Interval, Width,
+    scale::{Axis, Mapping, Tick},
+    svg::{Anchor, Area, Svg, text_width},
+};
+
+/// Room below the frame for the x axis's ticks and title.
+pub(super) const BELOW: f64 = 40.0;
+/// Room above the frame for the y axis's title.
+pub(super) const TITLE_ROW: f64 = 19.0;
+/// Room above the frame for the labels of shades.
+pub(super) const SHADE_ROW: f64 = 14.0;
+/// Pixels between ticks of an x axis.
+pub(super) const X_SPACING: f64 = 62.0;
+/// Pixels between ticks of a y axis.
+pub(super) const Y_SPACING: f64 = 40.0;
+
+/// The room left of the frame for labels like `names`: tick labels, names of rows. Wide figures have at least a common
+/// margin, so that the frames of figures over the same time stand in line on the page.
+pub(super) fn left_margin<'a>(names: impl IntoIterator<Item = &'a str>, width: Width) -> f64 {
+    let least = if width == Width::Wide { 68.0 } else { 34.0 };
+    (names.into_iter().map(text_width).fold(0.0, f64::max) + 11.0).max(least)
+}
+
+/// The room right of the frame; for labels that need more than the common margin, `needed`.
+pub(super) fn right_margin(needed: f64, width: Width) -> f64 {
+    let least = if width == Width::Wide { 108.0 } else { 12.0 };
+    needed.max(least)
+}
+
+/// The labels of `ticks`.
+pub(super) fn labels(ticks: &[Tick]) -> impl Iterator<Item = &str> {
+    ticks.iter().filter_map(|tick| tick.label.as_deref())
+}
+
+/// Whether any shade has a label, so that a row is needed for it.
+pub(super) fn shade_row(shades: &[Interval]) -> f64 {
+    if shades.iter().any(|shade| !shade.label.is_empty()) { SHADE_ROW } else { 0.0 }
+}
+
+/// Shades with their labels above `area`; a label that would touch the one before it is left out.
+pub(super) fn draw_shades(svg: &mut Svg, shades: &[Interval], axis: &Axis, x: &Mapping, area: Area) {
+    let mut labelled_to = f64::NEG_INFINITY;
+    for shade in shades.iter().filter(|shade| axis.draws(shade.from) && axis.draws(shade.to)) {
+        let (left, right) = (x.at(shade.from).max(area.left), x.at(shade.to).min(area.right));
+        if left >= right {
+            continue;
+        }
+        svg.rectangle("shade", Area { left, right, ..area });
+        let half = text_width(&shade.label) / 2.0;
+        let middle = ((left + right) / 2.0).clamp(area.left + half, (area.right - half).max(area.left + half));
+        if middle - half > labelled_to + 6.0 {
+            svg.text("shade-label", Anchor::Middle, (middle, area.top - 5.0), &shade.label);
+            labelled_to = middle + half;
+        }
+    }
+}
+
+/// Grid, tick labels and title of an x axis below `area`.
+pub(super) fn draw_x_axis(svg: &mut Svg, axis: &Axis, x: &Mapping, area: Area) {
+    for tick in x.ticks(X_SPACING) {
+        let class = if tick.label.is_some() { "grid" } else { "grid minor" };
+        svg.line(class, (tick.at, area.top), (tick.at, area.bottom));
+        if let Some(label) = tick.label {
+            svg.line("axis", (tick.at, area.bottom), (tick.at, area.bottom + 4.0));
+            svg.text("tick", Anchor::Middle, (tick.at, area.bottom + 16.0), &label);
+        }
+    }
+    svg.line("axis", (area.left, area.bottom), (area.right, area.bottom));
+    svg.text("title", Anchor::End, (area.right, area.bottom + 33.0), &axis.label());
+}
+
+/// Grid, tick labels and, above the frame, title of a y axis left of `area`.
+pub(super) fn draw_y_axis(svg: &mut Svg, axis: &Axis, ticks: &[Tick], area: Area, title_at: f64) {
+    for tick in ticks {
+        let class = if tick.label.is_some() { "grid" } else { "grid minor" };
+        svg.line(class, (area.left, tick.at), (area.right, tick.at));
+        if let Some(label) = &tick.label {
+            svg.text("tick", Anchor::End, (area.left - 6.0, tick.at + 4.0), label);
+        }
+    }
+    svg.text("title", Anchor::Start, (0.0, title_at), &axis.label());
+}

@@ -1,0 +1,144 @@
+//! Figures as inline SVG: named data enter, one `<svg>` element leaves, at one of two widths.
+//!
+//! A page shows the wide drawing on a screen or on paper and the narrow one on a phone, so that letters keep their size.
+//! Colour, weight and dashes come from classes that the page's style gives a light and a dark meaning.
+//!
+//! | figure | for |
+//! |---|---|
+//! | [`Chart`] | lines, bands, dots, rugs and histogram columns over numeric axes, linear or logarithmic |
+//! | [`Strip`] | categories over time, a row for each subject |
+//! | [`Bars`] | numbers of several methods side by side, in groups |
+//!
+//! A value that is not finite (or not positive, on a logarithmic axis) is never drawn: it interrupts a line, and
+//! [`Figure::undrawable`] counts it so that the page can say so.
+
+mod bars;
+mod chart;
+mod data;
+mod frame;
+mod layer;
+mod legend;
+mod path;
+mod scale;
+mod strip;
+mod svg;
+
+pub use bars::Bars;
+pub use chart::{Chart, Guide};
+pub use data::{Bin, cumulative, histogram};
+pub use layer::Layer;
+pub use scale::Axis;
+pub use strip::{Category, Strip, StripRow};
+
+/// A named series of `(x, y)` points.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// What a legend or label calls it.
+    pub name: String,
+    /// The points; lines follow their order.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Series {
+    /// A series of `points` called `name`.
+    pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        Self { name: name.into(), points: points.into_iter().collect() }
+    }
+
+    /// The ordinates, in order.
+    pub fn values(&self) -> Vec<f64> {
+        self.points.iter().map(|point| point.1).collect()
+    }
+}
+
+/// A labelled interval of x, drawn as a shade: a silence of the link.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interval {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// What it is; stands above the frame where there is room.
+    pub label: String,
+}
+
+impl Interval {
+    /// The interval `[from, to]` called `label`.
+    pub fn new(from: f64, to: f64, label: impl Into<String>) -> Self {
+        Self { from, to, label: label.into() }
+    }
+}
+
+/// What a mark stands for; the page's style decides what that looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tone {
+    /// The vehicle under study: dark red, dashed.
+    Ego,
+    /// This project's result.
+    Ours,
+    /// The literal paper's result.
+    Paper,
+    /// One of seven further colours that stay apart for colour-blind readers; repeats from there on.
+    Other(usize),
+    /// Regular operation.
+    Calm,
+    /// Operation on what is remembered.
+    Alert,
+    /// Something lost or failed.
+    Alarm,
+    /// Nothing going on.
+    Idle,
+}
+
+impl Tone {
+    /// The class that the page's style knows this tone by.
+    pub fn class(self) -> &'static str {
+        const OTHERS: [&str; 7] = ["o0", "o1", "o2", "o3", "o4", "o5", "o6"];
+        match self {
+            Self::Ego => "ego",
+            Self::Ours => "ours",
+            Self::Paper => "paper",
+            Self::Other(index) => OTHERS[index % OTHERS.len()],
+            Self::Calm => "calm",
+            Self::Alert => "alert",
+            Self::Alarm => "alarm",
+            Self::Idle => "idle",
+        }
+    }
+}
+
+/// The width that a figure is drawn for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// A screen or a printed page.
+    Wide,
+    /// A phone held upright.
+    Narrow,
+}
+
+impl Width {
+    /// The width in pixels.
+    pub fn pixels(self) -> f64 {
+        match self {
+            Self::Wide => 820.0,
+            Self::Narrow => 380.0,
+        }
+    }
+
+    /// The class of the element that shows this drawing.
+    pub fn class(self) -> &'static str {
+        match self {
+            Self::Wide => "wide",
+            Self::Narrow => "narrow",
+        }
+    }
+}
+
+/// Anything that can be drawn.
+pub trait Figure {
+    /// The `<svg>` element at `width`. `id` has to be unique on the page; it starts every id inside.
+    fn draw(&self, id: &str, width: Width) -> String;
+
+    /// How many values cannot be drawn.
+    fn undrawable(&self) -> usize;
+}

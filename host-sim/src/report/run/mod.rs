@@ -1,0 +1,176 @@
+//! The report of one run: its series and figures of merit enter, an HTML page leaves.
+
+mod figures;
+mod prose;
+
+use super::{
+    markup::{count, significant},
+    page::{Cell, Page},
+    plot::{Interval, Series},
+};
+
+/// Whether the run passed, and why or why not.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Verdict {
+    /// Whether every limit was met.
+    pub passed: bool,
+    /// A sentence for each thing that decided it.
+    pub reasons: Vec<String>,
+}
+
+/// A limit on a figure of merit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Limit {
+    /// Meets it: this or less.
+    AtMost(f64),
+    /// Meets it: this or more.
+    AtLeast(f64),
+}
+
+impl Limit {
+    /// Whether `value` meets the limit; what is not a number meets none.
+    pub fn is_met_by(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => value <= limit,
+            Self::AtLeast(limit) => value >= limit,
+        }
+    }
+}
+
+/// One figure of merit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SummaryRow {
+    /// What is measured.
+    pub metric: String,
+    /// Our value; `None` where there is nothing to measure.
+    pub ours: Option<f64>,
+    /// The literal paper's value on the same messages; `None` where it has none.
+    pub paper: Option<f64>,
+    /// The unit; empty for a plain count.
+    pub unit: String,
+    /// The limit on our value.
+    pub limit: Option<Limit>,
+}
+
+/// The modes of one vehicle's unit over time.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ModeTrack {
+    /// The vehicle's name, as in the trajectories.
+    pub vehicle: String,
+    /// `(from_s, mode)` in order of time, each until the next; repeated modes, as a sample per tick has them, count as
+    /// one. `standby`, `cooperative`, `holdover`, `fallback` and `fault` (with or without more after the word) have
+    /// colours of their own.
+    pub changes: Vec<(f64, String)>,
+}
+
+/// Everything that the page of one run shows. Vehicles are known by name: a series of `gaps` or `speeds` belongs to the
+/// trajectory of the same name. Times are in seconds of the run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunReport {
+    /// The page's title.
+    pub title: String,
+    /// What kind of run it was: names and values.
+    pub facts: Vec<(String, String)>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The command line that makes this run again.
+    pub command: String,
+    /// The figures of merit.
+    pub summary: Vec<SummaryRow>,
+    /// Position over time of each vehicle, in metres along the virtual lane, leader first.
+    pub trajectories: Vec<Series>,
+    /// Index of the ego in `trajectories`.
+    pub ego: usize,
+    /// Our error of the ego's position as its follower estimates it, in metres.
+    pub error_ours: Series,
+    /// The literal paper's, on the same messages.
+    pub error_paper: Series,
+    /// When the ego's link was silent by design.
+    pub silences: Vec<Interval>,
+    /// Each message sent over the ego's link: when, and its delay in seconds; `None` if it was lost.
+    pub channel: Vec<(f64, Option<f64>)>,
+    /// Speed over time of each vehicle, in m/s.
+    pub speeds: Vec<Series>,
+    /// Bumper gap to the vehicle ahead over time, in metres, of each vehicle but the leader.
+    pub gaps: Vec<Series>,
+    /// Modes over time.
+    pub modes: Vec<ModeTrack>,
+    /// Refused input by cause.
+    pub refusals: Vec<(String, u64)>,
+    /// Anything else that the reader has to know.
+    pub notes: Vec<String>,
+}
+
+impl RunReport {
+    /// The page, as one self-contained HTML document. The same report is always the same bytes.
+    pub fn render(&self) -> String {
+        let mut page = Page::new("holdover-sim · report of a run", &self.title);
+        page.verdict(self.verdict.passed, &self.verdict.reasons);
+        let rows: Vec<Vec<Cell>> = self.summary.iter().map(summary_cells).collect();
+        page.table("Figures of merit", &["Measure", "Ours", "Literal paper", "Unit", "Limit"], &rows);
+        page.section("Scenario");
+        page.facts(&self.facts);
+        page.command(&self.command);
+        page.section("Motion");
+        self.draw_trajectories(&mut page);
+        self.draw_gaps(&mut page);
+        self.draw_speeds(&mut page);
+        page.section("Estimation");
+        self.draw_error(&mut page);
+        self.draw_distribution(&mut page);
+        page.section("Channel and modes");
+        self.draw_channel(&mut page);
+        self.draw_modes(&mut page);
+        page.section("Refused input");
+        self.list_refusals(&mut page);
+        if !self.notes.is_empty() {
+            page.section("Notes");
+            page.list(&self.notes);
+        }
+        page.finish()
+    }
+
+    fn list_refusals(&self, page: &mut Page) {
+        let mut refusals: Vec<&(String, u64)> = self.refusals.iter().filter(|refusal| refusal.1 > 0).collect();
+        // The most frequent first; equal ones keep the order they came in.
+        refusals.sort_by_key(|refusal| std::cmp::Reverse(refusal.1));
+        if refusals.is_empty() {
+            page.paragraph("No frame was refused.");
+            return;
+        }
+        let cells = |(cause, n): &(String, u64)| vec![Cell::text(cause.clone()), Cell::number(count(*n))];
+        let rows: Vec<Vec<Cell>> = refusals.into_iter().map(cells).collect();
+        page.table(
+            "What the units refused, by cause; refused input changes nothing but its counter.",
+            &["Cause", "Count"],
+            &rows,
+        );
+    }
+}
+
+fn summary_cells(row: &SummaryRow) -> Vec<Cell> {
+    let spelled = |value: Option<f64>| value.map_or("–".into(), |value| significant_or_count(value, &row.unit));
+    let limit = match row.limit {
+        None => Cell::text("–"),
+        Some(limit) => {
+            let met = row.ours.is_some_and(|ours| limit.is_met_by(ours));
+            let (sign, value) = match limit {
+                Limit::AtMost(value) => ('≤', value),
+                Limit::AtLeast(value) => ('≥', value),
+            };
+            let state = if met { "met" } else { "missed" };
+            Cell::limit(format!("{sign} {}, {state}", significant_or_count(value, &row.unit)), met)
+        }
+    };
+    let unit = Cell::text(row.unit.clone());
+    vec![Cell::text(row.metric.clone()), Cell::strong(spelled(row.ours)), Cell::number(spelled(row.paper)), unit, limit]
+}
+
+/// A whole number without a unit is a count; anything else is a measurement with three digits that count.
+fn significant_or_count(value: f64, unit: &str) -> String {
+    if unit.is_empty() && value.fract() == 0.0 && (0.0..1e15).contains(&value) {
+        count(value as u64)
+    } else {
+        significant(value, 3)
+    }
+}

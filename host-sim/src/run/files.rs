@@ -1,0 +1,85 @@
+//! The files of a run: its trace enters, a CSV of every tick, a candump log and the report leave.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use holdover::time::Instant;
+
+use crate::candump::LogWriter;
+use crate::error::Error;
+use crate::report::RunReport;
+use crate::scenario::Scenario;
+use crate::vehicle::{EPOCH_US, micros};
+use crate::world::Trace;
+
+/// Writes every tick of the measured vehicle as its follower sees it.
+pub fn write_trace(file: &Path, scenario: &Scenario, trace: &Trace) -> Result<(), Error> {
+    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
+    let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
+    write_rows(&mut out, scenario, trace).and_then(|()| out.flush()).map_err(|error| unwritable(&error))
+}
+
+fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "t_s,true_position_m,true_speed_mps,true_acceleration_mps2,estimated_position_m,estimated_speed_mps,age_s,mode,\
+         command_mps2,paper_position_m,gap_m"
+    )?;
+    let (measured, by) = (&trace.vehicles[trace.measured.vehicle], &trace.vehicles[trace.measured.by]);
+    let length_m = scenario.vehicles[trace.measured.vehicle].length_m;
+    for (tick, at_s) in trace.times_s.iter().enumerate() {
+        let (truth, seen) = (&measured[tick], &by[tick]);
+        let field = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6}"));
+        writeln!(
+            out,
+            "{at_s:.6},{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{:.6}",
+            truth.position_m,
+            truth.speed_mps,
+            truth.acceleration_mps2,
+            field(seen.target.map(|target| target.position_m)),
+            field(seen.target.map(|target| target.speed_mps)),
+            field(seen.target.map(|target| target.age_s)),
+            mode_name(&seen.mode),
+            seen.command_mps2,
+            field(trace.paper[tick]),
+            truth.position_m - length_m - seen.position_m,
+        )?;
+    }
+    Ok(())
+}
+
+/// The name of a mode, as reports spell it.
+#[must_use]
+pub fn mode_name(mode: &holdover::controller::Mode) -> &'static str {
+    use holdover::wire::command::ModeCode;
+    match mode.code() {
+        ModeCode::Standby => "standby",
+        ModeCode::Cooperative => "cooperative",
+        ModeCode::Holdover => "holdover",
+        ModeCode::Fallback => "fallback",
+        ModeCode::Fault => "fault",
+    }
+}
+
+/// Writes the bus that was kept, at the GNSS time of each frame.
+pub fn write_log(file: &Path, trace: &Trace) -> Result<(), Error> {
+    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
+    let out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
+    let Some(mut log) = LogWriter::new(out, "can0") else {
+        return Err(Error::new("the interface has no name", "report this").in_file(file));
+    };
+    for (at_s, frame) in &trace.log {
+        let at = Instant::from_micros(EPOCH_US.saturating_add_signed(micros(*at_s)));
+        log.write(at, frame).map_err(|error| unwritable(&error))?;
+    }
+    log.finish().map(|_| ()).map_err(|error| unwritable(&error))
+}
+
+/// Writes the report into its folder and says where.
+pub fn write_report(folder: &Path, report: &RunReport) -> Result<PathBuf, Error> {
+    fs::create_dir_all(folder).map_err(|error| Error::unwritable(folder, &error))?;
+    let file = folder.join("index.html");
+    fs::write(&file, report.render()).map_err(|error| Error::unwritable(&file, &error))?;
+    Ok(file)
+}

@@ -1,0 +1,307 @@
+//! One vehicle: its body, its onboard unit, its own bus between the two, and its modem. What its sensors and its modem put
+//! on the bus enters the unit; what the unit commands moves the body.
+
+use std::io;
+
+use holdover::time::{Duration, GnssTime, Instant};
+use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
+use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::estimate::TargetEstimate;
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender, StationHash};
+use holdover::{Config, ConfigError, OnboardUnit};
+
+use crate::bus::Bus;
+use crate::bus::memory::{MemoryBus, MemoryNode};
+use crate::modem::{PEERS, Relay, Transmitter, V2xMessage};
+use crate::plant::Plant;
+
+/// Samples that they hold of each peer.
+pub const SAMPLES: usize = 8;
+/// Steps of their horizons.
+pub const STEPS: usize = 400;
+/// The simulated unit: the same core as on the ECU, with the same capacities.
+pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
+
+/// GNSS time at the start of every run, in microseconds: some moment, with all digits in use.
+pub const EPOCH_US: u64 = 1_465_000_123_456_700;
+
+/// The station of the vehicle with that index.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // fewer vehicles than hashes
+pub const fn station(index: usize) -> StationHash {
+    StationHash(index as u8 + 1)
+}
+
+/// The vehicle of a station.
+#[must_use]
+pub const fn index_of(station: StationHash) -> Option<usize> {
+    (station.0 as usize).checked_sub(1)
+}
+
+/// GNSS time at a time of the run.
+#[must_use]
+pub fn gnss(at_s: f64) -> GnssTime {
+    GnssTime::from_micros(EPOCH_US.saturating_add_signed(micros(at_s)))
+}
+
+/// Microseconds, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // runs last a day at most
+pub fn micros(seconds: f64) -> i64 {
+    (seconds * 1e6).round() as i64
+}
+
+/// A vehicle of a run.
+pub struct Vehicle {
+    /// Its place in the string; 0 leads.
+    pub index: usize,
+    /// Its true motion.
+    pub plant: Plant,
+    /// Bumper to bumper.
+    pub length_m: f64,
+    /// Its unit.
+    pub unit: Unit,
+    /// Whether its unit drives it.
+    pub engaged: bool,
+    /// What its unit commanded last.
+    pub command_mps2: f64,
+    /// What its unit said last of its target.
+    pub estimate: Option<TargetEstimate>,
+    wish: EgoIntent,
+    clock_offset_us: u64,
+    sensors: Sender<0>,
+    relay: Relay,
+    listener: Receiver<PEERS>,
+    transmitter: Transmitter,
+    bus: MemoryBus,
+    ecu: MemoryNode,
+    harness: MemoryNode,
+    tag: u8,
+    synced: u8,
+}
+
+impl Vehicle {
+    /// A vehicle at rest in its seat: nothing on its bus yet. Its unit's own clock started `clock_offset_us` before the run.
+    ///
+    /// # Errors
+    /// What the unit finds wrong with its configuration.
+    pub fn new(
+        index: usize,
+        config: &Config,
+        plant: Plant,
+        length_m: f64,
+        wish: EgoIntent,
+        clock_offset_us: u64,
+    ) -> Result<Self, ConfigError> {
+        let bus = MemoryBus::new();
+        Ok(Self {
+            index,
+            plant,
+            length_m,
+            unit: Unit::new(config)?,
+            engaged: wish.engaged,
+            command_mps2: 0.0,
+            estimate: None,
+            wish,
+            clock_offset_us,
+            sensors: Sender::new(config.base_id),
+            relay: Relay::new(config.base_id),
+            listener: Receiver::new(config.base_id, Role::Modem),
+            transmitter: Transmitter::default(),
+            ecu: bus.node(),
+            harness: bus.node(),
+            bus,
+            tag: 0,
+            synced: 0,
+        })
+    }
+
+    /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
+    #[must_use]
+    pub fn listen(&self) -> MemoryNode {
+        self.bus.node()
+    }
+
+    /// Messages that its modem had no slot for.
+    #[must_use]
+    pub fn turned_away(&self) -> u64 {
+        self.relay.turned_away()
+    }
+
+    /// The instant of the unit's clock at a time of the run.
+    #[must_use]
+    pub fn instant(&self, at_s: f64) -> Instant {
+        Instant::from_micros(self.clock_offset_us.saturating_add_signed(micros(at_s)))
+    }
+
+    /// The time of the run at an instant of the unit's clock.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+    pub fn time_of(&self, at: Instant) -> f64 {
+        at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
+    }
+
+    /// The time base's two messages.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
+        self.synced = (self.synced + 1) % 16;
+        let time = gnss(at_s).as_micros();
+        #[allow(clippy::cast_possible_truncation)] // 32 bits of seconds last until 2116
+        let sync = Sync { sequence: self.synced, seconds: (time / 1_000_000) as u32 };
+        #[allow(clippy::cast_possible_truncation)] // below a million
+        let follow_up = FollowUp { sequence: self.synced, micros: (time % 1_000_000) as u32 };
+        self.put(at_s, &Message::Sync(sync))?;
+        self.put(at_s, &Message::FollowUp(follow_up))
+    }
+
+    /// The vehicle's own motion, as its sensors see it now.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn sense(&mut self, at_s: f64) -> io::Result<()> {
+        self.tag = (self.tag + 1) % 4;
+        let motion = Motion {
+            tag: self.tag,
+            position: WirePosition::from_position(metres(self.plant.position_m)),
+            speed: speed(self.plant.speed_mps),
+            acceleration: acceleration(self.plant.acceleration_mps2),
+            demand: acceleration(self.command_mps2),
+            stamp: gnss(at_s).stamp(),
+            position_accuracy: Some(Distance::from_mm(50)),
+            speed_accuracy: Some(Speed::from_mm_per_s(20)),
+            station: station(self.index),
+        };
+        self.put(at_s, &Message::Ego(Said::Motion(motion)))
+    }
+
+    /// What the driver wants.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn wish(&mut self, at_s: f64) -> io::Result<()> {
+        self.put(at_s, &Message::EgoIntent(self.wish))
+    }
+
+    /// A message from the channel.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
+        let mut frames = Vec::new();
+        self.relay.hear(at_s, message, &mut frames);
+        let at = self.instant(at_s);
+        frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
+    }
+
+    /// Lets the unit receive all that has been on the bus up to now, without a tick.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn receive(&mut self, at_s: f64) -> io::Result<()> {
+        let now = self.instant(at_s);
+        while let Some((at, frame)) = self.ecu.receive(now)? {
+            let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
+        }
+        Ok(())
+    }
+
+    /// One period of the unit: receive, tick, transmit. What its modem broadcasts then, if anything.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
+        self.receive(at_s)?;
+        let now = self.instant(at_s);
+        for frame in self.unit.tick(now).frames {
+            self.ecu.send(now, (&frame).into())?;
+        }
+        self.estimate = None;
+        while let Some((_, frame)) = self.harness.receive(now)? {
+            match self.listener.receive(&frame) {
+                Ok(Received::Whole(Message::Own(said))) => self.transmitter.take(&said),
+                Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
+                Ok(Received::Whole(Message::Command(command))) => {
+                    self.command_mps2 = command.acceleration.get().to_num();
+                }
+                _ => {}
+            }
+        }
+        Ok(self.transmitter.broadcast())
+    }
+
+    fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
+        let at = self.instant(at_s);
+        let mut result = Ok(());
+        let harness = &mut self.harness;
+        let sent = self.sensors.send(message, &mut |frame| {
+            if result.is_ok() {
+                result = harness.send(at, (&frame).into());
+            }
+        });
+        debug_assert!(sent.is_ok(), "the vehicle says nothing that the catalogue has no line for");
+        result
+    }
+}
+
+/// What the driver of a follower, or of a leader, wants.
+#[must_use]
+pub fn wish(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap_s: f64) -> EgoIntent {
+    EgoIntent {
+        engaged,
+        predecessor: ahead.map_or(Predecessor::None, |ahead| Predecessor::Station(station(ahead))),
+        target_speed: speed(target_speed_mps),
+        time_gap: Some(seconds(time_gap_s)),
+    }
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating, and positions are far smaller
+pub fn metres(m: f64) -> Position {
+    Position::from_bits((m * f64::from(1 << 20)).round() as i64)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating
+pub fn distance(m: f64) -> Distance {
+    Distance::from_bits((m * f64::from(1 << 20)).round() as i32)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating
+pub fn speed(mps: f64) -> Speed {
+    Speed::from_bits((mps.max(0.0) * f64::from(1 << 23)).round() as i32)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating
+pub fn acceleration(mps2: f64) -> Acceleration {
+    Acceleration::from_bits((mps2 * f64::from(1 << 25)).round() as i32)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating
+pub fn seconds(s: f64) -> Seconds {
+    Seconds::from_bits((s * f64::from(1 << 29)).round() as i32)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+#[allow(clippy::cast_possible_truncation)] // saturating
+pub fn fine_seconds(s: f64) -> FineSeconds {
+    FineSeconds::from_bits((s * f64::from(1 << 30)).round() as i32)
+}
+
+/// To the core's format, to nearest.
+#[must_use]
+pub fn duration(s: f64) -> Duration {
+    Duration::from_micros(micros(s))
+}

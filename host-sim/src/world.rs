@@ -1,0 +1,369 @@
+//! The world of a run: a scenario enters; every tick the vehicles sense, hear, tick, speak and move; a trace of every tick
+//! leaves.
+//!
+//! Order within a tick at time t: what arrived over the channel up to t is put on the buses with its time of arrival;
+//! sensors and time base speak; every unit receives and ticks; what the units broadcast goes into the channel; the bodies
+//! move on to the next tick under the commands. So a message sent without delay at t is used in the next tick, as on
+//! real buses.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::io;
+
+use holdover::controller::Mode;
+use holdover::health::Refusal;
+use holdover::time::Instant;
+use holdover::wire::BaseId;
+use holdover::{Config, ConfigError};
+
+use crate::baseline::Baseline;
+use crate::baseline::paper::Paper;
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
+use crate::channel::{Channel, Link};
+use crate::modem::V2xMessage;
+use crate::observer::Observer;
+use crate::plant::Plant;
+use crate::scenario::Scenario;
+use crate::streams::{Purpose, stream, unit};
+use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
+
+/// Cycle of the time base, in seconds.
+const SYNC_EVERY_S: f64 = 0.5;
+/// Cycle of the driver's wish, in seconds.
+const WISH_EVERY_S: f64 = 0.1;
+
+/// One tick of one vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// True front bumper.
+    pub position_m: f64,
+    /// True speed.
+    pub speed_mps: f64,
+    /// True acceleration.
+    pub acceleration_mps2: f64,
+    /// What its unit commanded.
+    pub command_mps2: f64,
+    /// Its unit's mode.
+    pub mode: Mode,
+    /// Where its unit believes its target is, as it stands on the bus.
+    pub target: Option<TargetBelief>,
+}
+
+/// What a unit believes of its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetBelief {
+    /// Front bumper.
+    pub position_m: f64,
+    /// Speed.
+    pub speed_mps: f64,
+    /// Age of the newest sample it rests on.
+    pub age_s: f64,
+}
+
+/// The trace of a run.
+pub struct Trace {
+    /// The time of each tick.
+    pub times_s: Vec<f64>,
+    /// For each vehicle, its ticks.
+    pub vehicles: Vec<Vec<Tick>>,
+    /// For each tick, where the literal paper believes that the measured vehicle is.
+    pub paper: Vec<Option<f64>>,
+    /// The vehicle whose position is estimated, and by whom.
+    pub measured: Measured,
+    /// Refusals of all units together, by cause.
+    pub refusals: Vec<(Refusal, u64)>,
+    /// The channel with all that happened on it.
+    pub channel: Channel,
+    /// The bus of one vehicle, if it was asked for: times of the run and frames.
+    pub log: Vec<(f64, Frame)>,
+    /// Messages that found no slot in a modem.
+    pub turned_away: u64,
+}
+
+/// Whose position is estimated by whom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// The vehicle whose position is estimated.
+    pub vehicle: usize,
+    /// The vehicle that follows it and estimates.
+    pub by: usize,
+}
+
+impl Measured {
+    /// The ego as its follower estimates it; if nobody follows the ego, the one ahead as the ego estimates it.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let ego = scenario.ego;
+        if ego + 1 < scenario.vehicles.len() { Self { vehicle: ego, by: ego + 1 } } else { Self { vehicle: ego - 1, by: ego } }
+    }
+}
+
+/// A message on its way.
+struct Flight {
+    arrives_us: i64,
+    number: u64,
+    to: usize,
+    message: V2xMessage,
+}
+
+impl PartialEq for Flight {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+impl Eq for Flight {}
+impl PartialOrd for Flight {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Flight {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        (self.arrives_us, self.number).cmp(&(other.arrives_us, other.number))
+    }
+}
+
+/// The world.
+pub struct World<'a> {
+    scenario: &'a Scenario,
+    vehicles: Vec<Vehicle>,
+    channel: Channel,
+    flights: BinaryHeap<Reverse<Flight>>,
+    sent: u64,
+    observer: Observer,
+    /// Listens where the measuring vehicle's unit does.
+    tap: MemoryNode,
+    /// Listens on the bus that is logged.
+    log: Option<(usize, MemoryNode)>,
+    paper: Paper,
+    measured: Measured,
+    leader_start_m: f64,
+}
+
+impl<'a> World<'a> {
+    /// The world of a scenario under a seed; the bus of `logged` is kept.
+    ///
+    /// # Errors
+    /// What a unit finds wrong with the configuration that the scenario gives it.
+    pub fn new(scenario: &'a Scenario, seed: u64, logged: Option<usize>) -> Result<Self, ConfigError> {
+        let mut vehicles = Vec::new();
+        for (index, state) in scenario.initial_states(seed).iter().enumerate() {
+            let described = &scenario.vehicles[index];
+            let config = config(scenario, index);
+            let is_recorded = index == 0 && scenario.leader.motion.is_some();
+            let plant = Plant {
+                position_m: state.position_m,
+                speed_mps: state.speed_mps,
+                acceleration_mps2: 0.0,
+                lag_s: described.plant_lag_s,
+            };
+            let wish =
+                wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
+            let clock_offset_us = clock_offset(seed, index);
+            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us)?);
+        }
+        let measured = Measured::of(scenario);
+        let leader_start_m = vehicles[0].plant.position_m;
+        Ok(Self {
+            scenario,
+            channel: Channel::new(&scenario.channel, seed),
+            flights: BinaryHeap::new(),
+            sent: 0,
+            observer: Observer::new(BaseId::DEFAULT),
+            tap: vehicles[measured.by].listen(),
+            log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
+            vehicles,
+            paper: Paper::new(measured.vehicle, scenario.step_s),
+            measured,
+            leader_start_m,
+        })
+    }
+
+    /// Runs it to its end; `progress` is told the share that is done, now and then.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn run(mut self, mut progress: impl FnMut(f64)) -> io::Result<Trace> {
+        self.warm_up()?;
+        let period_s = self.scenario.period_s;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a day of milliseconds at most
+        let ticks = (self.scenario.duration_s / period_s).round() as usize;
+        let mut trace = Trace {
+            times_s: Vec::with_capacity(ticks),
+            vehicles: vec![Vec::with_capacity(ticks); self.vehicles.len()],
+            paper: Vec::with_capacity(ticks),
+            measured: self.measured,
+            refusals: Vec::new(),
+            channel: Channel::new(&self.scenario.channel, 0),
+            log: Vec::new(),
+            turned_away: 0,
+        };
+        for tick in 0..ticks {
+            #[allow(clippy::cast_precision_loss)]
+            let at_s = tick as f64 * period_s;
+            self.tick(at_s, &mut trace)?;
+            if tick % 100 == 0 {
+                #[allow(clippy::cast_precision_loss)]
+                progress(tick as f64 / ticks as f64);
+            }
+        }
+        trace.refusals = Refusal::ALL
+            .iter()
+            .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
+            .collect();
+        if let Some((index, node)) = &mut self.log {
+            while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+                trace.log.push((self.vehicles[*index].time_of(at), frame));
+            }
+        }
+        trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
+        trace.channel = self.channel;
+        Ok(trace)
+    }
+
+    fn warm_up(&mut self) -> io::Result<()> {
+        for vehicle in &mut self.vehicles {
+            for half_seconds in (1..=3).rev() {
+                let at_s = -f64::from(half_seconds) * SYNC_EVERY_S;
+                vehicle.synchronise(at_s)?;
+                vehicle.wish(at_s)?;
+                vehicle.receive(at_s)?;
+            }
+            for periods in [2.0, 1.0] {
+                let at_s = -periods * self.scenario.period_s;
+                vehicle.sense(at_s)?;
+                vehicle.receive(at_s)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn tick(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
+        self.deliver(at_s)?;
+        self.place_recorded_leader(at_s);
+        self.show_to_paper(at_s)?;
+        let mut broadcasts = Vec::new();
+        for vehicle in &mut self.vehicles {
+            vehicle.sense(at_s)?;
+            if is_due(at_s, WISH_EVERY_S, self.scenario.period_s) {
+                vehicle.wish(at_s)?;
+            }
+            if is_due(at_s, SYNC_EVERY_S, self.scenario.period_s) {
+                vehicle.synchronise(at_s)?;
+            }
+            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
+        }
+        trace.times_s.push(at_s);
+        trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
+        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
+            ticks.push(record(vehicle));
+        }
+        for (from, message) in broadcasts {
+            self.broadcast(at_s, from, message);
+        }
+        for vehicle in self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged) {
+            vehicle.plant.drive(vehicle.command_mps2, self.scenario.period_s);
+        }
+        Ok(())
+    }
+
+    /// The literal paper decodes what the measuring vehicle's unit receives.
+    fn show_to_paper(&mut self, at_s: f64) -> io::Result<()> {
+        let by = &self.vehicles[self.measured.by];
+        let near = metres(self.vehicles[self.measured.vehicle].plant.position_m);
+        while let Some((at, frame)) = self.tap.receive(by.instant(at_s))? {
+            if let Some(heard) = self.observer.observe(by.time_of(at), &frame, near) {
+                self.paper.hear(&heard);
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything that has arrived by now, in the order of arrival.
+    fn deliver(&mut self, at_s: f64) -> io::Result<()> {
+        let now_us = crate::vehicle::micros(at_s);
+        while self.flights.peek().is_some_and(|Reverse(flight)| flight.arrives_us <= now_us) {
+            let Some(Reverse(flight)) = self.flights.pop() else { break };
+            #[allow(clippy::cast_precision_loss)]
+            let arrives_s = flight.arrives_us as f64 * 1e-6;
+            self.vehicles[flight.to].hear(arrives_s, &flight.message)?;
+        }
+        Ok(())
+    }
+
+    fn broadcast(&mut self, at_s: f64, from: usize, message: V2xMessage) {
+        for to in (0..self.vehicles.len()).filter(|to| *to != from) {
+            for arrives_s in self.channel.send(Link { from, to }, at_s) {
+                self.sent += 1;
+                let arrives_us = crate::vehicle::micros(arrives_s);
+                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
+            }
+        }
+    }
+
+    /// A leader on a recording is where the recording says.
+    fn place_recorded_leader(&mut self, at_s: f64) {
+        let Some(motion) = &self.scenario.leader.motion else { return };
+        let state = motion.at(motion.start_s() + at_s);
+        let leader = &mut self.vehicles[0];
+        leader.plant.position_m = self.leader_start_m + state.position_m - motion.at(motion.start_s()).position_m;
+        leader.plant.speed_mps = state.speed_mps.max(0.0);
+        leader.plant.acceleration_mps2 = motion.past_slope(motion.start_s() + at_s);
+        leader.command_mps2 = leader.plant.acceleration_mps2;
+    }
+}
+
+/// Whether something of that cycle is due in the tick at `at_s`.
+fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
+    let phase = (at_s + 1e-9).rem_euclid(cycle_s);
+    phase < period_s - 1e-9
+}
+
+fn record(vehicle: &Vehicle) -> Tick {
+    let near = metres(vehicle.plant.position_m);
+    Tick {
+        position_m: vehicle.plant.position_m,
+        speed_mps: vehicle.plant.speed_mps,
+        acceleration_mps2: vehicle.plant.acceleration_mps2,
+        command_mps2: vehicle.command_mps2,
+        mode: vehicle.unit.mode(),
+        target: vehicle.estimate.map(|estimate| TargetBelief {
+            position_m: estimate.position.nearest_to(near).get().to_num(),
+            speed_mps: estimate.speed.get().to_num(),
+            #[allow(clippy::cast_precision_loss)]
+            age_s: estimate.age.as_micros() as f64 * 1e-6,
+        }),
+    }
+}
+
+/// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn clock_offset(seed: u64, index: usize) -> u64 {
+    let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
+    10_000_000 + (share * 1e9) as u64
+}
+
+/// The configuration of a vehicle's unit.
+#[must_use]
+pub fn config(scenario: &Scenario, index: usize) -> Config {
+    let vehicle = &scenario.vehicles[index];
+    let mut config = Config::car(station(index));
+    config.period = duration(scenario.period_s);
+    config.length = crate::vehicle::distance(vehicle.length_m);
+    config.lag = fine_seconds(vehicle.lag_s);
+    config.law.time_gap = seconds(vehicle.time_gap_s);
+    config.law.standstill = crate::vehicle::distance(vehicle.standstill_m);
+    config.law.target_speed = speed(scenario.leader.target_speed_mps);
+    config.link.period = duration(1.0 / scenario.message_rate_hz);
+    config.prediction.step = duration(scenario.step_s);
+    config.prediction.horizon = horizon(scenario.step_s);
+    config
+}
+
+/// 3.9 s, or as many whole steps as come to at least that, within the capacity.
+#[allow(clippy::cast_precision_loss)]
+fn horizon(step_s: f64) -> holdover::time::Duration {
+    let steps = (3.9 / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
+    duration(steps * step_s)
+}

@@ -1,0 +1,133 @@
+//! The unit's knowledge of GNSS time: the two steps of a synchronisation enter, the mapping between the unit's clock and
+//! GNSS time leaves.
+//!
+//! The *reception* of `Sync` is the mark; `FollowUp` says when the mark was really sent. Two marks half a second apart
+//! bound the error by the clocks' relative drift (100 ppm · 0.5 s = 50 µs) and the reception's jitter, so that no rate is
+//! estimated.
+
+use crate::health::Refusal;
+use crate::time::{Duration, GnssTime, Instant, Stamp};
+use crate::wire::sync::{FollowUp, Sync};
+
+/// The mapping, once there is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Fix {
+    local: Instant,
+    gnss: GnssTime,
+}
+
+/// The clock's state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Clock {
+    mark: Option<(Instant, Sync)>,
+    fix: Option<Fix>,
+}
+
+/// How long after its mark a follow-up may come.
+const FOLLOW_UP_TIMEOUT: Duration = Duration::from_millis(250);
+
+impl Clock {
+    /// Not synchronised.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { mark: None, fix: None }
+    }
+
+    /// First step.
+    pub fn sync(&mut self, at: Instant, sync: Sync) {
+        self.mark = Some((at, sync));
+    }
+
+    /// Second step.
+    ///
+    /// # Errors
+    /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago.
+    pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Refusal> {
+        let (marked, sync) = self.mark.take().ok_or(Refusal::SyncSequence)?;
+        if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
+            return Err(Refusal::SyncSequence);
+        }
+        self.fix = Some(Fix { local: marked, gnss: follow_up.time_of(&sync) });
+        Ok(())
+    }
+
+    /// Whether GNSS time is known at this instant, with a synchronisation no older than that.
+    #[must_use]
+    pub fn is_synchronised(&self, now: Instant, timeout: Duration) -> bool {
+        self.fix.is_some_and(|fix| now.since(fix.local) <= timeout)
+    }
+
+    /// GNSS time at an instant, if there ever was a synchronisation.
+    #[must_use]
+    pub fn gnss(&self, at: Instant) -> Option<GnssTime> {
+        let fix = self.fix?;
+        let since = at.since(fix.local).as_micros();
+        Some(GnssTime::from_micros(fix.gnss.as_micros().saturating_add_signed(since)))
+    }
+
+    /// The instant of a stamp that was received at `at`, if there ever was a synchronisation.
+    #[must_use]
+    pub fn instant_of(&self, stamp: Stamp, at: Instant) -> Option<Instant> {
+        let now = self.gnss(at)?;
+        let time = stamp.unwrap_near(now).as_micros();
+        let age = i64::try_from(now.as_micros()).ok()?.checked_sub(i64::try_from(time).ok()?)?;
+        Some(at.minus(Duration::from_micros(age)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOUR: u64 = 3_600_000_000;
+
+    fn synchronised() -> Clock {
+        let mut clock = Clock::new();
+        clock.sync(Instant::from_micros(2_000_000), Sync { sequence: 3, seconds: 3600 });
+        clock.follow_up(Instant::from_micros(2_003_000), FollowUp { sequence: 3, micros: 250 }).unwrap();
+        clock
+    }
+
+    #[test]
+    fn the_reception_of_the_sync_message_is_the_mark() {
+        let clock = synchronised();
+        assert_eq!(clock.gnss(Instant::from_micros(2_000_000)), Some(GnssTime::from_micros(HOUR + 250)));
+        assert_eq!(clock.gnss(Instant::from_micros(1_000_000)), Some(GnssTime::from_micros(HOUR - 999_750)));
+    }
+
+    #[test]
+    fn a_stamp_becomes_the_instant_it_was_taken_at() {
+        let clock = synchronised();
+        let received = Instant::from_micros(29_000_000);
+        for age in (-1_000_000..=10_000_000i64).step_by(99_900) {
+            let taken = received.minus(Duration::from_micros(age));
+            let gnss = HOUR + 250 + taken.as_micros().wrapping_sub(2_000_000);
+            let instant = clock.instant_of(GnssTime::from_micros(gnss).stamp(), received).unwrap();
+            assert!(instant.since(taken).as_micros().abs() <= 50, "{age}");
+        }
+    }
+
+    #[test]
+    fn a_follow_up_needs_its_own_sync_message_just_before_it() {
+        let sync = Sync { sequence: 3, seconds: 1 };
+        let at = Instant::from_micros(0);
+        let refused = Err(Refusal::SyncSequence);
+        assert_eq!(Clock::new().follow_up(at, FollowUp { sequence: 3, micros: 0 }), refused);
+        for (sequence, micros) in [(4, 1_000), (3, 250_001)] {
+            let mut clock = Clock::new();
+            clock.sync(at, sync);
+            assert_eq!(clock.follow_up(Instant::from_micros(micros), FollowUp { sequence, micros: 0 }), refused);
+            assert!(!clock.is_synchronised(at, Duration::MAX));
+        }
+    }
+
+    #[test]
+    fn a_synchronisation_expires() {
+        let clock = synchronised();
+        let timeout = Duration::from_millis(5000);
+        assert!(clock.is_synchronised(Instant::from_micros(7_000_000), timeout));
+        assert!(!clock.is_synchronised(Instant::from_micros(7_000_001), timeout));
+    }
+}

@@ -1,0 +1,366 @@
+//! The unit's configuration: plain typed values enter, and are checked once at start with a named error.
+//!
+//! It is immutable afterwards, `Copy`, holds no pointer, and can therefore lie in a calibration section.
+
+use crate::dynamics::Body;
+use crate::parameters;
+use crate::time::Duration;
+use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use crate::wire::{BaseId, StationHash};
+use crate::wire::intent::Limits;
+
+/// Which parts of the prediction model are used. [`Model::HOLDOVER`] is the default; [`Model::PAPER`] is the paper's
+/// literal method; each switch by itself shows what that part is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Model {
+    /// The actuators' lag, solved exactly.
+    pub lag: bool,
+    /// The controller's limits on acceleration and jerk.
+    pub limits: bool,
+    /// The sender's last demand as the start of the jerk limit.
+    pub last_demand: bool,
+    /// The standstill distance `s_0`.
+    pub standstill: bool,
+    /// Trapezoidal positions; otherwise forward Euler (eq. 9 as printed).
+    pub trapezoid: bool,
+    /// Read-out between steps; otherwise the nearest step.
+    pub interpolate: bool,
+    /// Time stamps: a sample is brought from its stamp to now by the model; otherwise by eqs 10-12.
+    pub stamped: bool,
+    /// A horizon never runs out; otherwise its last value is held past its end.
+    pub endless: bool,
+    /// A horizon that the peer computed itself is used in preference.
+    pub received: bool,
+    /// After a silence the controller is led from the old estimate to the new one instead of jumping.
+    pub smooth: bool,
+}
+
+impl Model {
+    /// All of it.
+    pub const HOLDOVER: Self = Self {
+        lag: true,
+        limits: true,
+        last_demand: true,
+        standstill: true,
+        trapezoid: true,
+        interpolate: true,
+        stamped: true,
+        endless: true,
+        received: true,
+        smooth: true,
+    };
+    /// The literal paper.
+    pub const PAPER: Self = Self {
+        lag: false,
+        limits: false,
+        last_demand: false,
+        standstill: false,
+        trapezoid: false,
+        interpolate: false,
+        stamped: false,
+        endless: false,
+        received: false,
+        smooth: false,
+    };
+}
+
+/// The prediction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Prediction {
+    /// Prediction step, `δt`; 1 ms to 1 s.
+    pub step: Duration,
+    /// How far ahead; at least two steps, and two steps less than the capacity.
+    pub horizon: Duration,
+    /// What is in the model.
+    pub model: Model,
+}
+
+/// The law of eqs 5 and 7.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Law {
+    /// Desired time gap, `t_g`; 0.1 to 3.995 s.
+    pub time_gap: Seconds,
+    /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
+    pub standstill: Distance,
+    /// Gain `k`; 0.01 to 3.999 /s².
+    pub gain: Gain,
+    /// Damping `γ`; 0 to 3.999 s.
+    pub damping: Seconds,
+    /// Largest acceleration on a free road, `a_max` of eq. 8.
+    pub free_road_acceleration: Acceleration,
+    /// Speed wanted on a free road until `EgoIntent` says otherwise, `v_∞`.
+    pub target_speed: Speed,
+    /// Speed never demanded beyond.
+    pub max_speed: Speed,
+}
+
+/// What counts as a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Link {
+    /// Period with which the unit's own messages are sent, and a peer's until its own is measured.
+    pub period: Duration,
+    /// The link is off when no valid message came for a period and this.
+    pub tolerance: Duration,
+    /// Older stamps are refused; at most 10 s.
+    pub stale: Duration,
+    /// Stamps further in the future are refused: the clocks' error.
+    pub future: Duration,
+    /// A slot may be taken over by another station after this much silence.
+    pub slot_reuse: Duration,
+    /// Age up to which a target's estimate is driven by.
+    pub holdover: Duration,
+    /// Age up to which the ego's own motion is usable.
+    pub ego_timeout: Duration,
+    /// Age up to which a synchronisation holds.
+    pub sync_timeout: Duration,
+    /// Delay assumed while there is no synchronisation.
+    pub assumed_delay: Duration,
+}
+
+/// The absolute limits of the last gate; disengaged unless given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Envelope {
+    /// Largest acceleration ever commanded.
+    pub acceleration: Acceleration,
+    /// Hardest braking ever commanded, as a magnitude.
+    pub braking: Acceleration,
+    /// Fastest change ever commanded.
+    pub jerk: Jerk,
+    /// No acceleration at or beyond this speed.
+    pub speed: Speed,
+}
+
+/// Everything that the unit has to be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Config {
+    /// The ego's own station.
+    pub station: StationHash,
+    /// First CAN identifier of the catalogue.
+    pub base_id: BaseId,
+    /// Period of the task that calls `tick`; 1 to 100 ms.
+    pub period: Duration,
+    /// Bumper to bumper.
+    pub length: Distance,
+    /// Time constant of the actuators, `T`; 0 to 1.998 s.
+    pub lag: FineSeconds,
+    /// Limits of the controller, and of the vehicle.
+    pub limits: Limits,
+    /// The vehicle of eqs 1-3.
+    pub body: Body,
+    /// The law.
+    pub law: Law,
+    /// The prediction.
+    pub prediction: Prediction,
+    /// The link.
+    pub link: Link,
+    /// The last gate.
+    pub envelope: Option<Envelope>,
+}
+
+/// Why a configuration was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ConfigError {
+    /// `period` is outside 1 to 100 ms.
+    Period,
+    /// `step` is outside 1 ms to 1 s.
+    Step,
+    /// `horizon` is shorter than two steps, longer than 25.5 s, or needs more steps than the capacity.
+    Horizon,
+    /// `length` is outside 0 to 40.95 m.
+    Length,
+    /// `lag` is outside 0 to 1.998 s.
+    Lag,
+    /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s² or than emergency
+    /// braking.
+    Limits,
+    /// `time_gap` is outside 0.1 to 3.995 s.
+    TimeGap,
+    /// `standstill` is outside 0 to 10.23 m.
+    Standstill,
+    /// A gain is out of range.
+    Gain,
+    /// The semi-implicit step is unstable: `k δt² >= 4 + 2 k δt (t_g + γ)`.
+    Unstable,
+    /// A speed is outside 0 to 65.534 m/s.
+    Speed,
+    /// `a_max` of the free road is below 0.1 m/s² or above the limit on acceleration.
+    FreeRoad,
+    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+    Link,
+    /// The vehicle of eqs 1-3 has no mass or no brakes.
+    Body,
+    /// A limit of the envelope is zero or negative.
+    Envelope,
+}
+
+impl core::fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Period => "period is outside 1 to 100 ms",
+            Self::Step => "step is outside 1 ms to 1 s",
+            Self::Horizon => "horizon is shorter than two steps, longer than 25.5 s, or needs more steps than there is room for",
+            Self::Length => "length is outside 0 to 40.95 m",
+            Self::Lag => "lag is outside 0 to 1.998 s",
+            Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³)",
+            Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
+            Self::Standstill => "standstill is outside 0 to 10.23 m",
+            Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
+            Self::Unstable => "the prediction is unstable with this gain at this step; lower the gain or the step",
+            Self::Speed => "a speed is outside 0 to 65.534 m/s",
+            Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
+            Self::Link => "a time of the link is out of range",
+            Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
+            Self::Envelope => "a limit of the envelope is zero or negative",
+        })
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
+const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
+
+impl Config {
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
+    /// interpolation needs).
+    #[must_use]
+    pub const fn car(station: StationHash) -> Self {
+        Self {
+            station,
+            base_id: BaseId::DEFAULT,
+            period: Duration::from_millis(10),
+            length: parameters::DEFAULT_LENGTH,
+            lag: FineSeconds::from_millis(300),
+            limits: Limits {
+                acceleration: Acceleration::from_mm_per_s2(2500),
+                braking: Acceleration::from_mm_per_s2(4000),
+                jerk: Jerk::from_mm_per_s3(5000),
+                emergency_braking: Acceleration::from_mm_per_s2(8000),
+            },
+            body: Body::CAR,
+            law: Law {
+                time_gap: Seconds::from_millis(1000),
+                standstill: Distance::from_mm(2000),
+                gain: parameters::GAIN,
+                damping: parameters::DAMPING,
+                free_road_acceleration: parameters::FREE_ROAD_ACCELERATION,
+                target_speed: Speed::from_mm_per_s(13_400),
+                max_speed: Speed::from_mm_per_s(50_000),
+            },
+            prediction: Prediction {
+                step: Duration::from_millis(10),
+                horizon: Duration::from_millis(3900),
+                model: Model::HOLDOVER,
+            },
+            link: Link {
+                period: Duration::from_millis(100),
+                tolerance: Duration::from_millis(150),
+                stale: parameters::STALE_MAX,
+                future: Duration::from_millis(5),
+                slot_reuse: Duration::from_millis(2000),
+                holdover: Duration::from_millis(15_000),
+                ego_timeout: Duration::from_millis(50),
+                sync_timeout: Duration::from_millis(5000),
+                assumed_delay: Duration::from_millis(40),
+            },
+            envelope: None,
+        }
+    }
+
+    /// Steps that a horizon of this configuration holds: two more than it is long, for the interpolation at both ends.
+    #[must_use]
+    pub const fn steps(&self) -> usize {
+        let step = self.prediction.step.as_micros();
+        if step <= 0 {
+            return 0;
+        }
+        #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        // the divisor is positive, and a quotient beyond the capacity is refused by `check`
+        {
+            (self.prediction.horizon.as_micros() / step) as usize + 2
+        }
+    }
+
+    /// Checks everything against its documented range.
+    ///
+    /// # Errors
+    /// The first value that is out of its range, by name.
+    pub fn check(&self, capacity: usize) -> Result<(), ConfigError> {
+        let positive = |d: Duration| d > Duration::ZERO;
+        let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
+        let millis = Duration::from_millis;
+        ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
+        let Prediction { step, horizon, .. } = self.prediction;
+        ensure((millis(1)..=millis(1000)).contains(&step), ConfigError::Step)?;
+        ensure(
+            horizon >= step.times(2) && horizon <= millis(25_500) && self.steps() <= capacity,
+            ConfigError::Horizon,
+        )?;
+        ensure((Distance::ZERO..=Distance::from_mm(40_950)).contains(&self.length), ConfigError::Length)?;
+        ensure((FineSeconds::ZERO..=FineSeconds::from_millis(1998)).contains(&self.lag), ConfigError::Lag)?;
+        self.check_limits()?;
+        self.check_law()?;
+        let link = &self.link;
+        ensure(
+            positive(link.period)
+                && link.tolerance >= Duration::ZERO
+                && positive(link.stale)
+                && link.stale <= parameters::STALE_MAX
+                && link.future >= Duration::ZERO
+                && link.future < millis(1000)
+                && [link.slot_reuse, link.holdover, link.ego_timeout, link.sync_timeout].into_iter().all(positive)
+                && link.assumed_delay >= Duration::ZERO
+                && link.assumed_delay <= millis(2000),
+            ConfigError::Link,
+        )?;
+        ensure(self.body.is_sane(), ConfigError::Body)?;
+        ensure(
+            self.envelope.is_none_or(|e| {
+                e.acceleration > Acceleration::ZERO
+                    && e.braking > Acceleration::ZERO
+                    && e.jerk > Jerk::ZERO
+                    && e.speed > Speed::ZERO
+            }),
+            ConfigError::Envelope,
+        )
+    }
+
+    fn check_limits(&self) -> Result<(), ConfigError> {
+        let Limits { acceleration, braking, jerk, emergency_braking } = self.limits;
+        let holds = acceleration > Acceleration::ZERO
+            && acceleration <= WIRE_ACCELERATION_MAX
+            && braking > Acceleration::ZERO
+            && braking <= parameters::BRAKING_MAX
+            && braking <= emergency_braking
+            && emergency_braking <= WIRE_ACCELERATION_MAX
+            && jerk > Jerk::ZERO
+            && jerk <= Jerk::from_mm_per_s3(51_150);
+        if holds { Ok(()) } else { Err(ConfigError::Limits) }
+    }
+
+    fn check_law(&self) -> Result<(), ConfigError> {
+        let law = &self.law;
+        let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
+        let gaps = Seconds::from_millis(100)..=Seconds::from_millis(3995);
+        ensure(gaps.contains(&law.time_gap), ConfigError::TimeGap)?;
+        ensure((Distance::ZERO..=Distance::from_mm(10_230)).contains(&law.standstill), ConfigError::Standstill)?;
+        let gains = Gain::from_milli(10)..=Gain::from_milli(3999);
+        let dampings = Seconds::ZERO..=Seconds::from_millis(3999);
+        ensure(gains.contains(&law.gain) && dampings.contains(&law.damping), ConfigError::Gain)?;
+        let speeds = Speed::ZERO..=WIRE_SPEED_MAX;
+        ensure(speeds.contains(&law.target_speed) && speeds.contains(&law.max_speed), ConfigError::Speed)?;
+        let free = parameters::FREE_ROAD_ACCELERATION_MIN..=self.limits.acceleration;
+        ensure(free.contains(&law.free_road_acceleration), ConfigError::FreeRoad)?;
+        ensure(
+            crate::estimator::follower::is_stable(law.gain, law.damping, law.time_gap, self.prediction.step),
+            ConfigError::Unstable,
+        )
+    }
+}

@@ -1,0 +1,133 @@
+//! The controller: the ego's state and the estimate of its target at now enter, the demanded acceleration leaves.
+//!
+//! Eqs 5 and 7 with the *estimate at now*, never the stale sample. The law is taken over the unit's own period as the same
+//! semi-implicit step that the prediction takes over `δt` (see [`crate::estimator::Follower`]): at 10 ms it differs from
+//! eq. 7 by less than 1 % in gain, and the model that others predict this vehicle with is the controller it drives by.
+
+mod blend;
+mod gains;
+mod mode;
+
+pub use blend::{BLEND, Blend, keep_over};
+pub use gains::Gains;
+pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
+
+use crate::config::Config;
+use crate::estimator::{Driver, Reading, State};
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Share, Speed};
+
+/// What the controller drives by in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// The ego's own law: free road, or behind a target whose reading is of one period from now.
+    Law {
+        /// How the ego drives.
+        driver: Driver,
+        /// The target's reading and length.
+        target: Option<(Reading, Option<Distance>)>,
+    },
+    /// Caution: braking that grows slowly.
+    Caution {
+        /// Since when.
+        since: Instant,
+    },
+    /// Braking as hard as is normal.
+    Brake,
+    /// Someone else drives; the unit keeps up with what is demanded.
+    Yield {
+        /// The demand in force.
+        demand: Acceleration,
+    },
+}
+
+/// The controller's memory: the last demand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Controller {
+    demand: Acceleration,
+    blend: Blend,
+    keep: Share,
+}
+
+/// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
+/// one that is not costs comfort first.
+const CAUTION: Jerk = Jerk::from_mm_per_s3(500);
+
+/// Within this time a vehicle at its speed limit closes on it.
+const SPEED_LIMIT_TIME: i64 = 2;
+
+impl Controller {
+    /// At rest.
+    #[must_use]
+    pub fn new(period: Duration) -> Self {
+        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: keep_over(period) }
+    }
+
+    /// The demand in force.
+    #[must_use]
+    pub const fn last_demand(&self) -> Acceleration {
+        self.demand
+    }
+
+    /// What was really commanded, if something after the controller changed its demand.
+    pub fn correct(&mut self, commanded: Acceleration) {
+        self.demand = commanded;
+    }
+
+    /// Leads the controller from what it would have seen to what news after a silence says of the same instant.
+    pub fn blend_from(&mut self, estimate_before: Reading, estimate_after: Reading) {
+        self.blend = Blend::from(self.blend.apply(estimate_before), estimate_after);
+    }
+
+    /// The demand of this tick.
+    pub fn drive(&mut self, config: &Config, now: Instant, ego: Option<&State>, course: &Course) -> Acceleration {
+        self.blend = self.blend.faded(self.keep);
+        self.demand = match (course, ego) {
+            (Course::Yield { demand }, _) => {
+                self.blend = Blend::NONE;
+                *demand
+            }
+            (Course::Law { driver, target }, Some(ego)) => self.by_law(config, driver, ego, *target),
+            (Course::Caution { since }, _) => {
+                let braking = growth(now.since(*since)).min(config.limits.braking);
+                self.slewed(config, braking.negated())
+            }
+            (Course::Brake | Course::Law { .. }, _) => self.slewed(config, config.limits.braking.negated()),
+        };
+        self.demand
+    }
+
+    fn by_law(
+        &self,
+        config: &Config,
+        driver: &Driver,
+        ego: &State,
+        target: Option<(Reading, Option<Distance>)>,
+    ) -> Acceleration {
+        let length = target.and_then(|(_, length)| length);
+        let stride = driver.over(config.period, length, &config.prediction.model);
+        let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
+        let demand = stride.demand(ego, ahead);
+        demand.min(speed_cap(config.law.max_speed, ego.speed))
+    }
+
+    fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {
+        let slew = config.limits.jerk.over(config.period.fine_seconds());
+        wish.limited(self.demand.minus(slew), self.demand.plus(slew))
+    }
+}
+
+/// Braking after so long in caution, saturating after 2 s steps.
+fn growth(since: Duration) -> Acceleration {
+    let tenths = since.as_micros().max(0) / 100_000;
+    let tenth = CAUTION.over(FineSeconds::from_millis(100));
+    Acceleration::from_bits(crate::fixed::saturate_i32(i64::from(tenth.to_bits()).saturating_mul(tenths)))
+}
+
+/// The largest acceleration that keeps within a speed limit, approached in [`SPEED_LIMIT_TIME`]⁻¹ s.
+fn speed_cap(limit: Speed, speed: Speed) -> Acceleration {
+    // 23 to 25 fraction bits is a factor of 4; over half a second one of 2.
+    let left = i64::from(limit.minus(speed).to_bits());
+    Acceleration::from_bits(crate::fixed::saturate_i32(left.saturating_mul(4).saturating_mul(SPEED_LIMIT_TIME)))
+}

@@ -1,0 +1,113 @@
+//! Longitudinal dynamics, eqs 1-3: a demanded acceleration and the speed enter, the net engine force or the brake
+//! torque that brings it about leaves.
+//!
+//! Eq. 1: `a = (F_net - R·T_br - c_v v² - c_f v - d_m)/m`. Driving (eq. 2): `F_net = m a + c_v v² + c_f v + d_m`. Braking:
+//! eq. 3 read as `T_br = -(m a + c_v v² + c_f v + d_m)/R >= 0`; as printed it has the speed for the acceleration, two
+//! names for the friction coefficient, and the sign of a brake that accelerates.
+
+use crate::units::{Acceleration, Speed};
+use crate::wire::command::Effort;
+
+/// The vehicle of eq. 1, in integers that a calibration tool can show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Body {
+    /// Mass `m` in kg; 300 to 40,000.
+    pub mass_kg: u32,
+    /// Brake force per brake torque, `R` in 1/m, in thousandths; 1 to 100,000.
+    pub ratio_milli: u32,
+    /// Aerodynamic drag `c_v` in N/(m/s)², in thousandths; up to 20,000.
+    pub drag_milli: u32,
+    /// Friction `c_f` in N/(m/s), in thousandths; up to 1,000,000.
+    pub friction_milli: u32,
+    /// Mechanical drag `d_m` in N; up to 10,000.
+    pub mechanical_n: u32,
+}
+
+impl Body {
+    /// A car: 1,500 kg, wheels of 0.31 m radius, 0.4 N/(m/s)² of drag, 150 N of rolling resistance.
+    pub const CAR: Self =
+        Self { mass_kg: 1500, ratio_milli: 3226, drag_milli: 400, friction_milli: 2000, mechanical_n: 150 };
+
+    /// Whether every number is in its range.
+    #[must_use]
+    pub fn is_sane(&self) -> bool {
+        (300..=40_000).contains(&self.mass_kg)
+            && (1..=100_000).contains(&self.ratio_milli)
+            && self.drag_milli <= 20_000
+            && self.friction_milli <= 1_000_000
+            && self.mechanical_n <= 10_000
+    }
+
+    /// Eqs 2 and 3: rounded to nearest N or N·m, saturating at the wire's 65,534. Bodies that are not sane saturate too.
+    #[must_use]
+    pub fn effort(&self, acceleration: Acceleration, speed: Speed) -> Effort {
+        let v = speed.to_mm_per_s().max(0) as i64;
+        let scaled = |x: u32| x as i64;
+        // In nano-newtons, so that every term is an integer: kg·mm/s² is 1e6 nN, mN/(m/s)² by (mm/s)² is 1e3·1e-6·1e9.
+        let inertia = scaled(self.mass_kg).saturating_mul(acceleration.to_mm_per_s2() as i64).saturating_mul(1_000_000);
+        let drag = scaled(self.drag_milli).saturating_mul(v).saturating_mul(v);
+        let friction = scaled(self.friction_milli).saturating_mul(v).saturating_mul(1000);
+        let mechanical = scaled(self.mechanical_n).saturating_mul(1_000_000_000);
+        let force = inertia.saturating_add(drag).saturating_add(friction).saturating_add(mechanical);
+        if force >= 0 {
+            Effort::Force(rounded(force, 1_000_000_000))
+        } else {
+            Effort::BrakeTorque(rounded(
+                force.saturating_neg(),
+                (self.ratio_milli.max(1) as i64).saturating_mul(1_000_000),
+            ))
+        }
+    }
+}
+
+/// `dividend / divisor` to nearest, at most 65,534 (65,535 stands for "not available" on the wire).
+#[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+// the divisor is positive by construction, and the quotient is clamped
+fn rounded(dividend: i64, divisor: i64) -> u16 {
+    (dividend.saturating_add(divisor / 2) / divisor).clamp(0, 65_534) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eq. 1 in float64.
+    fn acceleration(body: &Body, effort: Effort, v: f64) -> f64 {
+        let (force, torque) = match effort {
+            Effort::Force(newtons) => (f64::from(newtons), 0.0),
+            Effort::BrakeTorque(newton_metres) => (0.0, f64::from(newton_metres)),
+        };
+        let resistance = f64::from(body.drag_milli) / 1000.0 * v * v
+            + f64::from(body.friction_milli) / 1000.0 * v
+            + f64::from(body.mechanical_n);
+        (force - f64::from(body.ratio_milli) / 1000.0 * torque - resistance) / f64::from(body.mass_kg)
+    }
+
+    #[test]
+    fn inverting_and_then_eq_1_returns_the_acceleration() {
+        let body = Body::CAR;
+        for demand in (-8000..=4000).step_by(37) {
+            for speed in (0..=60_000).step_by(1711) {
+                let effort = body.effort(Acceleration::from_mm_per_s2(demand), Speed::from_mm_per_s(speed));
+                let back = acceleration(&body, effort, f64::from(speed) / 1000.0);
+                // Half a newton, half a newton metre times R, over the mass.
+                let tolerance = 0.5 * f64::from(body.ratio_milli) / 1000.0 / 1500.0 + 1e-9;
+                assert!((back - f64::from(demand) / 1000.0).abs() <= tolerance, "{demand} {speed} {effort:?} {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn coasting_down_needs_neither_force_nor_brake() {
+        let effort = Body::CAR.effort(Acceleration::from_mm_per_s2(-100), Speed::ZERO);
+        assert_eq!(effort, Effort::Force(0));
+    }
+
+    #[test]
+    fn the_effort_saturates_at_the_ends_of_the_wire() {
+        let truck = Body { mass_kg: 40_000, ratio_milli: 1, ..Body::CAR };
+        assert_eq!(truck.effort(Acceleration::MAX, Speed::MAX), Effort::Force(65_534));
+        assert_eq!(truck.effort(Acceleration::MIN, Speed::ZERO), Effort::BrakeTorque(65_534));
+    }
+}

@@ -1,0 +1,85 @@
+//! What a vehicle's controller and actuators make of a wish: the wished acceleration enters, limited in size and jerk
+//! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
+//! because the model must be the controller.
+
+use super::exponential::{keep, slip};
+use super::position::Path;
+use crate::config::Model;
+use crate::time::Duration;
+use crate::units::{Acceleration, FineSeconds, Jerk, RingPosition, Share, Speed};
+use crate::wire::intent::Limits;
+
+/// A vehicle's state at one step of a horizon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct State {
+    /// Front bumper, modulo 4096 m.
+    pub position: RingPosition,
+    /// Never negative.
+    pub speed: Speed,
+    /// Acceleration reached.
+    pub acceleration: Acceleration,
+    /// Acceleration demanded in the step before.
+    pub demand: Acceleration,
+}
+
+/// The constants of one step of a given length for one vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Actuator {
+    path: Path,
+    step: FineSeconds,
+    keep: Share,
+    slip: FineSeconds,
+    floor: Acceleration,
+    ceiling: Acceleration,
+    slew: Acceleration,
+}
+
+impl Actuator {
+    /// For steps of length `step` of a vehicle with this lag and these limits.
+    #[must_use]
+    pub fn over(step: Duration, lag: Duration, limits: &Limits, model: &Model) -> Self {
+        let lag = if model.lag { lag } else { Duration::ZERO };
+        let unlimited = !model.limits;
+        Self {
+            path: Path::over(step, model.trapezoid),
+            step: step.fine_seconds(),
+            keep: keep(step, lag),
+            slip: slip(step, lag),
+            floor: if unlimited { Acceleration::MIN } else { limits.braking.negated() },
+            ceiling: if unlimited { Acceleration::MAX } else { limits.acceleration },
+            slew: if unlimited { Acceleration::MAX } else { slew(limits.jerk, step) },
+        }
+    }
+
+    /// The demand that comes of a wish: at most the jerk limit away from the last one, and within the limits on
+    /// acceleration as far as the jerk limit lets it get there.
+    #[inline(always)]
+    #[must_use]
+    pub fn limit(&self, wish: Acceleration, last: Acceleration) -> Acceleration {
+        let low = last.minus(self.slew).max(self.floor);
+        let high = last.plus(self.slew).min(self.ceiling);
+        wish.min(high).max(low)
+    }
+
+    /// The state after one step under a demand that holds for the whole step: the lag `ȧ = (u - a)/T` solved exactly,
+    /// a speed that never becomes negative, and Algorithm 3.
+    #[inline(always)]
+    #[must_use]
+    pub fn drive(&self, state: State, demand: Acceleration) -> State {
+        let behind = state.acceleration.minus(demand);
+        let mut acceleration = demand.plus(behind.share(self.keep));
+        let mut speed = state.speed.plus(demand.over(self.step)).plus(behind.over(self.slip));
+        if speed < Speed::ZERO {
+            speed = Speed::ZERO;
+            acceleration = acceleration.max(Acceleration::ZERO);
+        }
+        State { position: self.path.follow(state.position, state.speed, speed), speed, acceleration, demand }
+    }
+}
+
+/// How far the jerk limit lets the demand move in a step of up to 1 s.
+fn slew(jerk: Jerk, step: Duration) -> Acceleration {
+    jerk.over(step.fine_seconds())
+}

@@ -1,0 +1,151 @@
+//! How a vehicle drives, as far as it is known: its published intent (or the lack of it) enters, the constants of its
+//! prediction step leave.
+
+use super::actuator::{Actuator, State};
+use super::follower::Follower;
+use super::leader::Leader;
+use crate::config::{Config, Model};
+use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
+use crate::time::Duration;
+use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, RingPosition, Seconds, Speed};
+use crate::wire::Predecessor;
+use crate::wire::intent::{Intent, Limits};
+
+/// What a vehicle is after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Aim {
+    /// Nothing known: its acceleration fades out.
+    Fade,
+    /// A speed (Algorithm 2).
+    Lead {
+        /// `a_max`.
+        largest: Acceleration,
+        /// `v_∞`.
+        target_speed: Speed,
+    },
+    /// Its predecessor (Algorithm 4).
+    Follow {
+        /// `k`.
+        gain: Gain,
+        /// `γ`.
+        damping: Seconds,
+        /// `t_g`.
+        time_gap: Seconds,
+        /// `s_0`.
+        standstill: Distance,
+    },
+}
+
+/// A vehicle's parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Driver {
+    /// What it is after.
+    pub aim: Aim,
+    /// `T`.
+    pub lag: Duration,
+    /// Its limits.
+    pub limits: Limits,
+}
+
+impl Driver {
+    /// Of a vehicle of which nothing is known: its acceleration fades out.
+    pub const UNKNOWN: Self = Self {
+        aim: Aim::Fade,
+        lag: Duration::ZERO,
+        limits: Limits {
+            acceleration: Acceleration::MAX,
+            braking: Acceleration::MAX,
+            jerk: Jerk::MAX,
+            emergency_braking: Acceleration::MAX,
+        },
+    };
+
+    /// Of a peer, from what it published.
+    #[must_use]
+    pub fn of_intent(intent: &Intent, model: &Model) -> Self {
+        let aim = match intent.predecessor {
+            Predecessor::Unknown => Aim::Fade,
+            Predecessor::None => Aim::Lead { largest: FREE_ROAD_ACCELERATION, target_speed: intent.target_speed },
+            Predecessor::Station(_) => Aim::Follow {
+                gain: intent.gain,
+                damping: intent.damping,
+                time_gap: intent.time_gap,
+                standstill: if model.standstill { intent.standstill } else { Distance::ZERO },
+            },
+        };
+        Self { aim, lag: micros(intent.lag), limits: intent.limits }
+    }
+
+    /// Of the ego, from its configuration and what it is after.
+    #[must_use]
+    pub fn of_config(config: &Config, aim: Aim) -> Self {
+        Self { aim, lag: micros(config.lag), limits: config.limits }
+    }
+
+    /// The state after some time under the demand in force.
+    #[must_use]
+    pub fn coast(&self, state: State, time: Duration, model: &Model) -> State {
+        Actuator::over(time, self.lag, &self.limits, model).drive(state, state.demand)
+    }
+
+    /// The constants of a step of this length behind a predecessor of this length.
+    #[must_use]
+    pub fn over(&self, step: Duration, length_ahead: Option<Distance>, model: &Model) -> Stride {
+        let course = match self.aim {
+            Aim::Fade => Course::Fade,
+            Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
+            Aim::Follow { gain, damping, time_gap, standstill } => {
+                let spacing = length_ahead.unwrap_or(DEFAULT_LENGTH).plus(standstill);
+                Course::Follow(Follower::over(step, gain, damping, time_gap, spacing))
+            }
+        };
+        let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
+        let fading = Model { lag: true, ..*model };
+        let model = if matches!(course, Course::Fade) { &fading } else { model };
+        Stride { course, actuator: Actuator::over(step, lag, &self.limits, model) }
+    }
+}
+
+const fn micros(lag: FineSeconds) -> Duration {
+    Duration::from_micros(lag.to_multiple_of(1_000_000))
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Course {
+    Fade,
+    Lead(Leader),
+    Follow(Follower),
+}
+
+/// One prediction step of one vehicle, ready to be taken many times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stride {
+    course: Course,
+    actuator: Actuator,
+}
+
+impl Stride {
+    /// The demand of this step: the wish within the vehicle's limits. A follower without a predecessor fades.
+    #[inline(always)]
+    #[must_use]
+    pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>) -> Acceleration {
+        match (&self.course, ahead) {
+            (Course::Lead(leader), _) => self.actuator.limit(leader.wish(state.speed), state.demand),
+            (Course::Follow(follower), Some((position, speed))) => {
+                self.actuator.limit(follower.wish(state, position, speed), state.demand)
+            }
+            (Course::Follow(_), None) | (Course::Fade, _) => Acceleration::ZERO,
+        }
+    }
+
+    /// The state at the end of the step.
+    #[inline(always)]
+    #[must_use]
+    pub fn take(&self, state: State, ahead: Option<(RingPosition, Speed)>) -> State {
+        self.actuator.drive(state, self.demand(&state, ahead))
+    }
+}

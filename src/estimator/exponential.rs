@@ -1,0 +1,83 @@
+//! `e^(-h/T)` for the actuators' lag and the fading acceleration: two times enter, a share leaves. Within 4e-9 of the
+//! true value; integers only.
+
+use crate::time::Duration;
+use crate::units::{FineSeconds, Share};
+
+/// ln 2 in 32 fraction bits.
+const LN_2: u64 = 2_977_044_472;
+/// 1 in 32 fraction bits.
+const ONE: u64 = 1 << 32;
+
+/// The share `φ = e^(-h/T)` of a deviation that is left after `h`; 0 if there is no lag, 1 if no time passes.
+#[must_use]
+pub fn keep(step: Duration, time_constant: Duration) -> Share {
+    let (step, time_constant) =
+        (step.as_micros().max(0).unsigned_abs(), time_constant.as_micros().max(0).unsigned_abs());
+    if time_constant == 0 {
+        return if step == 0 { Share::from_bits(1 << 30) } else { Share::ZERO };
+    }
+    // Beyond 22 time constants nothing of 30 bits is left; below, the quotient fits 37 bits.
+    if step / time_constant.max(1) >= 22 {
+        return Share::ZERO;
+    }
+    let x = step.saturating_mul(ONE) / time_constant.max(1);
+    let halvings = x / LN_2;
+    let rest = x.saturating_sub(halvings.saturating_mul(LN_2));
+    Share::from_bits(rounded(exp_of_minus(rest), halvings.saturating_add(2)))
+}
+
+/// `T (1 - φ)`: what the deviation still adds to the speed while it dies out over `h`.
+#[must_use]
+pub fn slip(step: Duration, time_constant: Duration) -> FineSeconds {
+    let fading = Share::from_bits(1 << 30).minus(keep(step, time_constant));
+    // Share and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
+    let product = time_constant.as_micros().max(0).saturating_mul(i64::from(fading.to_bits()));
+    FineSeconds::from_bits(crate::fixed::saturate_i32(product.saturating_add(500_000) / 1_000_000))
+}
+
+/// `e^(-x)` for `x` in [0, ln 2), both in 32 fraction bits: the Taylor series by Horner's rule. The first term left out
+/// is (ln 2)¹²/12! = 2.6e-11.
+fn exp_of_minus(x: u64) -> u64 {
+    (1..=11u64).rev().fold(ONE, |sum, n| ONE.saturating_sub((x.saturating_mul(sum) >> 32) / n.max(1)))
+}
+
+/// `x / 2^bits`, to nearest.
+#[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // x <= 2³² and bits >= 2
+fn rounded(x: u64, bits: u64) -> i32 {
+    let bits = (bits as u32).min(40);
+    (x.saturating_add(1u64.wrapping_shl(bits.saturating_sub(1))).wrapping_shr(bits)) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_share_is_within_4e_9_of_the_exponential_everywhere() {
+        let mut worst: f64 = 0.0;
+        for step in (1..=1_000_000).step_by(997) {
+            for lag in (2_000..=2_000_000).step_by(49_999) {
+                let share = keep(Duration::from_micros(step), Duration::from_micros(lag));
+                let exact = (-(step as f64) / lag as f64).exp();
+                worst = worst.max((share.get().to_num::<f64>() - exact).abs());
+                let slip = slip(Duration::from_micros(step), Duration::from_micros(lag)).get().to_num::<f64>();
+                assert!((slip - lag as f64 * 1e-6 * (1.0 - exact)).abs() < 1e-8, "{step} {lag} {slip}");
+            }
+        }
+        assert!(worst < 4e-9, "{worst:e}");
+    }
+
+    #[test]
+    fn without_lag_nothing_is_kept() {
+        assert_eq!(keep(Duration::from_millis(10), Duration::ZERO), Share::ZERO);
+        assert_eq!(slip(Duration::from_millis(10), Duration::ZERO), FineSeconds::ZERO);
+    }
+
+    #[test]
+    fn without_time_everything_is_kept() {
+        for lag in [0, 300] {
+            assert_eq!(keep(Duration::ZERO, Duration::from_millis(lag)), Share::from_bits(1 << 30));
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Algorithm 4, the follower: its own state and its predecessor's at the end of the step enter, the acceleration that it
+//! wishes for leaves.
+//!
+//! Eq. 13 as printed lacks `δt` and has `v_n(t+k)` on both sides. Read as the semi-implicit step that it is, with
+//! `r_n(t+k)` predicted by eq. 9,
+//!
+//! ```text
+//! v* = [ v - κ ( r + v δt - r_p + l + s_0 - γ v_p ) ] / [ 1 + κ (t_g + γ) ],   κ = α k δt,  α = 1
+//! ```
+//!
+//! and the wish is `(v* - v)/δt`, which is
+//!
+//! ```text
+//! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
+//! ```
+//!
+//! so that no division is left in the step. Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
+
+use super::actuator::State;
+use crate::time::Duration;
+use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
+
+/// The law of one follower over steps of one length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Follower {
+    gain: Gain,
+    gap: Seconds,
+    damping: Seconds,
+    spacing: Distance,
+}
+
+impl Follower {
+    /// With gains `k` and `γ`, time gap `t_g` and spacing `l + s_0` (its predecessor's length and its own standstill
+    /// distance), over steps of this length.
+    #[must_use]
+    pub fn over(step: Duration, gain: Gain, damping: Seconds, time_gap: Seconds, spacing: Distance) -> Self {
+        Self {
+            gain: semi_implicit(gain, damping, time_gap, step),
+            gap: time_gap.plus(step.seconds()),
+            damping,
+            spacing,
+        }
+    }
+
+    /// Eq. 13 as an acceleration, before the limits.
+    #[inline(always)]
+    #[must_use]
+    pub fn wish(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
+        let error = state
+            .position
+            .ahead_of(ahead)
+            .plus(self.spacing)
+            .plus(state.speed.over(self.gap))
+            .plus(state.speed.minus(ahead_speed).over(self.damping));
+        error.times(self.gain).negated()
+    }
+}
+
+/// `K = k / (1 + k δt (t_g + γ))`.
+#[allow(clippy::arithmetic_side_effects)] // formats of 29 bits with values below 4, 4 and 8: products stay below 2⁶³
+fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration) -> Gain {
+    const ONE: i64 = 1 << 29;
+    let k = i64::from(gain.to_bits().max(0));
+    let kappa = (k * i64::from(step.seconds().to_bits().max(0))) >> 29;
+    let sum = i64::from(damping.to_bits().max(0)) + i64::from(time_gap.to_bits().max(0));
+    // κ < 16 and the sum < 8 in 29 bits: below 2³³ each, so the product needs a shift first.
+    let divisor = ONE + ((kappa >> 2) * (sum >> 2) >> 25);
+    Gain::from_bits(crate::fixed::saturate_i32(((k << 29) + divisor / 2) / divisor))
+}
+
+/// Whether the semi-implicit step is stable: `k δt² < 4 + 2 k δt (t_g + γ)`.
+///
+/// With `x = v δt` the step's iteration matrix on the gap has the characteristic polynomial whose Jury conditions
+/// reduce to this one; the other two hold for all positive gains.
+#[must_use]
+#[allow(clippy::arithmetic_side_effects)] // thousandths below 4,000, 1,000 and 8,000: products stay below 2⁶³
+pub fn is_stable(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration) -> bool {
+    let k = i64::from(gain.to_milli());
+    let h = step.as_millis();
+    let sum = i64::from(damping.to_millis()) + i64::from(time_gap.to_millis());
+    k * h * h < 4_000_000_000 + 2 * k * h * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Position;
+
+    fn gain(k: f64, damping: f64, time_gap: f64, step: f64) -> f64 {
+        semi_implicit(
+            Gain::from_ratio((k * 1e6).round() as i64, 1_000_000),
+            Seconds::from_millis((damping * 1e3).round() as i32),
+            Seconds::from_millis((time_gap * 1e3).round() as i32),
+            Duration::from_micros((step * 1e6).round() as i64),
+        )
+        .get()
+        .to_num()
+    }
+
+    #[test]
+    fn the_gain_is_divided_by_the_implicit_term() {
+        for k in [0.01, 0.2, 0.5, 1.0, 3.999] {
+            for damping in [0.0, 0.5, 2.0, 3.999] {
+                for time_gap in [0.2, 1.0, 3.995] {
+                    for step in [0.001, 0.01, 0.1, 1.0] {
+                        let exact = k / (1.0 + k * step * (time_gap + damping));
+                        assert!(
+                            (gain(k, damping, time_gap, step) - exact).abs() < 2e-8,
+                            "{k} {damping} {time_gap} {step}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn at_the_desired_gap_and_the_same_speed_there_is_nothing_to_wish() {
+        let step = Duration::from_millis(10);
+        let (time_gap, spacing) = (Seconds::from_millis(1000), Distance::from_mm(6800));
+        let law = Follower::over(step, Gain::from_milli(500), Seconds::from_millis(2000), time_gap, spacing);
+        let speed = Speed::from_mm_per_s(11_000);
+        let state = State { speed, ..State::default() };
+        // At the end of the step the predecessor is one step further.
+        let ahead = Position::ZERO.ring().ahead(spacing).ahead(speed.over(time_gap)).ahead(speed.over(step.seconds()));
+        assert!(law.wish(&state, ahead, speed).to_bits().abs() < 1 << 10);
+    }
+
+    #[test]
+    fn a_step_is_stable_up_to_the_stated_gain_and_not_beyond() {
+        let (damping, time_gap, step) =
+            (Seconds::from_millis(100), Seconds::from_millis(200), Duration::from_millis(1000));
+        // k (1 - 2 · 0.3) < 4 => k < 10: never reached; with no damping and 0.2 s: k (1 - 0.4) < 4 => k < 6.67.
+        assert!(is_stable(Gain::from_milli(3999), damping, time_gap, step));
+        assert!(is_stable(Gain::from_milli(3999), Seconds::ZERO, time_gap, step));
+    }
+}

@@ -1,0 +1,176 @@
+//! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
+//! horizon brought up to now leaves.
+
+use super::actuator::State;
+use super::delay::adjusted;
+use super::driver::{Driver, Stride};
+use super::horizon::{Anchor, Grid, Horizon};
+use crate::config::Model;
+use crate::peers::Sample;
+use crate::time::Duration;
+use crate::units::{Distance, Position, RingPosition, Speed};
+use crate::wire::horizon::Knots;
+use crate::wire::intent::Intent;
+
+/// Whose horizon a follower's is computed from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ahead {
+    /// A peer's, by its slot.
+    Peer(usize),
+    /// The ego's own.
+    Own,
+}
+
+/// All that one vehicle's horizon is computed with.
+pub struct Forecast<'a, const STEPS: usize> {
+    /// The unit's grid.
+    pub grid: Grid,
+    /// Steps to keep.
+    pub length: usize,
+    /// What is in the model.
+    pub model: Model,
+    /// How the vehicle drives.
+    pub driver: Driver,
+    /// That over a whole step.
+    pub stride: Stride,
+    /// Length of its predecessor.
+    pub length_ahead: Option<Distance>,
+    /// Its predecessor's horizon.
+    pub ahead: Option<&'a Horizon<STEPS>>,
+    /// The delay of eqs 10-12, in paper mode.
+    pub delay: Option<Duration>,
+}
+
+impl<const STEPS: usize> Forecast<'_, STEPS> {
+    /// Starts the horizon anew from a sample, and from the vehicle's own horizon if it sent one with its intent.
+    pub fn anchor(
+        &self,
+        horizon: &mut Horizon<STEPS>,
+        present: i64,
+        sample: &Sample,
+        received: Option<(&Knots, &Intent)>,
+    ) {
+        let anchor =
+            Anchor { at: sample.at, position: sample.position, speed: sample.speed, acceleration: sample.acceleration };
+        horizon.clear();
+        let mut filling = Filling { horizon, present, anchor };
+        let next = received
+            .and_then(|(knots, intent)| self.resample(&mut filling, knots, intent))
+            .or_else(|| self.depart(&mut filling, sample));
+        if let Some((index, state)) = next {
+            self.carry_on(&mut filling, index, state, self.end(present, sample));
+        }
+    }
+
+    /// Drops the steps that have passed, and in an endless horizon computes as many at the far end.
+    pub fn extend(&self, horizon: &mut Horizon<STEPS>, present: i64) {
+        if horizon.is_empty() || !self.model.endless {
+            return;
+        }
+        let (last, state) = (horizon.last(), horizon.tip());
+        let end = present.saturating_add(steps(self.length)).saturating_sub(1);
+        if end.saturating_sub(last) > steps(STEPS) {
+            // A pause longer than the horizon: what was to be computed from is gone.
+            horizon.clear();
+            return;
+        }
+        while horizon.first() < present && horizon.len() > 1 {
+            horizon.drop_first();
+        }
+        let anchor = *horizon.anchor();
+        self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);
+    }
+
+    /// The last index to compute: a horizon's length from now, or from the sample in a horizon that ends.
+    fn end(&self, present: i64, sample: &Sample) -> i64 {
+        let from = if self.model.endless { present } else { self.grid.nearest(sample.at) };
+        from.saturating_add(steps(self.length)).saturating_sub(1)
+    }
+
+    /// Source (b): from the sample to the first step on the grid. Without stamps that is the nearest one, as it is.
+    fn depart(&self, filling: &mut Filling<'_, STEPS>, sample: &Sample) -> Option<(i64, State)> {
+        let mut state = State {
+            position: sample.position.ring(),
+            speed: sample.speed.max(Speed::ZERO),
+            acceleration: sample.acceleration,
+            demand: if self.model.last_demand { sample.demand } else { sample.acceleration },
+        };
+        let index;
+        if self.model.stamped {
+            index = self.grid.at_or_after(sample.at);
+            let part = self.grid.time_of(index).since(sample.at);
+            if part > Duration::ZERO {
+                let stride = self.driver.over(part, self.length_ahead, &self.model);
+                state = stride.take(state, self.ahead_at(index));
+            }
+        } else {
+            index = self.grid.nearest(sample.at);
+        }
+        filling.put(index, state);
+        Some((index, state))
+    }
+
+    /// Source (a): the sent horizon on the grid, from now to its end. One that ended before now is of no use.
+    fn resample(&self, filling: &mut Filling<'_, STEPS>, knots: &Knots, intent: &Intent) -> Option<(i64, State)> {
+        let _ = (filling, knots, intent);
+        None
+    }
+
+    /// Steps from an index to the end of the horizon.
+    fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
+        let mut index = from;
+        while index < end {
+            index = index.saturating_add(1);
+            state = self.stride.take(state, self.ahead_at(index));
+            filling.put(index, state);
+        }
+    }
+
+    /// The predecessor at a step; nobody if it is out of reach.
+    #[inline(always)]
+    fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
+        let ahead = self.ahead?;
+        if let Some(delay) = self.delay {
+            return self.ahead_delayed(ahead, index, delay);
+        }
+        if let Some(step) = ahead.at(index) {
+            return Some((step.position, step.speed));
+        }
+        let reading = ahead.read(self.grid.time_of(index), &self.grid, true)?;
+        Some((reading.position.ring(), reading.speed))
+    }
+
+    fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<(RingPosition, Speed)> {
+        let behind = self.grid.nearest(self.grid.time_of(index).minus(delay));
+        let held = |index: i64| ahead.at(index.clamp(ahead.first(), ahead.last()));
+        Some(adjusted(held(behind)?, held(behind.saturating_sub(1))?, delay, self.grid.step))
+    }
+}
+
+/// A horizon that is being filled: steps before the present are only passed through.
+struct Filling<'a, const STEPS: usize> {
+    horizon: &'a mut Horizon<STEPS>,
+    present: i64,
+    anchor: Anchor,
+}
+
+impl<const STEPS: usize> Filling<'_, STEPS> {
+    #[inline(always)]
+    fn put(&mut self, index: i64, state: State) {
+        if !self.horizon.is_empty() {
+            self.horizon.push(state);
+        } else if index >= self.present {
+            self.horizon.start(self.anchor, index, self.absolute(&state), state);
+        }
+    }
+
+    /// The absolute position of a state within 2048 m of the anchor.
+    fn absolute(&self, state: &State) -> Position {
+        self.anchor.position.ahead(state.position.ahead_of(self.anchor.position.ring()))
+    }
+}
+
+/// A number of steps as a difference of indices.
+fn steps(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}

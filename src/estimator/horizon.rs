@@ -1,0 +1,348 @@
+//! The horizon of one vehicle: a ring buffer of positions and speeds on the unit's time grid. Steps enter at the far end
+//! and leave at the near end as time passes; a reading at any instant leaves.
+//!
+//! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step,
+//! and between steps, a reading is the cubic that meets both positions and both speeds.
+
+use super::actuator::State;
+use super::interpolation::between;
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Position, RingPosition, Speed};
+
+/// The time grid that all horizons of one unit share: step `n` is at `origin + n·δt`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Grid {
+    /// Where step 0 is.
+    pub origin: Instant,
+    /// `δt`.
+    pub step: Duration,
+}
+
+impl Grid {
+    /// The last step at or before an instant.
+    #[must_use]
+    pub fn at_or_before(&self, at: Instant) -> i64 {
+        at.since(self.origin).as_micros().checked_div_euclid(self.step.as_micros()).unwrap_or(0)
+    }
+
+    /// The first step at or after an instant.
+    #[must_use]
+    pub fn at_or_after(&self, at: Instant) -> i64 {
+        let before = self.at_or_before(at);
+        if self.time_of(before) == at { before } else { before.saturating_add(1) }
+    }
+
+    /// The step nearest to an instant.
+    #[must_use]
+    pub fn nearest(&self, at: Instant) -> i64 {
+        self.at_or_before(at.plus(Duration::from_micros(self.step.as_micros() / 2)))
+    }
+
+    /// When a step is; a step before the clock's start is at its start.
+    #[must_use]
+    pub fn time_of(&self, index: i64) -> Instant {
+        self.origin.plus(self.step.times(index))
+    }
+}
+
+/// One step of a horizon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Step {
+    /// Front bumper, modulo 4096 m.
+    pub position: RingPosition,
+    /// Never negative.
+    pub speed: Speed,
+}
+
+/// Where a vehicle is at one instant, as read from its horizon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Reading {
+    /// Front bumper.
+    pub position: Position,
+    /// Never negative.
+    pub speed: Speed,
+}
+
+/// The state that a horizon starts from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Anchor {
+    /// Its stamp.
+    pub at: Instant,
+    /// Front bumper.
+    pub position: Position,
+    /// Speed.
+    pub speed: Speed,
+    /// Acceleration.
+    pub acceleration: Acceleration,
+}
+
+/// A ring of up to `STEPS` steps.
+#[derive(Clone, Debug)]
+pub struct Horizon<const STEPS: usize> {
+    steps: [Step; STEPS],
+    /// Ring place of the first step.
+    head: usize,
+    len: usize,
+    /// Grid index of the first step.
+    first: i64,
+    /// Absolute position of the first step.
+    base: Position,
+    /// State at the last step, from which the next one is computed.
+    tip: State,
+    anchor: Anchor,
+}
+
+impl<const STEPS: usize> Horizon<STEPS> {
+    /// No steps.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self {
+            steps: [Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; STEPS],
+            head: 0,
+            len: 0,
+            first: 0,
+            base: Position::ZERO,
+            tip: State {
+                position: Position::ZERO.ring(),
+                speed: Speed::ZERO,
+                acceleration: Acceleration::ZERO,
+                demand: Acceleration::ZERO,
+            },
+            anchor: Anchor {
+                at: Instant::ZERO,
+                position: Position::ZERO,
+                speed: Speed::ZERO,
+                acceleration: Acceleration::ZERO,
+            },
+        }
+    }
+
+    /// Whether there is nothing to read.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// How many steps it holds.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// What it started from.
+    #[must_use]
+    pub const fn anchor(&self) -> &Anchor {
+        &self.anchor
+    }
+
+    /// The state at the last step.
+    #[must_use]
+    pub const fn tip(&self) -> State {
+        self.tip
+    }
+
+    /// Grid index of the first step; meaningless while it is empty.
+    #[must_use]
+    pub const fn first(&self) -> i64 {
+        self.first
+    }
+
+    /// Grid index of the last step; one before the first while it is empty.
+    #[must_use]
+    pub fn last(&self) -> i64 {
+        self.first.saturating_add(i64::try_from(self.len).unwrap_or(0)).saturating_sub(1)
+    }
+
+    /// Starts anew from an anchor, with the first step at this grid index; `position` is the state's own, unwrapped.
+    pub fn start(&mut self, anchor: Anchor, index: i64, position: Position, state: State) {
+        self.anchor = anchor;
+        self.head = 0;
+        self.len = 0;
+        self.first = index;
+        self.base = position;
+        self.push(state);
+    }
+
+    /// Adds the next step at the far end; a full ring drops its first step.
+    #[inline(always)]
+    pub fn push(&mut self, state: State) {
+        if self.len == STEPS {
+            self.drop_first();
+        }
+        let place = self.place(self.len);
+        if let Some(step) = self.steps.get_mut(place) {
+            *step = Step { position: state.position, speed: state.speed };
+            self.len = self.len.wrapping_add(1); // below STEPS
+        }
+        self.tip = state;
+    }
+
+    /// Drops the first step, unless it is the only one.
+    pub fn drop_first(&mut self) {
+        let (Some(old), Some(new)) = (self.nth(0), self.nth(1)) else { return };
+        self.base = self.base.ahead(new.position.ahead_of(old.position));
+        self.head = self.place(1);
+        self.len = self.len.saturating_sub(1);
+        self.first = self.first.saturating_add(1);
+    }
+
+    /// The step with this grid index.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, index: i64) -> Option<Step> {
+        let offset = usize::try_from(index.wrapping_sub(self.first)).ok()?;
+        self.nth(offset)
+    }
+
+    /// The absolute position of a place near this horizon's first step.
+    #[must_use]
+    pub fn absolute(&self, position: RingPosition) -> Position {
+        self.base.ahead(position.ahead_of(self.base.ring()))
+    }
+
+    /// Where the vehicle is at an instant. Before the anchor: from there back at constant speed. Beyond the last step: the
+    /// last position and speed are held, which only happens in a horizon that is not endless.
+    #[must_use]
+    pub fn read(&self, at: Instant, grid: &Grid, interpolate: bool) -> Option<Reading> {
+        if !interpolate {
+            return self.held(grid.nearest(at));
+        }
+        let index = grid.at_or_before(at);
+        let time = grid.time_of(index);
+        match (self.at(index), self.at(index.saturating_add(1))) {
+            (Some(step), _) if time == at => Some(self.reading(step)),
+            (Some(before), Some(after)) => {
+                let from = self.reading(before);
+                let way = after.position.ahead_of(before.position);
+                Some(between(from, way, after.speed, at.since(time), grid.step))
+            }
+            (None, _) if index < self.first => self.before_first(at, grid),
+            _ => self.held(index),
+        }
+    }
+
+    /// Between the anchor and the first step, or before the anchor.
+    fn before_first(&self, at: Instant, grid: &Grid) -> Option<Reading> {
+        let first = self.nth(0)?;
+        let Anchor { at: start, position, speed, .. } = self.anchor;
+        let from = Reading { position, speed };
+        let since = at.since(start);
+        if since < Duration::ZERO {
+            // At most the age of a sample; a second's product fits the format, longer ones saturate at 4 s.
+            return Some(Reading { position: position.ahead(speed.over(since.seconds())), speed });
+        }
+        let whole = grid.time_of(self.first).since(start);
+        let way = self.base.ahead_of(position);
+        Some(between(from, way, first.speed, since, whole))
+    }
+
+    /// The step nearest to an index among those there are.
+    fn held(&self, index: i64) -> Option<Reading> {
+        let index = index.clamp(self.first, self.last().max(self.first));
+        self.at(index).map(|step| self.reading(step))
+    }
+
+    fn reading(&self, step: Step) -> Reading {
+        Reading { position: self.absolute(step.position), speed: step.speed }
+    }
+
+    #[inline(always)]
+    fn nth(&self, n: usize) -> Option<Step> {
+        if n < self.len { self.steps.get(self.place(n)).copied() } else { None }
+    }
+
+    /// Ring place of the n-th step, for n up to the capacity.
+    #[inline(always)]
+    fn place(&self, n: usize) -> usize {
+        let place = self.head.wrapping_add(n); // head < STEPS and n <= STEPS: no overflow
+        if place >= STEPS { place.wrapping_sub(STEPS) } else { place }
+    }
+}
+
+impl<const STEPS: usize> Default for Horizon<STEPS> {
+    fn default() -> Self {
+        Self::empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: Grid = Grid { origin: Instant::from_micros(5_000), step: Duration::from_millis(10) };
+
+    fn state(mm: i64) -> State {
+        State { position: Position::from_mm(mm).ring(), speed: Speed::from_mm_per_s(10_000), ..State::default() }
+    }
+
+    fn at_ten_metres_per_second<const N: usize>(first: i64, count: i64) -> Horizon<N> {
+        let mut horizon = Horizon::empty();
+        let time = GRID.time_of(first);
+        let place = |index: i64| 100_000 + (index - first) * 100;
+        let speed = Speed::from_mm_per_s(10_000);
+        let anchor = Anchor {
+            at: time.minus(Duration::from_millis(5)),
+            position: Position::from_mm(99_950),
+            speed,
+            ..Anchor::default()
+        };
+        horizon.start(anchor, first, Position::from_mm(100_000), state(100_000));
+        for index in first + 1..first + count {
+            horizon.push(state(place(index)));
+        }
+        horizon
+    }
+
+    #[test]
+    fn a_reading_between_steps_lies_on_the_line_of_a_constant_speed() {
+        let horizon = at_ten_metres_per_second::<8>(3, 8);
+        for micros in (-30_000..=70_000i64).step_by(700) {
+            let at = GRID.time_of(3).plus(Duration::from_micros(micros));
+            let reading = horizon.read(at, &GRID, true).unwrap();
+            let exact = 100.0 + micros as f64 * 1e-5;
+            assert!((reading.position.get().to_num::<f64>() - exact).abs() < 5e-6, "{micros} {reading:?}");
+            assert_eq!(reading.speed.to_mm_per_s(), 10_000);
+        }
+    }
+
+    #[test]
+    fn beyond_its_end_the_last_value_is_held() {
+        let horizon = at_ten_metres_per_second::<8>(0, 4);
+        let reading = horizon.read(GRID.time_of(1000), &GRID, true).unwrap();
+        assert_eq!(reading.position.to_mm(), 100_300);
+    }
+
+    #[test]
+    fn a_full_ring_drops_its_first_step_and_keeps_absolute_positions() {
+        let mut horizon = at_ten_metres_per_second::<8>(0, 8);
+        for n in 8..100_000 {
+            horizon.push(state(100_000 + n * 100));
+            assert_eq!((horizon.first(), horizon.last(), horizon.len()), (n - 7, n, 8));
+        }
+        let reading = horizon.read(GRID.time_of(99_999), &GRID, true).unwrap();
+        assert_eq!(reading.position.to_mm(), 100_000 + 9_999_900);
+    }
+
+    #[test]
+    fn without_interpolation_the_nearest_step_is_read() {
+        let horizon = at_ten_metres_per_second::<8>(0, 8);
+        let read = |micros| horizon.read(GRID.time_of(2).plus(Duration::from_micros(micros)), &GRID, false).unwrap();
+        assert_eq!(read(4_999).position.to_mm(), 100_200);
+        assert_eq!(read(5_000).position.to_mm(), 100_300);
+    }
+
+    #[test]
+    fn an_empty_horizon_has_nothing_to_read() {
+        assert_eq!(Horizon::<8>::empty().read(GRID.time_of(0), &GRID, true), None);
+        assert_eq!(Horizon::<8>::empty().read(GRID.time_of(0), &GRID, false), None);
+    }
+}

@@ -1,0 +1,69 @@
+//! Reading between two steps: the states at both ends of an interval and a time inside it enter, the position and speed
+//! on the cubic that meets both positions and both speeds leave.
+
+use super::horizon::Reading;
+use crate::fixed::{mul_hi, ratio, saturate_i32, shl_saturating};
+use crate::time::Duration;
+use crate::units::{Distance, Speed};
+
+/// The cubic Hermite reading `after` into an interval of length `whole`, from `from` over a way of `way` to `end_speed`.
+///
+/// With `s = after/whole`, `w` the way, `a` and `b` the ways at the two ends' speeds:
+/// `r = s [ a + s ( 3w - 2a - b + s (a + b - 2w) ) ]`, `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`, taken as
+/// the two ends' speeds mixed plus the bend. Times outside the interval are taken at its ends; the speed is not negative.
+#[must_use]
+pub fn between(from: Reading, way: Distance, end_speed: Speed, after: Duration, whole: Duration) -> Reading {
+    if after <= Duration::ZERO {
+        return from;
+    }
+    if after >= whole {
+        return Reading { position: from.position.ahead(way), speed: end_speed };
+    }
+    // s in 31 bits, below 1.
+    let s = saturate_i32(ratio(after.as_micros(), whole.as_micros(), 31));
+    let seconds = whole.seconds();
+    let (w, a, b) = (way, from.speed.over(seconds), end_speed.over(seconds));
+    let cubic = a.plus(b).minus(w).minus(w);
+    let square = w.minus(a).minus(cubic);
+    let share = |d: Distance| Distance::from_bits(shl_saturating::<1>(mul_hi(d.to_bits(), s)));
+    let position = share(a.plus(share(square.plus(share(cubic)))));
+    // dr/dt = [ a + s (2 square + 3 s cubic) ] / whole
+    let bend = share(square.plus(square).plus(share(cubic.plus(cubic).plus(cubic))));
+    // 20 to 23 fraction bits is a factor of 8; per second instead of per microsecond one of 1e6.
+    let bend = i64::from(bend.to_bits()).saturating_mul(8_000_000);
+    let bend_speed = Speed::from_bits(saturate_i32(ratio(bend, whole.as_micros(), 0)));
+    Reading { position: from.position.ahead(position), speed: from.speed.plus(bend_speed).max(Speed::ZERO) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Position;
+
+    #[test]
+    fn a_cubic_motion_is_read_exactly() {
+        // r = 3 t - 0.5 t² + 0.2 t³ over 1 s and over 10 ms.
+        for whole in [10_000i64, 100_000, 1_000_000] {
+            let h = whole as f64 * 1e-6;
+            let r = |t: f64| 13.0 * t - 0.5 * t * t + 0.2 * t * t * t;
+            let v = |t: f64| 13.0 - t + 0.6 * t * t;
+            let metres = |x: f64| Distance::from_ratio((x * 1e9).round() as i64 / 1000, 1_000_000);
+            let speed = |x: f64| Speed::from_ratio((x * 1e6).round() as i64, 1_000_000);
+            let from = Reading { position: Position::ZERO, speed: speed(v(0.0)) };
+            for share in 0..=20 {
+                let after = whole * share / 20;
+                let reading = between(
+                    from,
+                    metres(r(h)),
+                    speed(v(h)),
+                    Duration::from_micros(after),
+                    Duration::from_micros(whole),
+                );
+                let t = after as f64 * 1e-6;
+                assert!((reading.position.get().to_num::<f64>() - r(t)).abs() < 1e-5, "{whole} {share}");
+                let tolerance = 2e-6 + 8e-6 / h; // the ways at both ends are rounded to a micrometre each
+                assert!((reading.speed.get().to_num::<f64>() - v(t)).abs() < tolerance, "{whole} {share}");
+            }
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Algorithm 2, the leader: its speed enters, the acceleration that it wishes for on a free road leaves (the Intelligent
+//! Driver Model's free-road term, eq. 8).
+//!
+//! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle see to it that it decelerates no harder
+//! than comfortable. A target speed below 0.1 m/s is a wish to stop.
+
+use crate::fixed::{mul_hi, ratio, saturate_i32, shl_saturating};
+use crate::parameters::{BRAKING_MAX, FREE_ROAD_RATIO_MILLI, STOP_SPEED};
+use crate::units::{Acceleration, Speed};
+
+/// The free-road law of one vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Leader {
+    largest: Acceleration,
+    /// 1/v_∞ in 26 fraction bits (at most 10 s/m): its product with a speed in 23 bits has 17; 0 means stop.
+    inverse: i32,
+}
+
+/// The largest `v/v_∞` in 17 fraction bits.
+const RATIO_MAX: i32 = saturate_i32(ratio(FREE_ROAD_RATIO_MILLI, 1000, 17));
+
+impl Leader {
+    /// With this `a_max` and `v_∞`.
+    #[must_use]
+    pub fn new(largest: Acceleration, target_speed: Speed) -> Self {
+        let inverse = if target_speed < STOP_SPEED {
+            0
+        } else {
+            // 1/(bits/2²³) in 26 bits is 2⁴⁹/bits.
+            saturate_i32(ratio(1 << 23, i64::from(target_speed.to_bits()), 26))
+        };
+        Self { largest, inverse }
+    }
+
+    /// Eq. 8 before the limits.
+    #[inline(always)]
+    #[must_use]
+    pub fn wish(&self, speed: Speed) -> Acceleration {
+        if self.inverse == 0 {
+            return BRAKING_MAX.negated();
+        }
+        // Ratio to 28 bits: 17 << 11 would overflow beyond 8, and the cut is at 2.8.
+        let ratio = shl_saturating::<11>(mul_hi(speed.to_bits(), self.inverse).min(RATIO_MAX));
+        let square = shl_saturating::<4>(mul_hi(ratio, ratio)); // 28 + 28 - 32 = 24, to 28: at most 7.84
+        let fourth = mul_hi(square, square); // 24 bits: at most 61.5
+        // a (25 bits) · ratio⁴ (24 bits) is 17 bits, to 25.
+        let resistance = Acceleration::from_bits(shl_saturating::<8>(mul_hi(self.largest.to_bits(), fourth)));
+        self.largest.minus(resistance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_wish_is_within_20_um_per_s2_of_the_free_road_term() {
+        for target in [100, 500, 3_000, 11_000, 13_400, 40_000, 65_534] {
+            let leader = Leader::new(Acceleration::from_mm_per_s2(730), Speed::from_mm_per_s(target));
+            for speed in (0..=i64::from(target) * 27 / 10).step_by(usize::try_from(target / 50).unwrap()) {
+                let speed = Speed::from_ratio(speed, 1000);
+                let share = speed.get().to_num::<f64>() / (f64::from(target) / 1000.0);
+                let exact = 0.73 * (1.0 - share.powi(4));
+                let got = leader.wish(speed).get().to_num::<f64>();
+                // Relative to the fourth power, the resolution of the ratio (17 bits) counts four times.
+                let tolerance = 2e-5 + 0.73 * 4.0 * share.powi(3) * 2f64.powi(-17);
+                assert!((got - exact).abs() < tolerance, "{target} {speed:?} {got} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn far_above_the_target_the_wish_is_harder_than_any_comfortable_limit() {
+        let leader = Leader::new(Acceleration::from_mm_per_s2(100), Speed::from_mm_per_s(1000));
+        for speed in [2_800, 10_000, 60_000, 255_000] {
+            assert!(leader.wish(Speed::from_mm_per_s(speed)) <= BRAKING_MAX.negated(), "{speed}");
+        }
+    }
+
+    #[test]
+    fn no_target_speed_is_a_wish_to_stop() {
+        let leader = Leader::new(Acceleration::from_mm_per_s2(730), Speed::from_mm_per_s(99));
+        assert_eq!(leader.wish(Speed::from_mm_per_s(50)), BRAKING_MAX.negated());
+    }
+}

@@ -1,0 +1,220 @@
+//! Algorithm 1: the peers' tracks and the ego's own state enter, a horizon for every peer and for the ego leaves.
+//!
+//! Theory of operation, once a tick:
+//!
+//! * *News* of a peer (a newer sample, its own horizon, another intent) re-anchors its horizon: from (a) the horizon that
+//!   it computed itself and sent, resampled onto the unit's grid, and from its end on, or else from its state at the
+//!   stamp, by (b) the unit's own model of it: Algorithm 2 for a leader, Algorithm 4 for a follower whose predecessor is
+//!   known, the fading acceleration for anyone else.
+//! * *No news:* the step that has passed is dropped and one more is computed at the far end by the same model, so that a
+//!   horizon never runs out.
+//!
+//! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
+
+mod actuator;
+mod chain;
+mod delay;
+mod driver;
+mod exponential;
+pub mod follower;
+mod forecast;
+mod horizon;
+mod interpolation;
+mod leader;
+mod position;
+
+pub use actuator::{Actuator, State};
+pub use driver::{Aim, Driver, Stride};
+pub use exponential::keep;
+pub use follower::Follower;
+pub use horizon::{Anchor, Grid, Horizon, Reading, Step};
+pub use leader::Leader;
+pub use position::Path;
+
+use chain::Chain;
+use forecast::{Ahead, Forecast};
+
+use crate::config::{Model, Prediction};
+use crate::peers::{Peers, Sample, Track};
+use crate::time::{Duration, Instant};
+use crate::units::Distance;
+use crate::wire::{Predecessor, StationHash};
+
+/// All horizons of one unit.
+#[derive(Clone, Debug)]
+pub struct Estimator<const PEERS: usize, const STEPS: usize> {
+    grid: Grid,
+    model: Model,
+    /// Steps that a horizon is kept at.
+    length: usize,
+    horizons: [Horizon<STEPS>; PEERS],
+    /// The step of each peer, until its intent or its predecessor changes.
+    strides: [Option<Stride>; PEERS],
+    news: [bool; PEERS],
+    own: Horizon<STEPS>,
+    station: StationHash,
+    own_length: Distance,
+    chain: Chain<PEERS>,
+}
+
+impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
+    /// Nothing known. `length` is the number of steps that a horizon is kept at.
+    #[must_use]
+    pub fn new(prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) -> Self {
+        Self {
+            grid: Grid { origin: Instant::ZERO, step: prediction.step },
+            model: prediction.model,
+            length: length.min(STEPS),
+            horizons: core::array::from_fn(|_| Horizon::empty()),
+            strides: [None; PEERS],
+            news: [false; PEERS],
+            own: Horizon::empty(),
+            station,
+            own_length,
+            chain: Chain::new(),
+        }
+    }
+
+    /// Puts step 0 of the grid at an instant: the first tick, so that ticks lie on steps.
+    pub fn start(&mut self, origin: Instant) {
+        self.grid.origin = origin;
+    }
+
+    /// Takes note that there is news of a peer.
+    pub fn note_news(&mut self, index: usize) {
+        if let Some(news) = self.news.get_mut(index) {
+            *news = true;
+        }
+    }
+
+    /// Takes note that a peer drives by another law, or behind somebody else.
+    pub fn note_change<const SAMPLES: usize>(&mut self, peers: &Peers<PEERS, SAMPLES>) {
+        self.strides = [None; PEERS];
+        self.chain = Chain::of(core::array::from_fn(|index| match self.ahead(peers, index) {
+            Some(Ahead::Peer(ahead)) => Some(ahead),
+            _ => None,
+        }));
+    }
+
+    /// Forgets a peer.
+    pub fn forget(&mut self, index: usize) {
+        if let Some(horizon) = self.horizons.get_mut(index) {
+            horizon.clear();
+        }
+        self.strides = [None; PEERS];
+    }
+
+    /// Brings every peer's horizon up to now.
+    pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) {
+        let present = self.grid.at_or_before(now);
+        for place in 0..PEERS {
+            let Some(index) = self.chain.at(place) else { continue };
+            let Some(track) = peers.get(index) else { continue };
+            let (Some(sample), Some(news)) = (track.newest(), self.news.get_mut(index)) else { continue };
+            let is_news = core::mem::take(news);
+            self.update_one(present, peers, index, track, is_news.then_some(sample));
+        }
+    }
+
+    fn update_one<const SAMPLES: usize>(
+        &mut self,
+        present: i64,
+        peers: &Peers<PEERS, SAMPLES>,
+        index: usize,
+        track: &Track<SAMPLES>,
+        news: Option<&Sample>,
+    ) {
+        let ahead = self.ahead(peers, index);
+        let length_ahead = match ahead {
+            Some(Ahead::Peer(other)) => peers.get(other).and_then(|other| other.intent()).map(|intent| intent.length),
+            Some(Ahead::Own) => Some(self.own_length),
+            None => None,
+        };
+        let model = self.model;
+        let driver = match track.intent() {
+            Some(intent) if ahead.is_some() || intent.predecessor == Predecessor::None => {
+                Driver::of_intent(intent, &model)
+            }
+            _ => Driver::UNKNOWN,
+        };
+        let Some(cached) = self.strides.get_mut(index) else { return };
+        let stride = *cached.get_or_insert_with(|| driver.over(self.grid.step, length_ahead, &model));
+        // The horizon is taken out of the array's borrow together with the one that it is computed from.
+        let (horizon, ahead) = match ahead {
+            Some(Ahead::Peer(other)) => match self.horizons.get_disjoint_mut([index, other]) {
+                Ok([horizon, other]) => (Some(horizon), Some(&*other)),
+                Err(_) => (self.horizons.get_mut(index), None),
+            },
+            Some(Ahead::Own) => (self.horizons.get_mut(index), Some(&self.own)),
+            None => (self.horizons.get_mut(index), None),
+        };
+        let Some(horizon) = horizon else { return };
+        let ahead = ahead.filter(|ahead| !ahead.is_empty());
+        let delay = if model.stamped { None } else { Some(track.link().delay()) };
+        let forecast =
+            Forecast { grid: self.grid, length: self.length, model, driver, stride, length_ahead, ahead, delay };
+        match news {
+            Some(sample) => {
+                let knots = track.knots().filter(|_| model.received).zip(track.intent());
+                forecast.anchor(horizon, present, sample, knots);
+            }
+            None => forecast.extend(horizon, present),
+        }
+    }
+
+    /// Computes the ego's own horizon from its own state behind the peer that it follows, if any.
+    pub fn foresee_own<const SAMPLES: usize>(
+        &mut self,
+        now: Instant,
+        sample: &Sample,
+        driver: Driver,
+        target: Option<usize>,
+        peers: &Peers<PEERS, SAMPLES>,
+    ) {
+        let length_ahead = target.and_then(|index| peers.get(index)?.intent().map(|intent| intent.length));
+        let ahead = target.and_then(|index| self.horizons.get(index)).filter(|horizon| !horizon.is_empty());
+        let stride = driver.over(self.grid.step, length_ahead, &self.model);
+        let model = self.model;
+        let forecast =
+            Forecast { grid: self.grid, length: self.length, model, driver, stride, length_ahead, ahead, delay: None };
+        forecast.anchor(&mut self.own, self.grid.at_or_before(now), sample, None);
+    }
+
+    /// Where a peer is at an instant.
+    #[must_use]
+    pub fn read(&self, index: usize, at: Instant) -> Option<Reading> {
+        self.horizons.get(index)?.read(at, &self.grid, self.model.interpolate)
+    }
+
+    /// Where the ego will be at an instant, by its newest own horizon.
+    #[must_use]
+    pub fn read_own(&self, at: Instant) -> Option<Reading> {
+        self.own.read(at, &self.grid, true)
+    }
+
+    /// The horizon of a peer.
+    #[must_use]
+    pub fn horizon(&self, index: usize) -> Option<&Horizon<STEPS>> {
+        self.horizons.get(index)
+    }
+
+    /// The grid.
+    #[must_use]
+    pub const fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// How far ahead a horizon reaches at any time, for the unit's own one: two steps are for interpolation.
+    #[must_use]
+    pub fn reach(&self) -> Duration {
+        self.grid.step.times(i64::try_from(self.length.saturating_sub(2)).unwrap_or(0))
+    }
+
+    fn ahead<const SAMPLES: usize>(&self, peers: &Peers<PEERS, SAMPLES>, index: usize) -> Option<Ahead> {
+        match peers.get(index)?.intent()?.predecessor {
+            Predecessor::Station(station) if station == self.station => Some(Ahead::Own),
+            Predecessor::Station(station) => peers.index_of(station).filter(|other| *other != index).map(Ahead::Peer),
+            Predecessor::None | Predecessor::Unknown => None,
+        }
+    }
+}

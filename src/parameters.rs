@@ -1,0 +1,57 @@
+//! The design numbers of the core, each with its source or derivation, and the relations between them, proved at
+//! compile time. Nothing enters; constants leave.
+
+use crate::time::{Duration, Stamp};
+use crate::units::{Acceleration, Distance, Gain, Seconds, Speed};
+
+/// Largest acceleration of Algorithm 2 (eq. 8), `a_max` = 0.73 m/s².
+pub const FREE_ROAD_ACCELERATION: Acceleration = Acceleration::from_mm_per_s2(730);
+
+/// Below this target speed Algorithm 2 divides by nearly nothing: the leader brakes to a stop instead.
+pub const STOP_SPEED: Speed = Speed::from_mm_per_s(100);
+
+/// `(v/v_∞)` of Algorithm 2 is cut here. With `a_max` at its smallest allowed value of 0.1 m/s² the demand is then
+/// 0.1 · (1 - 2.8⁴) = -6 m/s², so that the comfortable limit, which is less, always cuts first.
+pub const FREE_ROAD_RATIO_MILLI: i64 = 2800;
+
+/// Smallest `a_max` that a configuration may ask for (see [`FREE_ROAD_RATIO_MILLI`]).
+pub const FREE_ROAD_ACCELERATION_MIN: Acceleration = Acceleration::from_mm_per_s2(100);
+
+/// Hardest braking in normal driving that a configuration or a message may name (see [`FREE_ROAD_RATIO_MILLI`]).
+pub const BRAKING_MAX: Acceleration = Acceleration::from_mm_per_s2(6000);
+
+/// Time constant with which the last acceleration of a vehicle without intent fades out: the best of
+/// {0.5, 1, 1.5, 2, 3} s on recorded car drives.
+pub const FADE: Duration = Duration::from_millis(2000);
+
+/// Length taken for a vehicle that does not say its own (a car).
+pub const DEFAULT_LENGTH: Distance = Distance::from_mm(4800);
+
+/// Farther away than this a peer has nothing to do with the unit: V2X does not reach it, and a horizon's positions,
+/// which are modulo 4096 m, stay unambiguous.
+pub const REACH: Distance = Distance::from_mm(1_500_000);
+
+/// Oldest stamp that any configuration may use.
+pub const STALE_MAX: Duration = Duration::from_millis(10_000);
+
+/// Default gains: overdamped (poles of `s² + k(t_g+γ)s + k` at -1 and -0.5 for `t_g` = 1 s) and string stable at
+/// `t_g` = 1 s, since `k (1 + 2γ/t_g) t_g² = 2.5 >= 2`.
+pub const GAIN: Gain = Gain::from_milli(500);
+/// Default damping, see [`GAIN`].
+pub const DAMPING: Seconds = Seconds::from_millis(2000);
+
+const _: () = {
+    // A stamp that is used must unwrap to its time, with 1 s to spare for the clocks.
+    assert!(STALE_MAX.as_micros() + Stamp::FUTURE.as_micros() + 1_000_000 < Stamp::PERIOD.as_micros());
+    // Two vehicles within reach stay within the ring's 2048 m for the longest horizon (4 s at 100 m/s).
+    assert!(REACH.to_mm() + 4 * 100_000 < 2_048_000);
+    // a_max (1 - ratio⁴) at the smallest a_max brakes harder than any comfortable limit.
+    let fourth = FREE_ROAD_RATIO_MILLI * FREE_ROAD_RATIO_MILLI / 1000 * FREE_ROAD_RATIO_MILLI / 1000
+        * FREE_ROAD_RATIO_MILLI
+        / 1000;
+    assert!(
+        FREE_ROAD_ACCELERATION_MIN.to_mm_per_s2() as i64 * (fourth - 1000) / 1000 >= BRAKING_MAX.to_mm_per_s2() as i64
+    );
+    // String stability without lag: t_g >= sqrt(γ² + 2/k) - γ at t_g = 1 s, which is k (1 + 2γ) >= 2.
+    assert!(GAIN.to_milli() * (1000 + 2 * DAMPING.to_millis()) >= 2_000_000);
+};

@@ -1,0 +1,131 @@
+//! The link to one peer as a fact about this moment: receptions enter; on or off, the measured period, delay and loss
+//! leave.
+
+use crate::config::Link as Limits;
+use crate::time::{Duration, Instant};
+
+/// What is known of the link to one peer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Link {
+    heard: Option<Instant>,
+    newest: Option<Instant>,
+    period: Duration,
+    delay: Duration,
+    loss: u16,
+}
+
+/// Weight of a new measurement in the running means: 1/8.
+const WEIGHT: i64 = 8;
+/// The full scale of [`Link::loss`].
+pub const LOSS_ONE: u16 = 10_000;
+
+impl Link {
+    /// Nothing heard yet, messages expected with this period.
+    #[must_use]
+    pub const fn new(period: Duration) -> Self {
+        Self { heard: None, newest: None, period, delay: Duration::ZERO, loss: 0 }
+    }
+
+    /// Takes note of a valid message received at `received` about the instant `at`.
+    pub fn heard(&mut self, received: Instant, at: Instant) {
+        let delay = received.since(at).max(Duration::ZERO);
+        self.delay = if self.heard.is_none() { delay } else { mean(self.delay, delay) };
+        self.heard = Some(self.heard.map_or(received, |before| before.max(received)));
+        let Some(newest) = self.newest else {
+            self.newest = Some(at);
+            return;
+        };
+        let step = at.since(newest);
+        if step <= Duration::ZERO {
+            return;
+        }
+        self.newest = Some(at);
+        // A gap of n periods is n - 1 lost messages and one received; a longer one says nothing of the period.
+        let periods = step.plus(Duration::from_micros(self.period.as_micros() / 2)).as_micros();
+        let periods = periods.checked_div(self.period.as_micros()).unwrap_or(1).clamp(1, 1000);
+        if periods == 1 {
+            self.period = mean(self.period, step).clamp(Duration::from_millis(10), Duration::from_millis(1000));
+        }
+        let lost = periods.saturating_sub(1).saturating_mul(i64::from(LOSS_ONE)).checked_div(periods).unwrap_or(0);
+        let loss = mean(Duration::from_micros(i64::from(self.loss)), Duration::from_micros(lost));
+        self.loss = u16::try_from(loss.as_micros()).unwrap_or(LOSS_ONE);
+    }
+
+    /// Whether a valid message came within the expected period and the tolerance.
+    #[must_use]
+    pub fn is_on(&self, now: Instant, limits: &Limits) -> bool {
+        self.silence(now).is_some_and(|silence| silence <= self.period.plus(limits.tolerance))
+    }
+
+    /// How long nothing valid has come; `None` if nothing ever did.
+    #[must_use]
+    pub fn silence(&self, now: Instant) -> Option<Duration> {
+        self.heard.map(|heard| now.since(heard))
+    }
+
+    /// Mean period of the messages as stamped.
+    #[must_use]
+    pub const fn period(&self) -> Duration {
+        self.period
+    }
+
+    /// Mean delay from stamp to reception.
+    #[must_use]
+    pub const fn delay(&self) -> Duration {
+        self.delay
+    }
+
+    /// Mean share of messages lost, in ten-thousandths.
+    #[must_use]
+    pub const fn loss(&self) -> u16 {
+        self.loss
+    }
+}
+
+/// The running mean with the weight of 1/8 for the new value.
+fn mean(old: Duration, new: Duration) -> Duration {
+    old.plus(Duration::from_micros(new.minus(old).as_micros() / WEIGHT))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use crate::wire::StationHash;
+
+    fn at(millis: u64) -> Instant {
+        Instant::from_micros(millis * 1000)
+    }
+
+    #[test]
+    fn a_link_is_off_after_a_period_and_the_tolerance() {
+        let limits = Config::car(StationHash(1)).link;
+        let mut link = Link::new(Duration::from_millis(100));
+        assert!(!link.is_on(at(0), &limits));
+        link.heard(at(1000), at(960));
+        assert!(link.is_on(at(1250), &limits));
+        assert!(!link.is_on(at(1251), &limits));
+    }
+
+    #[test]
+    fn delay_and_loss_are_measured() {
+        let mut link = Link::new(Duration::from_millis(100));
+        for n in (0..200u64).filter(|n| n % 4 != 3) {
+            link.heard(at(n * 100 + 40), at(n * 100));
+        }
+        assert_eq!(link.delay(), Duration::from_millis(40));
+        assert_eq!(link.period(), Duration::from_millis(100));
+        // A quarter is lost; each gap of two periods weighs as one of three messages.
+        assert!((1_000..=2_600).contains(&link.loss()), "{}", link.loss());
+    }
+
+    #[test]
+    fn a_late_message_neither_shortens_the_silence_nor_changes_the_period() {
+        let mut link = Link::new(Duration::from_millis(100));
+        link.heard(at(1000), at(990));
+        link.heard(at(1010), at(500));
+        assert_eq!(link.silence(at(1110)), Some(Duration::from_millis(100)));
+        assert_eq!(link.period(), Duration::from_millis(100));
+    }
+}

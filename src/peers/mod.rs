@@ -1,0 +1,55 @@
+//! The peers: messages from the slots enter, one track per slot leaves.
+//!
+//! A slot's samples are kept in the order of their stamps. What comes too late for that, twice, from the future, from
+//! another station or from too far away is refused by the rules of [`Track::admit`].
+
+mod link;
+mod sample;
+mod track;
+
+pub use link::{LOSS_ONE, Link};
+pub use sample::Sample;
+pub use track::{Admission, Track};
+
+use crate::health::Refusal;
+use crate::time::Duration;
+use crate::wire::{Slot, StationHash};
+
+/// All slots.
+#[derive(Clone, Debug)]
+pub struct Peers<const PEERS: usize, const SAMPLES: usize> {
+    tracks: [Track<SAMPLES>; PEERS],
+}
+
+impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
+    /// All slots free; messages expected with this period until a peer's own is measured.
+    #[must_use]
+    pub fn new(period: Duration) -> Self {
+        Self { tracks: core::array::from_fn(|_| Track::new(period)) }
+    }
+
+    /// The track of a slot.
+    ///
+    /// # Errors
+    /// [`Refusal::UnknownSlot`] beyond the capacity.
+    pub fn get_mut(&mut self, slot: Slot) -> Result<&mut Track<SAMPLES>, Refusal> {
+        self.tracks.get_mut(usize::from(slot.0)).ok_or(Refusal::UnknownSlot)
+    }
+
+    /// The track of a slot by its index.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<&Track<SAMPLES>> {
+        self.tracks.get(index)
+    }
+
+    /// All slots in their order.
+    pub fn iter(&self) -> impl Iterator<Item = &Track<SAMPLES>> {
+        self.tracks.iter()
+    }
+
+    /// The slot of a station.
+    #[must_use]
+    pub fn index_of(&self, station: StationHash) -> Option<usize> {
+        self.tracks.iter().position(|track| track.station() == Some(station))
+    }
+}

@@ -1,0 +1,58 @@
+//! A vehicle's state at an instant of the unit's own clock: a motion message with its stamp and position unwrapped.
+
+use crate::time::{Instant, Stamp};
+use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::StationHash;
+use crate::wire::motion::Motion;
+
+/// One sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Sample {
+    /// When it was true.
+    pub at: Instant,
+    /// When it was received.
+    pub received: Instant,
+    /// Its raw stamp, by which duplicates are recognised.
+    pub stamp: Stamp,
+    /// Front bumper.
+    pub position: Position,
+    /// Not negative.
+    pub speed: Speed,
+    /// Acceleration.
+    pub acceleration: Acceleration,
+    /// Acceleration demanded up to then.
+    pub demand: Acceleration,
+    /// 95 % accuracy of the position, if published.
+    pub position_accuracy: Option<Distance>,
+    /// 95 % accuracy of the speed, if published.
+    pub speed_accuracy: Option<Speed>,
+    /// Whose it is.
+    pub station: StationHash,
+    /// Ties it to the horizon that was computed from it.
+    pub tag: u8,
+}
+
+impl Sample {
+    /// Of a motion message whose stamp was at `at`, near a position known otherwise.
+    #[must_use]
+    pub fn of(motion: &Motion, at: Instant, received: Instant, near: Option<Position>) -> Self {
+        let position = match near {
+            Some(reference) => motion.position.nearest_to(reference),
+            None => motion.position.face_value(),
+        };
+        Self {
+            at,
+            received,
+            stamp: motion.stamp,
+            position,
+            speed: motion.speed,
+            acceleration: motion.acceleration,
+            demand: motion.demand,
+            position_accuracy: motion.position_accuracy,
+            speed_accuracy: motion.speed_accuracy,
+            station: motion.station,
+            tag: motion.tag,
+        }
+    }
+}

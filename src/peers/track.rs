@@ -1,0 +1,144 @@
+//! One peer's track: checked messages enter by rule, a short history of samples in the order of their stamps leaves.
+
+use heapless::Vec;
+
+use super::link::Link;
+use super::sample::Sample;
+use crate::config::Link as Limits;
+use crate::health::Refusal;
+use crate::time::{Duration, Instant};
+use crate::wire::StationHash;
+use crate::wire::horizon::Knots;
+use crate::wire::intent::Intent;
+
+/// What an admitted sample is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Admission {
+    /// The newest of its peer.
+    News,
+    /// Older than the newest; it only fills the history.
+    History,
+}
+
+/// All that is held of one slot: the station's samples, oldest first, and what it said of itself.
+#[derive(Clone, Debug)]
+pub struct Track<const SAMPLES: usize> {
+    samples: Vec<Sample, SAMPLES>,
+    intent: Option<Intent>,
+    knots: Option<(Instant, Knots)>,
+    link: Link,
+}
+
+impl<const SAMPLES: usize> Track<SAMPLES> {
+    /// A free slot.
+    #[must_use]
+    pub const fn new(period: Duration) -> Self {
+        Self { samples: Vec::new(), intent: None, knots: None, link: Link::new(period) }
+    }
+
+    /// Whose track it is.
+    #[must_use]
+    pub fn station(&self) -> Option<StationHash> {
+        self.newest().map(|sample| sample.station)
+    }
+
+    /// The newest sample by its stamp.
+    #[must_use]
+    pub fn newest(&self) -> Option<&Sample> {
+        self.samples.last()
+    }
+
+    /// All samples held, oldest first.
+    #[must_use]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// What it said of how it drives.
+    #[must_use]
+    pub const fn intent(&self) -> Option<&Intent> {
+        self.intent.as_ref()
+    }
+
+    /// The horizon that it computed from its newest sample, if that came.
+    #[must_use]
+    pub fn knots(&self) -> Option<&Knots> {
+        let (_, knots) = self.knots.as_ref()?;
+        let newest = self.newest()?;
+        (knots.tag == newest.tag).then_some(knots)
+    }
+
+    /// The link.
+    #[must_use]
+    pub const fn link(&self) -> &Link {
+        &self.link
+    }
+
+    /// Takes a sample in, or refuses it by the first rule that it breaks:
+    ///
+    /// 1. older than `limits.stale`: [`Refusal::Stale`];
+    /// 2. further in the future than `limits.future`: [`Refusal::Future`];
+    /// 3. of another station while this one was heard within `limits.slot_reuse`: [`Refusal::StationConflict`]; after
+    ///    that the slot starts anew;
+    /// 4. with a stamp that is held already: [`Refusal::Duplicate`];
+    /// 5. older than a full history: [`Refusal::OutOfOrder`].
+    ///
+    /// # Errors
+    /// As listed; nothing is changed then.
+    pub fn admit(&mut self, sample: Sample, limits: &Limits) -> Result<Admission, Refusal> {
+        let age = sample.received.since(sample.at);
+        if age > limits.stale {
+            return Err(Refusal::Stale);
+        }
+        if age < Duration::ZERO.minus(limits.future) {
+            return Err(Refusal::Future);
+        }
+        if self.station().is_some_and(|station| station != sample.station) {
+            if self.link.silence(sample.received).is_some_and(|silence| silence < limits.slot_reuse) {
+                return Err(Refusal::StationConflict);
+            }
+            *self = Self::new(limits.period);
+        }
+        if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, &sample)) {
+            return Err(Refusal::Duplicate);
+        }
+        let admission = self.insert(sample)?;
+        self.link.heard(sample.received, sample.at);
+        Ok(admission)
+    }
+
+    fn insert(&mut self, sample: Sample) -> Result<Admission, Refusal> {
+        let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
+        let is_news = older == self.samples.len();
+        if self.samples.is_full() {
+            if older == 0 {
+                return Err(Refusal::OutOfOrder);
+            }
+            self.samples.remove(0);
+            let _ = self.samples.insert(older.saturating_sub(1), sample); // there is room for one
+        } else {
+            let _ = self.samples.insert(older, sample);
+        }
+        Ok(if is_news { Admission::News } else { Admission::History })
+    }
+
+    /// Takes in what the station says of how it drives; whether that is new.
+    pub fn intend(&mut self, intent: Intent) -> bool {
+        let is_new = self.intent.as_ref() != Some(&intent);
+        self.intent = Some(intent);
+        is_new
+    }
+
+    /// Takes in the horizon that the station computed; whether it belongs to the newest sample.
+    pub fn foresee(&mut self, received: Instant, knots: Knots) -> bool {
+        self.knots = Some((received, knots));
+        self.knots().is_some()
+    }
+}
+
+/// Whether two samples with the same stamp are of the same turn of the stamp (which repeats every 13.1 s).
+fn is_same_turn(a: &Sample, b: &Sample) -> bool {
+    let apart = a.at.since(b.at);
+    apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)
+}

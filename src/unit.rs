@@ -1,0 +1,402 @@
+//! The onboard unit: frames and ticks enter by its two doors, a command and frames leave. The only file that names every
+//! stage.
+
+use embedded_can::Frame as CanFrame;
+use heapless::Vec;
+
+use crate::clock::Clock;
+use crate::config::{Config, ConfigError};
+use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
+use crate::envelope;
+use crate::estimator::{Aim, Driver, Estimator, Reading, State};
+use crate::health::{Health, Refusal};
+use crate::peers::{Admission, Peers, Sample};
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Distance, Speed};
+use crate::wire::command::Command;
+use crate::wire::ego_intent::EgoIntent;
+use crate::wire::{Frame, Message, Predecessor, Received, Receiver, Role, Said, Sender, Slot};
+
+mod outbox;
+
+/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), status.
+pub const MAX_FRAMES: usize = 16;
+
+/// What became of a frame that was not refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reception {
+    /// Not one of ours.
+    Foreign,
+    /// Part of a message whose other parts are still to come.
+    Pending,
+    /// A message was taken in.
+    Taken,
+}
+
+/// Where the target is now, as the unit believes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Estimate {
+    /// Position and speed at the tick.
+    pub reading: Reading,
+    /// Age of the newest sample that it rests on.
+    pub age: Duration,
+    /// Whether the link to the target is on.
+    pub link_on: bool,
+}
+
+/// The answer of one tick.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The command to the actuators.
+    pub command: Command,
+    /// The mode that it was computed in.
+    pub mode: Mode,
+    /// The estimate of the target, if there is one.
+    pub estimate: Option<Estimate>,
+    /// The frames to send, in this order.
+    pub frames: Vec<Frame, MAX_FRAMES>,
+}
+
+/// The onboard unit for up to `PEERS` peers with a history of `SAMPLES` samples each and horizons of up to `STEPS` steps.
+///
+/// It is `Clone`, holds no pointer, and may live in a `static`.
+#[derive(Clone, Debug)]
+pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
+    config: Config,
+    receiver: Receiver<PEERS>,
+    sender: Sender<0>,
+    clock: Clock,
+    ego: Option<Sample>,
+    wish: Option<EgoIntent>,
+    peers: Peers<PEERS, SAMPLES>,
+    estimator: Estimator<PEERS, STEPS>,
+    /// Whom the ego follows, with the gains looked up when that began.
+    association: Option<(crate::wire::StationHash, Gains)>,
+    controller: Controller,
+    mode: Mode,
+    health: Health,
+    outbox: outbox::Outbox,
+    last_tick: Option<Instant>,
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// A unit that has not heard anything yet.
+    ///
+    /// # Errors
+    /// The first value of the configuration that is out of its documented range.
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        config.check(STEPS)?;
+        Ok(Self {
+            config: *config,
+            receiver: Receiver::new(config.base_id, Role::Unit),
+            sender: Sender::new(config.base_id),
+            clock: Clock::new(),
+            ego: None,
+            wish: None,
+            peers: Peers::new(config.link.period),
+            estimator: Estimator::new(&config.prediction, config.steps(), config.station, config.length),
+            association: None,
+            controller: Controller::new(config.period),
+            mode: Mode::Standby,
+            health: Health::new(),
+            outbox: outbox::Outbox::new(),
+            last_tick: None,
+        })
+    }
+
+    /// Takes in one frame received at `at`. Bounded time; frames may come in any order and at any time.
+    ///
+    /// # Errors
+    /// The named cause for which the frame, or the message that it completes, is refused. It is counted, and nothing else
+    /// is changed by it but the end-to-end state of its identifier.
+    pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Refusal> {
+        let result = match self.receiver.receive(frame) {
+            Ok(Received::Foreign) => Ok(Reception::Foreign),
+            Ok(Received::Pending) => Ok(Reception::Pending),
+            Ok(Received::Whole(message)) => self.take(at, &message).map(|()| Reception::Taken),
+            Err(cause) => Err(cause),
+        };
+        if let Err(cause) = result {
+            self.health.count(cause);
+        }
+        result
+    }
+
+    fn take(&mut self, at: Instant, message: &Message) -> Result<(), Refusal> {
+        match message {
+            Message::Sync(sync) => self.clock.sync(at, *sync),
+            Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
+            Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
+            Message::EgoIntent(wish) => self.wish = Some(*wish),
+            Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
+            // Understood, and of use to later stages only.
+            Message::Ego(_) | Message::Range(_) => {}
+            Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}
+        }
+        Ok(())
+    }
+
+    fn take_ego(&mut self, at: Instant, motion: &crate::wire::motion::Motion) -> Result<(), Refusal> {
+        let instant = self.instant_of(motion, at).unwrap_or(at);
+        let age = at.since(instant);
+        if age > self.config.link.ego_timeout {
+            return Err(Refusal::Stale);
+        }
+        if age < Duration::ZERO.minus(self.config.link.future) {
+            return Err(Refusal::Future);
+        }
+        let near = self.ego.map(|ego| ego.position);
+        let sample = Sample::of(motion, instant, at, near);
+        if let Some(held) = &self.ego {
+            if held.stamp == sample.stamp && at.since(held.received) < Duration::from_millis(1000) {
+                return Err(Refusal::Duplicate);
+            }
+            if sample.at < held.at {
+                return Err(Refusal::OutOfOrder);
+            }
+        }
+        self.ego = Some(sample);
+        Ok(())
+    }
+
+    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Refusal> {
+        let index = usize::from(slot.0);
+        match said {
+            Said::Motion(motion) => {
+                let instant = self.instant_of(motion, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
+                let ego = self.ego.map(|ego| ego.position);
+                let track = self.peers.get_mut(slot)?;
+                let station = track.station();
+                let near = ego.or(track.newest().map(|sample| sample.position));
+                let sample = Sample::of(motion, instant, at, near);
+                if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
+                    return Err(Refusal::TooFar);
+                }
+                let admission = track.admit(sample, &self.config.link)?;
+                if station != Some(sample.station) {
+                    self.estimator.forget(index);
+                    self.estimator.note_change(&self.peers);
+                }
+                if admission == Admission::News {
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Intent(intent) => {
+                if self.peers.get_mut(slot)?.intend(*intent) {
+                    self.estimator.note_change(&self.peers);
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Horizon(knots) => {
+                if self.peers.get_mut(slot)?.foresee(at, *knots) {
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Geo(_) | Said::Route(_) => {}
+        }
+        Ok(())
+    }
+
+    /// The instant of a message's stamp, while GNSS time is known.
+    fn instant_of(&self, motion: &crate::wire::motion::Motion, at: Instant) -> Option<Instant> {
+        if !self.clock.is_synchronised(at, self.config.link.sync_timeout) {
+            return None;
+        }
+        self.clock.instant_of(motion.stamp, at)
+    }
+
+    /// The task of one period: always answers, and takes bounded time. A `now` before the last one is counted and taken as
+    /// the last one.
+    pub fn tick(&mut self, now: Instant) -> Answer {
+        let now = self.monotonic(now);
+        let target = self.target();
+        let before = target.and_then(|index| self.estimator.read(index, now));
+        let was_off = matches!(self.mode, Mode::Holdover { .. });
+        self.estimator.update(now, &self.peers);
+        let reading = target.and_then(|index| self.estimator.read(index, now));
+
+        let facts = self.facts(now, target, reading.is_some());
+        self.mode = self.mode.next(&facts, now);
+        if let (true, Mode::Cooperative, Some(before), Some(after)) = (was_off, self.mode, before, reading)
+            && self.config.prediction.model.smooth
+        {
+            self.controller.blend_from(before, after);
+        }
+        self.associate(reading);
+
+        let ego = self.ego_at(now);
+        let last = self.controller.last_demand();
+        let course = self.course(now, target);
+        let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
+        let speed = ego.map_or(Speed::ZERO, |ego| ego.speed);
+        let acceleration = match &self.config.envelope {
+            Some(limits) if self.mode != Mode::Standby => {
+                envelope::gate(limits, demand, last, speed, facts.ego.is_ok(), self.config.period)
+            }
+            _ => demand,
+        };
+        self.controller.correct(acceleration);
+        let command = self.outbox.command(&self.config, acceleration, speed, self.mode, acceleration != demand);
+        let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
+        let mut frames = Vec::new();
+        self.send(now, &command, estimate.as_ref(), last, target, &mut frames);
+        Answer { command, mode: self.mode, estimate, frames }
+    }
+
+    fn monotonic(&mut self, now: Instant) -> Instant {
+        let Some(last) = self.last_tick else {
+            self.estimator.start(now);
+            self.last_tick = Some(now);
+            return now;
+        };
+        if now < last {
+            self.health.count(Refusal::ClockBackwards);
+            return last;
+        }
+        self.last_tick = Some(now);
+        now
+    }
+
+    /// The slot of whom the ego is to follow.
+    fn target(&self) -> Option<usize> {
+        match self.wish?.predecessor {
+            Predecessor::Station(station) => self.peers.index_of(station),
+            Predecessor::None | Predecessor::Unknown => None,
+        }
+    }
+
+    fn facts(&self, now: Instant, target: Option<usize>, readable: bool) -> Facts {
+        let ego = match &self.ego {
+            None => Err(FaultCause::EgoMissing),
+            Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
+            Some(_) => Ok(()),
+        };
+        let track = target.and_then(|index| self.peers.get(index));
+        let target = match (self.wish.map(|wish| wish.predecessor), track) {
+            (Some(Predecessor::None), _) => TargetFact::NotNeeded,
+            (None | Some(Predecessor::Unknown), _) => TargetFact::Lost(FallbackCause::NotAssociated),
+            (Some(Predecessor::Station(_)), Some(track)) if readable => {
+                let silence = track.link().silence(now).unwrap_or(Duration::MAX);
+                if track.link().is_on(now, &self.config.link) {
+                    TargetFact::On
+                } else if silence <= self.config.link.holdover {
+                    TargetFact::Off
+                } else {
+                    TargetFact::Lost(FallbackCause::Silent)
+                }
+            }
+            (Some(Predecessor::Station(_)), _) => TargetFact::Lost(FallbackCause::NeverHeard),
+        };
+        Facts { engaged: self.wish.is_some_and(|wish| wish.engaged), ego, target }
+    }
+
+    /// Looks the gains up when the target changes.
+    fn associate(&mut self, reading: Option<Reading>) {
+        let Some(Predecessor::Station(station)) = self.wish.map(|wish| wish.predecessor) else {
+            self.association = None;
+            return;
+        };
+        if self.association.is_some_and(|(associated, _)| associated == station) {
+            return;
+        }
+        let (Some(target), Some(ego)) = (reading, self.ego) else { return };
+        let headway = target.position.ahead_of(ego.position);
+        self.association = Some((station, Gains::look_up(&self.config.law, ego.speed, target.speed, headway)));
+    }
+
+    /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
+    fn ego_at(&self, now: Instant) -> Option<State> {
+        let sample = self.ego?;
+        let state = State {
+            position: sample.position.ring(),
+            speed: sample.speed,
+            acceleration: sample.acceleration,
+            demand: self.controller.last_demand(),
+        };
+        let age = now.since(sample.at);
+        if age <= Duration::ZERO {
+            return Some(state);
+        }
+        let driver = Driver::of_config(&self.config, Aim::Fade);
+        Some(driver.coast(state, age.min(self.config.link.ego_timeout), &self.config.prediction.model))
+    }
+
+    /// How the ego itself drives: the law of its mode.
+    fn driver(&self) -> Driver {
+        let law = &self.config.law;
+        let wish = self.wish;
+        let aim = match self.association {
+            Some((_, gains)) => Aim::Follow {
+                gain: gains.gain,
+                damping: gains.damping,
+                time_gap: wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap),
+                standstill: if self.config.prediction.model.standstill { law.standstill } else { Distance::ZERO },
+            },
+            None => Aim::Lead {
+                largest: law.free_road_acceleration,
+                target_speed: wish.map_or(law.target_speed, |wish| wish.target_speed),
+            },
+        };
+        Driver::of_config(&self.config, aim)
+    }
+
+    fn course(&self, now: Instant, target: Option<usize>) -> Course {
+        match self.mode {
+            Mode::Standby => Course::Yield { demand: self.ego.map_or(Acceleration::ZERO, |ego| ego.demand) },
+            Mode::Cooperative | Mode::Holdover { .. } => {
+                let next = now.plus(self.config.period);
+                let reading = target.and_then(|index| {
+                    let length = self.peers.get(index)?.intent().map(|intent| intent.length);
+                    Some((self.estimator.read(index, next)?, length))
+                });
+                Course::Law { driver: self.driver(), target: reading }
+            }
+            Mode::Fallback { since, .. } => Course::Caution { since },
+            Mode::Fault { .. } => Course::Brake,
+        }
+    }
+
+    fn estimate(&self, now: Instant, index: usize, reading: Reading) -> Option<Estimate> {
+        let track = self.peers.get(index)?;
+        let age = now.since(track.newest()?.at);
+        Some(Estimate { reading, age, link_on: track.link().is_on(now, &self.config.link) })
+    }
+
+    /// What is refused, by cause.
+    #[must_use]
+    pub const fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// The mode of the last tick.
+    #[must_use]
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The peers as they are known.
+    #[must_use]
+    pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
+        &self.peers
+    }
+
+    /// The horizons as they are held.
+    #[must_use]
+    pub const fn estimator(&self) -> &Estimator<PEERS, STEPS> {
+        &self.estimator
+    }
+
+    /// The configuration as it was checked.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Whether GNSS time is known.
+    #[must_use]
+    pub fn is_synchronised(&self, now: Instant) -> bool {
+        self.clock.is_synchronised(now, self.config.link.sync_timeout)
+    }
+}

@@ -1,0 +1,235 @@
+//! What the unit sends: the state of this tick enters, frames by their schedule leave. Command and estimate every tick, the
+//! own motion and horizon at the link's period, the own intent every fifth time and when it changes, a page of health
+//! with every own motion.
+
+use heapless::Vec;
+
+use super::{Estimate, MAX_FRAMES, OnboardUnit};
+use crate::config::Config;
+use crate::controller::Mode;
+use crate::estimator::{Aim, Driver};
+use crate::health::Refusal;
+use crate::peers::Sample;
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Distance, Speed};
+use crate::wire::command::Command;
+use crate::wire::estimate::TargetEstimate;
+use crate::wire::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
+use crate::wire::intent::Intent;
+use crate::wire::motion::{Motion, WirePosition};
+use crate::wire::status::Status;
+use crate::wire::{Frame, Message, Predecessor, Said};
+
+/// How many own motions go by from one intent to the next.
+const INTENT_EVERY: u8 = 5;
+
+/// When what is due.
+#[derive(Clone, Debug)]
+pub(super) struct Outbox {
+    tick: u8,
+    tag: u8,
+    page: u8,
+    due: Option<Instant>,
+    until_intent: u8,
+    intent: Option<Intent>,
+}
+
+impl Outbox {
+    pub(super) const fn new() -> Self {
+        Self { tick: 0, tag: 0, page: 0, due: None, until_intent: 0, intent: None }
+    }
+
+    /// The command of this tick.
+    pub(super) fn command(
+        &mut self,
+        config: &Config,
+        acceleration: Acceleration,
+        speed: Speed,
+        mode: Mode,
+        limited: bool,
+    ) -> Command {
+        self.tick = self.tick.wrapping_add(1) % 64;
+        let effort = config.body.effort(acceleration, speed);
+        Command { acceleration, effort, mode: mode.code(), limited, tick: self.tick }
+    }
+
+    /// Whether the own messages are due; a schedule that was missed starts anew.
+    fn is_due(&mut self, now: Instant, period: Duration) -> bool {
+        let due = self.due.unwrap_or(now);
+        if now < due {
+            self.due = Some(due);
+            return false;
+        }
+        let next = due.plus(period);
+        self.due = Some(if next <= now { now.plus(period) } else { next });
+        true
+    }
+
+    /// Whether an intent is due: it is another one, or its turn has come.
+    fn is_intent_due(&mut self, intent: Intent) -> bool {
+        let is_due = self.intent != Some(intent) || self.until_intent == 0;
+        self.until_intent = if is_due { INTENT_EVERY } else { self.until_intent }.saturating_sub(1);
+        self.intent = Some(intent);
+        is_due
+    }
+
+    /// The next cause to report.
+    fn next_page(&mut self) -> Refusal {
+        let cause = Refusal::ALL.get(usize::from(self.page)).copied().unwrap_or(Refusal::Length);
+        let next = self.page.saturating_add(1);
+        self.page = if usize::from(next) < Refusal::ALL.len() { next } else { 0 };
+        cause
+    }
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// Everything that this tick sends.
+    pub(super) fn send(
+        &mut self,
+        now: Instant,
+        command: &Command,
+        estimate: Option<&Estimate>,
+        last_demand: Acceleration,
+        target: Option<usize>,
+        frames: &mut Vec<Frame, MAX_FRAMES>,
+    ) {
+        self.emit(&Message::Command(*command), frames);
+        if let Some(estimate) = estimate {
+            self.emit(&Message::Estimate(self.target_estimate(estimate)), frames);
+        }
+        if !self.outbox.is_due(now, self.config.link.period) {
+            return;
+        }
+        if let Some(ego) = self.ego.filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout) {
+            self.send_own(now, &ego, last_demand, target, frames);
+        }
+        let cause = self.outbox.next_page();
+        let status = Status {
+            cause,
+            count: self.health.of(cause),
+            mode: self.mode.code(),
+            detail: self.mode.detail(),
+            synchronised: self.is_synchronised(now),
+            links_on: self.links_on(now),
+        };
+        self.emit(&Message::Status(status), frames);
+    }
+
+    fn send_own(
+        &mut self,
+        now: Instant,
+        ego: &Sample,
+        last_demand: Acceleration,
+        target: Option<usize>,
+        frames: &mut Vec<Frame, MAX_FRAMES>,
+    ) {
+        self.outbox.tag = self.outbox.tag.wrapping_add(1) % 4;
+        let tag = self.outbox.tag;
+        // The demand in force up to the stamp: from it the receiver's model repeats the one of this tick.
+        let demand = if self.mode == Mode::Standby { ego.demand } else { last_demand };
+        let motion = Motion {
+            tag,
+            position: WirePosition::from_position(ego.position),
+            speed: ego.speed,
+            acceleration: ego.acceleration,
+            demand,
+            stamp: ego.stamp,
+            position_accuracy: ego.position_accuracy,
+            speed_accuracy: ego.speed_accuracy,
+            station: self.config.station,
+        };
+        self.emit(&Message::Own(Said::Motion(motion)), frames);
+        let is_by_law = matches!(self.mode, Mode::Cooperative | Mode::Holdover { .. });
+        if self.mode != Mode::Standby {
+            let intent = self.intent(is_by_law);
+            if self.outbox.is_intent_due(intent) {
+                self.emit(&Message::Own(Said::Intent(intent)), frames);
+            }
+        }
+        if is_by_law {
+            let sample = Sample { demand, ..*ego };
+            let driver = self.driver();
+            self.estimator.foresee_own(now, &sample, driver, target, &self.peers);
+            let knots = Knots { tag, knots: self.own_knots(ego) };
+            self.emit(&Message::Own(Said::Horizon(knots)), frames);
+        }
+    }
+
+    fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        let sent = self.sender.send(message, &mut |frame| {
+            let pushed = frames.push(frame);
+            debug_assert!(pushed.is_ok(), "MAX_FRAMES holds every tick's frames");
+        });
+        debug_assert!(sent.is_ok(), "the catalogue has a line for all that the unit says");
+    }
+
+    fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
+        TargetEstimate {
+            tag: self.outbox.tick % 4,
+            position: WirePosition::from_position(estimate.reading.position),
+            speed: estimate.reading.speed,
+            age: estimate.age,
+            ends: None,
+        }
+    }
+
+    /// How the ego says that it drives. When it does not drive by its law it says so by naming no predecessor.
+    fn intent(&self, is_by_law: bool) -> Intent {
+        let config = &self.config;
+        let Driver { aim, limits, .. } = self.driver();
+        let law = &config.law;
+        let (gain, damping, time_gap) = match aim {
+            Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
+            Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
+        };
+        let reach = self.estimator.reach().min(config.prediction.horizon);
+        Intent {
+            length: config.length,
+            standstill: law.standstill,
+            predecessor: match self.wish {
+                Some(wish) if is_by_law => wish.predecessor,
+                _ => Predecessor::Unknown,
+            },
+            target_speed: self.wish.map_or(law.target_speed, |wish| wish.target_speed),
+            time_gap,
+            gain,
+            damping,
+            lag: config.lag,
+            limits,
+            horizon_tenths: u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX),
+        }
+    }
+
+    /// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
+    fn own_knots(&self, ego: &Sample) -> [Knot; KNOTS] {
+        let reach = self.estimator.reach().min(self.config.prediction.horizon);
+        let whole = Duration::from_millis(reach.as_millis() / 100 * 100);
+        let half = self.estimator.grid().step.min(Duration::from_millis(50));
+        core::array::from_fn(|place| {
+            let after = SHARES_PER_MILLE.get(place).map_or(whole, |share| Duration::from_micros(whole.as_micros() / 1000 * i64::from(*share)));
+            let at = ego.at.plus(after);
+            let speed_at = |at| self.estimator.read_own(at).map_or(ego.speed, |reading| reading.speed);
+            let reading = self.estimator.read_own(at);
+            let (before, behind) = (speed_at(at.minus(half)), speed_at(at.plus(half)));
+            Knot {
+                displacement: reading.map_or(Distance::ZERO, |reading| reading.position.ahead_of(ego.position)),
+                speed: reading.map_or(ego.speed, |reading| reading.speed),
+                acceleration: slope(behind.minus(before), half.times(2)),
+                bow: Distance::ZERO,
+            }
+        })
+    }
+
+    fn links_on(&self, now: Instant) -> u8 {
+        let on = self.peers.iter().filter(|track| track.link().is_on(now, &self.config.link)).count();
+        u8::try_from(on).unwrap_or(u8::MAX)
+    }
+}
+
+/// A change of speed over a time, saturating.
+fn slope(change: Speed, time: Duration) -> Acceleration {
+    // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
+    let change = i64::from(change.to_bits()).saturating_mul(4_000_000);
+    let slope = change.checked_div(time.as_micros()).unwrap_or(0);
+    Acceleration::from_bits(crate::fixed::saturate_i32(slope))
+}
