@@ -9,7 +9,8 @@ use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
-use crate::wire::horizon::Knots;
+use crate::wire::curve::Curve;
+use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 
 /// Whose horizon a follower's is computed from.
@@ -112,8 +113,20 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
 
     /// Source (a): the sent horizon on the grid, from now to its end. One that ended before now is of no use.
     fn resample(&self, filling: &mut Filling<'_, STEPS>, knots: &Knots, intent: &Intent) -> Option<(i64, State)> {
-        let _ = (filling, knots, intent);
-        None
+        let anchor = filling.anchor;
+        let start = Knot::start(anchor.speed, anchor.acceleration);
+        let curve = Curve::new(start, knots, Duration::from_millis(100).times(i64::from(intent.horizon_tenths)));
+        let first = self.grid.at_or_after(anchor.at).max(filling.present);
+        let after = self.grid.time_of(first).since(anchor.at);
+        let origin = anchor.position.ring();
+        let acceleration = knots.knots.last()?.acceleration;
+        let mut last = None;
+        for (index, (way, speed)) in (first..).zip(curve.walk(after, self.grid.step)) {
+            let state = State { position: origin.ahead(way), speed, acceleration, demand: acceleration };
+            filling.put(index, state);
+            last = Some((index, state));
+        }
+        last
     }
 
     /// Steps from an index to the end of the horizon.

@@ -7,14 +7,14 @@ use heapless::Vec;
 use super::{Estimate, MAX_FRAMES, OnboardUnit};
 use crate::config::Config;
 use crate::controller::Mode;
-use crate::estimator::{Aim, Driver};
+use crate::estimator::{Aim, Driver, Reading};
 use crate::health::Refusal;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 use crate::wire::command::Command;
 use crate::wire::estimate::TargetEstimate;
-use crate::wire::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
+use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::status::Status;
@@ -150,7 +150,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let sample = Sample { demand, ..*ego };
             let driver = self.driver();
             self.estimator.foresee_own(now, &sample, driver, target, &self.peers);
-            let knots = Knots { tag, knots: self.own_knots(ego) };
+            let knots = self.own_knots(tag, ego);
             self.emit(&Message::Own(Said::Horizon(knots)), frames);
         }
     }
@@ -201,20 +201,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
-    fn own_knots(&self, ego: &Sample) -> [Knot; KNOTS] {
+    fn own_knots(&self, tag: u8, ego: &Sample) -> Knots {
+        let start = Knot::start(ego.speed, ego.acceleration);
         let reach = self.estimator.reach().min(self.config.prediction.horizon);
         let whole = Duration::from_millis(reach.as_millis() / 100 * 100);
         let half = self.estimator.grid().step.min(Duration::from_millis(50));
-        core::array::from_fn(|place| {
-            let after = SHARES_PER_MILLE.get(place).map_or(whole, |share| Duration::from_micros(whole.as_micros() / 1000 * i64::from(*share)));
+        let read = |at| self.estimator.read_own(at).unwrap_or(Reading { position: ego.position, speed: ego.speed });
+        Knots::through(tag, start.rounded(), whole, |after| {
             let at = ego.at.plus(after);
-            let speed_at = |at| self.estimator.read_own(at).map_or(ego.speed, |reading| reading.speed);
-            let reading = self.estimator.read_own(at);
-            let (before, behind) = (speed_at(at.minus(half)), speed_at(at.plus(half)));
+            let reading = read(at);
+            let change = read(at.plus(half)).speed.minus(read(at.minus(half)).speed);
             Knot {
-                displacement: reading.map_or(Distance::ZERO, |reading| reading.position.ahead_of(ego.position)),
-                speed: reading.map_or(ego.speed, |reading| reading.speed),
-                acceleration: slope(behind.minus(before), half.times(2)),
+                displacement: reading.position.ahead_of(ego.position),
+                speed: reading.speed,
+                acceleration: slope(change, half.times(2)),
                 bow: Distance::ZERO,
             }
         })
