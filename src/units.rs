@@ -170,6 +170,11 @@ impl Acceleration {
     }
 }
 
+impl Share {
+    /// All of it.
+    pub const ONE: Self = Self::from_bits(1 << ShareFormat::FRAC_NBITS);
+}
+
 impl Jerk {
     /// The change of acceleration at this jerk for that time, saturating.
     #[must_use]

@@ -51,11 +51,11 @@ pub struct RunSettings {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub step: Option<f64>,
 
-    /// Let the leader drive this recording: t_s,position_m,speed_mps[,acceleration_mps2]
+    /// Let the leader drive this recording: `t_s,position_m,speed_mps[,acceleration_mps2]`
     #[arg(long, value_name = "FILE.csv")]
     pub leader_motion: Option<PathBuf>,
 
-    /// Replace the random channel by this recording: t_s,delay_s (an empty delay is a lost message)
+    /// Replace the random channel by this recording: `t_s,delay_s` (an empty delay is a lost message)
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 

@@ -60,13 +60,11 @@ pub fn errors(trace: &Trace, estimates: impl Fn(usize) -> Option<f64>) -> Vec<(f
 }
 
 /// Where the follower's unit believes the measured vehicle is, at that tick.
-#[must_use]
 pub fn ours(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
     |tick| trace.vehicles[trace.measured.by][tick].target.map(|belief| belief.position_m)
 }
 
 /// Where the literal paper believes it is, at that tick.
-#[must_use]
 pub fn papers(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
     |tick| trace.paper[tick]
 }

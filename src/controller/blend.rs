@@ -59,7 +59,7 @@ impl Blend {
 /// The share that is left after one period.
 #[must_use]
 pub fn keep_over(period: Duration) -> Share {
-    crate::estimator::keep(period, BLEND)
+    crate::estimator::Decay::over(period, BLEND).keep
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
 //! because the model must be the controller.
 
-use super::exponential::{keep, slip};
+use super::exponential::Decay;
 use super::position::Path;
 use crate::config::Model;
 use crate::time::Duration;
@@ -42,11 +42,12 @@ impl Actuator {
     pub fn over(step: Duration, lag: Duration, limits: &Limits, model: &Model) -> Self {
         let lag = if model.lag { lag } else { Duration::ZERO };
         let unlimited = !model.limits;
+        let Decay { keep, slip } = Decay::over(step, lag);
         Self {
             path: Path::over(step, model.trapezoid),
             step: step.fine_seconds(),
-            keep: keep(step, lag),
-            slip: slip(step, lag),
+            keep,
+            slip,
             floor: if unlimited { Acceleration::MIN } else { limits.braking.negated() },
             ceiling: if unlimited { Acceleration::MAX } else { limits.acceleration },
             slew: if unlimited { Acceleration::MAX } else { slew(limits.jerk, step) },

@@ -1,6 +1,7 @@
 //! `e^(-h/T)` for the actuators' lag and the fading acceleration: two times enter, a share leaves. Within 4e-9 of the
 //! true value; integers only.
 
+use crate::fixed::saturate_i32;
 use crate::time::Duration;
 use crate::units::{FineSeconds, Share};
 
@@ -9,38 +10,51 @@ const LN_2: u64 = 2_977_044_472;
 /// 1 in 32 fraction bits.
 const ONE: u64 = 1 << 32;
 
-/// The share `φ = e^(-h/T)` of a deviation that is left after `h`; 0 if there is no lag, 1 if no time passes.
-#[must_use]
-pub fn keep(step: Duration, time_constant: Duration) -> Share {
+/// What a lag leaves of a deviation after one step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decay {
+    /// The share `φ = e^(-h/T)` that is left; 0 if there is no lag, 1 if no time passes.
+    pub keep: Share,
+    /// `T (1 - φ)`: what the deviation still adds to the speed while it dies out.
+    pub slip: FineSeconds,
+}
+
+impl Decay {
+    /// Over a step `h` with time constant `T`.
+    #[must_use]
+    pub fn over(step: Duration, time_constant: Duration) -> Self {
+        let keep = keep(step, time_constant);
+        // Share and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
+        let lost = Share::ONE.minus(keep);
+        let product = time_constant.as_micros().max(0).saturating_mul(i64::from(lost.to_bits()));
+        Self { keep, slip: FineSeconds::from_bits(saturate_i32(product.saturating_add(500_000) / 1_000_000)) }
+    }
+}
+
+/// `e^(-h/T)`.
+fn keep(step: Duration, time_constant: Duration) -> Share {
     let (step, time_constant) =
         (step.as_micros().max(0).unsigned_abs(), time_constant.as_micros().max(0).unsigned_abs());
-    if time_constant == 0 {
-        return if step == 0 { Share::from_bits(1 << 30) } else { Share::ZERO };
-    }
     // Beyond 22 time constants nothing of 30 bits is left; below, the quotient fits 37 bits.
-    if step / time_constant.max(1) >= 22 {
+    if step > 0 && step >= time_constant.saturating_mul(22) {
         return Share::ZERO;
     }
-    let x = step.saturating_mul(ONE) / time_constant.max(1);
+    let x = step.saturating_mul(ONE).checked_div(time_constant).unwrap_or(0);
     let halvings = x / LN_2;
     let rest = x.saturating_sub(halvings.saturating_mul(LN_2));
     Share::from_bits(rounded(exp_of_minus(rest), halvings.saturating_add(2)))
 }
 
-/// `T (1 - φ)`: what the deviation still adds to the speed while it dies out over `h`.
-#[must_use]
-pub fn slip(step: Duration, time_constant: Duration) -> FineSeconds {
-    let fading = Share::from_bits(1 << 30).minus(keep(step, time_constant));
-    // Share and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
-    let product = time_constant.as_micros().max(0).saturating_mul(i64::from(fading.to_bits()));
-    FineSeconds::from_bits(crate::fixed::saturate_i32(product.saturating_add(500_000) / 1_000_000))
-}
-
 /// `e^(-x)` for `x` in [0, ln 2), both in 32 fraction bits: the Taylor series by Horner's rule. The first term left out
 /// is (ln 2)¹²/12! = 2.6e-11.
 fn exp_of_minus(x: u64) -> u64 {
-    (1..=11u64).rev().fold(ONE, |sum, n| ONE.saturating_sub((x.saturating_mul(sum) >> 32) / n.max(1)))
+    let product = |a: u64, b: u64| a.saturating_mul(b) >> 32;
+    INVERSES.iter().fold(ONE, |sum, inverse| ONE.saturating_sub(product(product(x, sum), *inverse)))
 }
+
+/// 1/11 to 1/1 in 32 fraction bits.
+const INVERSES: [u64; 11] =
+    [ONE / 11, ONE / 10, ONE / 9, ONE / 8, ONE / 7, ONE / 6, ONE / 5, ONE / 4, ONE / 3, ONE / 2, ONE];
 
 /// `x / 2^bits`, to nearest.
 #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // x <= 2³² and bits >= 2
@@ -58,10 +72,10 @@ mod tests {
         let mut worst: f64 = 0.0;
         for step in (1..=1_000_000).step_by(997) {
             for lag in (2_000..=2_000_000).step_by(49_999) {
-                let share = keep(Duration::from_micros(step), Duration::from_micros(lag));
+                let Decay { keep, slip } = Decay::over(Duration::from_micros(step), Duration::from_micros(lag));
                 let exact = (-(step as f64) / lag as f64).exp();
-                worst = worst.max((share.get().to_num::<f64>() - exact).abs());
-                let slip = slip(Duration::from_micros(step), Duration::from_micros(lag)).get().to_num::<f64>();
+                worst = worst.max((keep.get().to_num::<f64>() - exact).abs());
+                let slip = slip.get().to_num::<f64>();
                 assert!((slip - lag as f64 * 1e-6 * (1.0 - exact)).abs() < 1e-8, "{step} {lag} {slip}");
             }
         }
@@ -70,14 +84,14 @@ mod tests {
 
     #[test]
     fn without_lag_nothing_is_kept() {
-        assert_eq!(keep(Duration::from_millis(10), Duration::ZERO), Share::ZERO);
-        assert_eq!(slip(Duration::from_millis(10), Duration::ZERO), FineSeconds::ZERO);
+        let nothing = Decay { keep: Share::ZERO, slip: FineSeconds::ZERO };
+        assert_eq!(Decay::over(Duration::from_millis(10), Duration::ZERO), nothing);
     }
 
     #[test]
     fn without_time_everything_is_kept() {
         for lag in [0, 300] {
-            assert_eq!(keep(Duration::ZERO, Duration::from_millis(lag)), Share::from_bits(1 << 30));
+            assert_eq!(keep(Duration::ZERO, Duration::from_millis(lag)), Share::ONE);
         }
     }
 }

@@ -58,14 +58,14 @@ impl Follower {
 }
 
 /// `K = k / (1 + k δt (t_g + γ))`.
-#[allow(clippy::arithmetic_side_effects)] // formats of 29 bits with values below 4, 4 and 8: products stay below 2⁶³
+#[allow(clippy::arithmetic_side_effects)] // formats of 29 bits; k and δt are below 4, so κ is below 4 (δt <= 1 s), and t_g + γ below 8: products stay below 2⁶³
 fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration) -> Gain {
     const ONE: i64 = 1 << 29;
     let k = i64::from(gain.to_bits().max(0));
     let kappa = (k * i64::from(step.seconds().to_bits().max(0))) >> 29;
     let sum = i64::from(damping.to_bits().max(0)) + i64::from(time_gap.to_bits().max(0));
-    // κ < 16 and the sum < 8 in 29 bits: below 2³³ each, so the product needs a shift first.
-    let divisor = ONE + ((kappa >> 2) * (sum >> 2) >> 25);
+    // κ < 4 and the sum < 8, both in 29 bits: their product stays below 2⁶³.
+    let divisor = ONE + ((kappa * sum) >> 29);
     Gain::from_bits(crate::fixed::saturate_i32(((k << 29) + divisor / 2) / divisor))
 }
 

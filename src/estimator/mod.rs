@@ -25,7 +25,7 @@ mod position;
 
 pub use actuator::{Actuator, State};
 pub use driver::{Aim, Driver, Stride};
-pub use exponential::keep;
+pub use exponential::Decay;
 pub use follower::Follower;
 pub use horizon::{Anchor, Grid, Horizon, Reading, Step};
 pub use leader::Leader;

@@ -182,7 +182,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
             Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
         };
-        let reach = self.estimator.reach().min(config.prediction.horizon);
         Intent {
             length: config.length,
             standstill: law.standstill,
@@ -196,15 +195,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             damping,
             lag: config.lag,
             limits,
-            horizon_tenths: u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX),
+            horizon_tenths: self.horizon_tenths(),
         }
     }
 
     /// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
     fn own_knots(&self, tag: u8, ego: &Sample) -> Knots {
         let start = Knot::start(ego.speed, ego.acceleration);
-        let reach = self.estimator.reach().min(self.config.prediction.horizon);
-        let whole = Duration::from_millis(reach.as_millis() / 100 * 100);
+        let whole = Duration::from_millis(100).times(i64::from(self.horizon_tenths()));
         let half = self.estimator.grid().step.min(Duration::from_millis(50));
         let read = |at| self.estimator.read_own(at).unwrap_or(Reading { position: ego.position, speed: ego.speed });
         Knots::through(tag, start.rounded(), whole, |after| {
@@ -218,6 +216,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 bow: Distance::ZERO,
             }
         })
+    }
+
+    /// How far the own horizon reaches, in tenths of a second.
+    fn horizon_tenths(&self) -> u8 {
+        let reach = self.estimator.reach().min(self.config.prediction.horizon);
+        u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX)
     }
 
     fn links_on(&self, now: Instant) -> u8 {

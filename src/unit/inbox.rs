@@ -1,0 +1,95 @@
+//! What the unit takes in: whole messages enter, and go to the clock, the ego's own motion or the peers, or are refused by
+//! the rules of time and place.
+
+use super::OnboardUnit;
+use crate::health::Refusal;
+use crate::peers::{Admission, Sample};
+use crate::time::{Duration, Instant};
+use crate::wire::motion::Motion;
+use crate::wire::{Message, Said, Slot};
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// Takes in a whole message.
+    pub(super) fn take(&mut self, at: Instant, message: &Message) -> Result<(), Refusal> {
+        match message {
+            Message::Sync(sync) => self.clock.sync(at, *sync),
+            Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
+            Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
+            Message::EgoIntent(wish) => self.wish = Some(*wish),
+            Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
+            // Understood, and of use to later stages only.
+            Message::Ego(_) | Message::Range(_) => {}
+            Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}
+        }
+        Ok(())
+    }
+
+    fn take_ego(&mut self, at: Instant, motion: &Motion) -> Result<(), Refusal> {
+        let instant = self.instant_of(motion, at).unwrap_or(at);
+        let age = at.since(instant);
+        if age > self.config.link.ego_timeout {
+            return Err(Refusal::Stale);
+        }
+        if age < Duration::ZERO.minus(self.config.link.future) {
+            return Err(Refusal::Future);
+        }
+        let near = self.ego.map(|ego| ego.position);
+        let sample = Sample::of(motion, instant, at, near);
+        if let Some(held) = &self.ego {
+            if held.stamp == sample.stamp && at.since(held.received) < Duration::from_millis(1000) {
+                return Err(Refusal::Duplicate);
+            }
+            if sample.at < held.at {
+                return Err(Refusal::OutOfOrder);
+            }
+        }
+        self.ego = Some(sample);
+        Ok(())
+    }
+
+    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Refusal> {
+        let index = usize::from(slot.0);
+        match said {
+            Said::Motion(motion) => {
+                let instant = self.instant_of(motion, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
+                let ego = self.ego.map(|ego| ego.position);
+                let track = self.peers.get_mut(slot)?;
+                let station = track.station();
+                let near = ego.or(track.newest().map(|sample| sample.position));
+                let sample = Sample::of(motion, instant, at, near);
+                if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
+                    return Err(Refusal::TooFar);
+                }
+                let admission = track.admit(sample, &self.config.link)?;
+                if station != Some(sample.station) {
+                    self.estimator.forget(index);
+                    self.estimator.note_change(&self.peers);
+                }
+                if admission == Admission::News {
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Intent(intent) => {
+                if self.peers.get_mut(slot)?.intend(*intent) {
+                    self.estimator.note_change(&self.peers);
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Horizon(knots) => {
+                if self.peers.get_mut(slot)?.foresee(at, *knots) {
+                    self.estimator.note_news(index);
+                }
+            }
+            Said::Geo(_) | Said::Route(_) => {}
+        }
+        Ok(())
+    }
+
+    /// The instant of a message's stamp, while GNSS time is known.
+    fn instant_of(&self, motion: &Motion, at: Instant) -> Option<Instant> {
+        if !self.clock.is_synchronised(at, self.config.link.sync_timeout) {
+            return None;
+        }
+        self.clock.instant_of(motion.stamp, at)
+    }
+}
