@@ -6,8 +6,8 @@ use crate::dynamics::Body;
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
-use crate::wire::{BaseId, StationHash};
 use crate::wire::intent::Limits;
+use crate::wire::{BaseId, StationHash};
 
 /// Which parts of the prediction model are used. [`Model::HOLDOVER`] is the default; [`Model::PAPER`] is the paper's
 /// literal method; each switch by itself shows what that part is worth.

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use holdover::units::Position;
 use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
 
-use crate::heard::{Heard, HeardIntent};
 use crate::bus::Frame;
+use crate::heard::{Heard, HeardIntent};
 use crate::modem::PEERS;
 use crate::vehicle::{EPOCH_US, gnss, index_of};
 

@@ -26,7 +26,8 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of 1000
-    let (trace, summary) = simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
+    let (trace, summary) =
+        simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     let failures = failures(scenario, &summary);
     if let Some(file) = &options.trace {
@@ -66,7 +67,8 @@ pub fn simulate(
             .in_file(Path::new("scenario"))
     })?;
     let start = Instant::now();
-    let trace = world.run(progress).map_err(|error| Error::new(format!("the bus failed: {error}"), "see the system's log"))?;
+    let trace =
+        world.run(progress).map_err(|error| Error::new(format!("the bus failed: {error}"), "see the system's log"))?;
     let realtime_factor = scenario.duration_s / start.elapsed().as_secs_f64().max(1e-9);
     let summary = summarise(scenario, &trace, realtime_factor);
     Ok((trace, summary))

@@ -95,7 +95,11 @@ impl Measured {
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let ego = scenario.ego;
-        if ego + 1 < scenario.vehicles.len() { Self { vehicle: ego, by: ego + 1 } } else { Self { vehicle: ego - 1, by: ego } }
+        if ego + 1 < scenario.vehicles.len() {
+            Self { vehicle: ego, by: ego + 1 }
+        } else {
+            Self { vehicle: ego - 1, by: ego }
+        }
     }
 }
 
@@ -158,8 +162,7 @@ impl<'a> World<'a> {
                 acceleration_mps2: 0.0,
                 lag_s: described.plant_lag_s,
             };
-            let wish =
-                wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
+            let wish = wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
             let clock_offset_us = clock_offset(seed, index);
             vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us)?);
         }

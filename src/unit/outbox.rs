@@ -206,7 +206,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let whole = Duration::from_millis(reach.as_millis() / 100 * 100);
         let half = self.estimator.grid().step.min(Duration::from_millis(50));
         core::array::from_fn(|place| {
-            let after = SHARES_PER_MILLE.get(place).map_or(whole, |share| Duration::from_micros(whole.as_micros() / 1000 * i64::from(*share)));
+            let after = SHARES_PER_MILLE
+                .get(place)
+                .map_or(whole, |share| Duration::from_micros(whole.as_micros() / 1000 * i64::from(*share)));
             let at = ego.at.plus(after);
             let speed_at = |at| self.estimator.read_own(at).map_or(ego.speed, |reading| reading.speed);
             let reading = self.estimator.read_own(at);

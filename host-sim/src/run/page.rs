@@ -3,9 +3,9 @@
 use crate::channel::{AppliesTo, Impairment, Link};
 use crate::figures::{Summary, errors, gaps, ours, papers, speeds};
 use crate::options::RunOptions;
+use crate::report::RunReport;
 use crate::report::plot::{Interval, Series};
 use crate::report::run::{Limit, ModeTrack, SummaryRow, Verdict};
-use crate::report::RunReport;
 use crate::scenario::Scenario;
 use crate::world::Trace;
 
