@@ -253,8 +253,9 @@ const fn comment(content: Content) -> &'static str {
         Content::Said(_, About::Horizon) => {
             "5 frames of one Tag make one message; Tag is that of the Motion it starts from. Part n is the state after \
              0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see Intent) after that Motion's Stamp; between them the way is a \
-             quintic through position, speed and acceleration, plus Bow midway. At Speed 0 a negative Acceleration is the \
-             one before the vehicle came to rest."
+             quintic through position, speed and acceleration, plus Bow midway (64*Bow*s^3*(1-s)^3). At Speed 0 \
+             Acceleration b tells when the vehicle came to rest: t = 12*D / (3*v + sqrt(9*v^2 + 12*(a-b)*D)) after part \
+             n-1, whose speed and acceleration are v and a, on the way D between the two."
         }
         Content::Said(_, About::Intent) => "3 frames of one Tag make one message. All limits are magnitudes.",
         Content::Said(_, About::Geo) => "2 frames of one Tag make one message.",

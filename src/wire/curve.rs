@@ -106,7 +106,7 @@ impl Piece {
     }
 
     fn share_of(&self, micros: i64) -> i32 {
-        let share = micros.clamp(0, self.micros) << SHARE_BITS;
+        let share = micros.min(self.micros).max(0) << SHARE_BITS;
         saturate_i32(share.checked_div(self.micros).unwrap_or(0))
     }
 
@@ -150,8 +150,8 @@ pub struct Segment {
 impl Segment {
     /// The stretch from one knot to the next, which is this much later.
     ///
-    /// - At rest at the end: it brakes, comes to rest with the acceleration that the knot tells, and stands. When it
-    ///   comes to rest follows from the way: the time at which the quintic has no fifth power.
+    /// - At rest at the end: it brakes, comes to rest with the acceleration `b` that the knot tells, and stands. It comes to
+    ///   rest when the quintic has no fifth power, `t = 12·D / (3·v + √(9·v² + 12·(a - b)·D))`.
     /// - Moving at the end but at rest in between, which shows as braking first, accelerating last, and enough time for
     ///   both: it brakes to rest evenly, stands, and moves off with a constant jerk.
     /// - Else one quintic.

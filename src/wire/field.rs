@@ -173,14 +173,14 @@ impl Field {
     #[inline]
     #[must_use]
     pub fn with<Q: Quantity>(&self, payload: Payload, quantity: Q) -> Payload {
-        self.with_raw(payload, quantity.to_steps(self.per_unit).clamp(self.min, self.max))
+        self.with_raw(payload, quantity.to_steps(self.per_unit).min(self.max).max(self.min))
     }
 
     /// With the quantity, rounded up, limited to the field's range.
     #[inline]
     #[must_use]
     pub fn with_up<Q: Quantity>(&self, payload: Payload, quantity: Q) -> Payload {
-        self.with_raw(payload, quantity.to_steps_up(self.per_unit).clamp(self.min, self.max))
+        self.with_raw(payload, quantity.to_steps_up(self.per_unit).min(self.max).max(self.min))
     }
 
     /// The quantity, if there is one.

@@ -9,6 +9,7 @@ pub mod bits;
 pub mod catalogue;
 pub mod command;
 pub mod curve;
+pub mod dbc;
 pub mod e2e;
 pub mod ego_intent;
 pub mod estimate;

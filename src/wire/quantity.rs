@@ -4,6 +4,9 @@
 //! quantity rounds to the nearest word of the quantity's format, quantity to steps to the nearest step (ties away from
 //! zero) or, for what must not be understated, up.
 
+use crate::fixed::{
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, SpeedFormat, saturate_i32,
+};
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 
 /// A quantity that can stand in a field.
@@ -22,23 +25,49 @@ pub trait Quantity: Copy + PartialOrd {
     }
 }
 
+/// `steps / per_unit` as a word with so many fraction bits. Fields have at most 32 bits and formats at most 30 fraction
+/// bits, so that 64 bits hold it; 128-bit division, as of [`crate::fixed::ratio`], takes ten times as long on a
+/// Cortex-M.
+fn word(steps: i64, per_unit: i64, fraction: u32) -> i32 {
+    let scaled = steps.saturating_mul(1i64.wrapping_shl(fraction));
+    let half = per_unit / 2;
+    let rounded = if scaled < 0 { scaled.saturating_sub(half) } else { scaled.saturating_add(half) };
+    saturate_i32(rounded.checked_div(per_unit).unwrap_or(0))
+}
+
+/// How many `1/per_unit` a word with so many fraction bits is. Units have at most 10⁷ steps, so that 64 bits hold it.
+fn steps(word: i32, per_unit: i64, fraction: u32) -> i64 {
+    let product = i64::from(word).saturating_mul(per_unit);
+    let half = 1i64.wrapping_shl(fraction.saturating_sub(1));
+    let magnitude = product.saturating_abs().saturating_add(half).wrapping_shr(fraction);
+    if product < 0 { magnitude.saturating_neg() } else { magnitude }
+}
+
 macro_rules! quantity {
-    ($($name:ident),*) => {$(
+    ($($name:ident: $format:ty),*) => {$(
         impl Quantity for $name {
             #[inline]
             fn from_steps(steps: i64, per_unit: i64) -> Self {
-                Self::from_ratio(steps, per_unit)
+                Self::from_bits(word(steps, per_unit, <$format>::FRAC_NBITS))
             }
 
             #[inline]
             fn to_steps(self, per_unit: i64) -> i64 {
-                self.to_multiple_of(per_unit)
+                steps(self.to_bits(), per_unit, <$format>::FRAC_NBITS)
             }
         }
     )*};
 }
 
-quantity!(Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed);
+quantity!(
+    Acceleration: AccelerationFormat,
+    Distance: DistanceFormat,
+    FineSeconds: FineSecondsFormat,
+    Gain: GainFormat,
+    Jerk: AccelerationFormat,
+    Seconds: SecondsFormat,
+    Speed: SpeedFormat
+);
 
 #[cfg(test)]
 mod tests {
@@ -56,6 +85,18 @@ mod tests {
         }
         for steps in 0..=999i64 {
             assert_eq!(FineSeconds::from_steps(steps, 500).to_steps(500), steps);
+        }
+    }
+
+    #[test]
+    fn steps_are_the_ratios_of_the_units() {
+        for raw in (-262_143..=262_143i64).step_by(131) {
+            assert_eq!(Distance::from_steps(raw, 1000), Distance::from_ratio(raw, 1000));
+            assert_eq!(Speed::from_steps(raw, 500), Speed::from_ratio(raw, 500));
+            assert_eq!(Acceleration::from_steps(raw, 50), Acceleration::from_ratio(raw, 50));
+            let bits = raw as i32 * 8191;
+            assert_eq!(Speed::from_bits(bits).to_steps(500), Speed::from_bits(bits).to_multiple_of(500));
+            assert_eq!(Gain::from_bits(bits).to_steps(1000), Gain::from_bits(bits).to_multiple_of(1000));
         }
     }
 

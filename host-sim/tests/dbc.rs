@@ -1,0 +1,295 @@
+//! `holdover.dbc` against the frames: random messages are encoded by the core's sender, their raw frames are decoded by
+//! what an independent parser reads in the file, and every signal of every message is compared with the message.
+
+#[allow(dead_code)] // shared with the core's own tests
+#[path = "../../tests/messages/mod.rs"]
+mod messages;
+
+use std::collections::BTreeMap;
+
+use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, Signal, ValueDescription, ValueType};
+use holdover::wire::catalogue::{CATALOGUE, data_id};
+use holdover::wire::command::Effort;
+use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot};
+use messages::{from_unit, to_unit};
+use proptest::prelude::*;
+
+/// What a signal says: a physical value, or the name that the file gives to the raw value.
+#[derive(Clone, Debug, PartialEq)]
+enum Reading {
+    Value(f64),
+    Name(String),
+}
+
+fn file() -> &'static Dbc {
+    static FILE: std::sync::LazyLock<Dbc> = std::sync::LazyLock::new(|| {
+        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../holdover.dbc")).unwrap();
+        Dbc::try_from(text.as_str()).unwrap()
+    });
+    &FILE
+}
+
+fn raw(signal: &Signal, data: &[u8; 8]) -> i64 {
+    assert_eq!(signal.byte_order, ByteOrder::LittleEndian);
+    let bit = |place: u64| i64::from(data[(place / 8) as usize] >> (place % 8) & 1);
+    let bits = (0..signal.size).fold(0, |sum, place| sum | bit(signal.start_bit + place) << place);
+    let negative = signal.value_type == ValueType::Signed && bits >> (signal.size - 1) & 1 == 1;
+    if negative { bits - (1 << signal.size) } else { bits }
+}
+
+fn name_of(id: u16, signal: &str, raw: i64) -> Option<String> {
+    file().value_descriptions.iter().find_map(|described| match described {
+        ValueDescription::Signal { message_id, name, value_descriptions }
+            if *message_id == MessageId::Standard(id) && name == signal =>
+        {
+            value_descriptions.iter().find(|value| value.id == raw).map(|value| value.description.clone())
+        }
+        _ => None,
+    })
+}
+
+/// Message name, and the readings of all its frames' signals; the E2E header and the part are left out.
+fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
+    let (mut names, mut readings) = (Vec::new(), BTreeMap::new());
+    for frame in frames {
+        let message = file().messages.iter().find(|message| message.id == MessageId::Standard(frame.id)).unwrap();
+        if !names.contains(&message.name) {
+            names.push(message.name.clone());
+        }
+        let selector = message.signals.iter().find(|s| s.multiplexer_indicator == MultiplexIndicator::Multiplexor);
+        let part = selector.map(|selector| raw(selector, &frame.data));
+        for signal in &message.signals {
+            let here = match signal.multiplexer_indicator {
+                MultiplexIndicator::MultiplexedSignal(of) => part == Some(of as i64),
+                _ => true,
+            };
+            if !here || ["Crc", "Counter", "Part"].contains(&signal.name.as_str()) {
+                continue;
+            }
+            let raw = raw(signal, &frame.data);
+            let reading = match name_of(frame.id, &signal.name, raw) {
+                Some(name) => Reading::Name(name),
+                None => Reading::Value(raw as f64 * signal.factor + signal.offset),
+            };
+            let knot = if message.name.ends_with("Horizon") && signal.name != "Tag" {
+                part.map_or(String::new(), |part| part.to_string())
+            } else {
+                String::new()
+            };
+            let before = readings.insert(format!("{}{knot}", signal.name), reading.clone());
+            assert!(before.is_none_or(|before| before == reading), "{} differs between frames", signal.name);
+        }
+    }
+    (names, readings)
+}
+
+/// The readings that a message must give.
+#[derive(Default)]
+struct Expected(BTreeMap<String, Reading>);
+
+impl Expected {
+    fn value(mut self, name: &str, value: impl Into<f64>) -> Self {
+        self.0.insert(name.into(), Reading::Value(value.into()));
+        self
+    }
+
+    fn name(mut self, signal: &str, name: impl Into<String>) -> Self {
+        self.0.insert(signal.into(), Reading::Name(name.into()));
+        self
+    }
+
+    fn either(self, signal: &str, value: Option<f64>, none: &str) -> Self {
+        match value {
+            Some(value) => self.value(signal, value),
+            None => self.name(signal, none),
+        }
+    }
+
+    fn predecessor(self, predecessor: Predecessor) -> Self {
+        let (kind, station) = match predecessor {
+            Predecessor::Unknown => ("unknown", 0),
+            Predecessor::None => ("nobody", 0),
+            Predecessor::Station(hash) => ("station", hash.0),
+        };
+        self.name("PredecessorKind", kind).value("PredecessorStation", station)
+    }
+}
+
+/// A quantity as a float.
+macro_rules! si {
+    ($quantity:expr) => {
+        $quantity.get().to_num::<f64>()
+    };
+}
+
+fn expected_of_said(said: &Said) -> Expected {
+    let e = Expected::default();
+    match said {
+        Said::Motion(m) => e
+            .value("Tag", m.tag)
+            .value("Position", f64::from(m.position.mm()) / 1e3)
+            .value("Stamp", f64::from(m.stamp.raw()) / 1e4)
+            .value("Station", m.station.0)
+            .value("Speed", si!(m.speed))
+            .value("Acceleration", si!(m.acceleration))
+            .value("Demand", si!(m.demand))
+            .either("PositionAccuracy", m.position_accuracy.map(|d| si!(d)), "not published")
+            .either("SpeedAccuracy", m.speed_accuracy.map(|v| si!(v)), "not published"),
+        Said::Intent(i) => e
+            .value("Tag", 1)
+            .value("Length", si!(i.length))
+            .value("Standstill", si!(i.standstill))
+            .predecessor(i.predecessor)
+            .value("TargetSpeed", si!(i.target_speed))
+            .value("TimeGap", si!(i.time_gap))
+            .value("Gain", si!(i.gain))
+            .value("Damping", si!(i.damping))
+            .value("Lag", si!(i.lag))
+            .value("AccelerationLimit", si!(i.limits.acceleration))
+            .value("BrakingLimit", si!(i.limits.braking))
+            .value("JerkLimit", si!(i.limits.jerk))
+            .value("EmergencyBraking", si!(i.limits.emergency_braking))
+            .value("HorizonLength", f64::from(i.horizon_tenths) / 10.0),
+        Said::Horizon(h) => h.knots.iter().enumerate().fold(e.value("Tag", h.tag), |e, (n, knot)| {
+            e.value(&format!("Displacement{n}"), si!(knot.displacement))
+                .value(&format!("Speed{n}"), si!(knot.speed))
+                .value(&format!("Acceleration{n}"), si!(knot.acceleration))
+                .value(&format!("Bow{n}"), si!(knot.bow))
+        }),
+        Said::Geo(g) => e
+            .value("Tag", g.tag)
+            .value("Latitude", f64::from(g.latitude) / 1e7)
+            .value("Longitude", f64::from(g.longitude) / 1e7)
+            .value("Heading", f64::from(g.heading) * 0.0125)
+            .value("Stamp", f64::from(g.stamp.raw()) / 1e4),
+        Said::Route(r) => e
+            .value("Tag", r.tag)
+            .value("Distance", si!(r.distance))
+            .value("Stamp", f64::from(r.stamp.raw()) / 1e4)
+            .value("Leg", r.leg)
+            .value("Intersection", r.intersection)
+            .value("Arrival", f64::from(r.arrival) / 100.0)
+            .predecessor(r.predecessor),
+    }
+}
+
+fn expected_of(message: &Message) -> Expected {
+    let e = Expected::default();
+    let mode = |mode| format!("{mode:?}").to_lowercase();
+    match message {
+        Message::Ego(said) | Message::Own(said) | Message::Peer(_, said) => expected_of_said(said),
+        Message::Sync(s) => e.value("Sequence", s.sequence).value("Seconds", s.seconds),
+        Message::FollowUp(f) => e.value("Sequence", f.sequence).value("Micros", f.micros),
+        Message::EgoIntent(i) => e
+            .name("Engaged", if i.engaged { "drive" } else { "off" })
+            .predecessor(i.predecessor)
+            .value("TargetSpeed", si!(i.target_speed))
+            .either("TimeGap", i.time_gap.map(|t| si!(t)), "as configured"),
+        Message::Range(r) => e
+            .value("Distance", si!(r.distance))
+            .value("SpeedDifference", si!(r.speed_difference))
+            .value("DistanceAccuracy", si!(r.distance_accuracy))
+            .value("SpeedAccuracy", si!(r.speed_accuracy))
+            .value("Age", r.age.as_micros() as f64 / 1e6),
+        Message::Command(c) => {
+            let e = e
+                .value("Acceleration", si!(c.acceleration))
+                .name("Mode", mode(c.mode))
+                .name("Limited", if c.limited { "changed by the envelope" } else { "as computed" })
+                .value("Tick", c.tick);
+            match c.effort {
+                Effort::Force(newtons) => e.name("Effort", "force").value("Force", newtons),
+                Effort::BrakeTorque(torque) => e.name("Effort", "brake torque").value("BrakeTorque", torque),
+            }
+        }
+        Message::Estimate(t) => {
+            let end = |of: fn(&holdover::wire::estimate::Ends) -> f64| t.ends.as_ref().map(of);
+            e.value("Tag", t.tag)
+                .value("Position", f64::from(t.position.mm()) / 1e3)
+                .value("Speed", si!(t.speed))
+                .value("Age", t.age.as_micros() as f64 / 1e6)
+                .either("Behind", end(|ends| si!(ends.behind)), "no bound")
+                .either("Ahead", end(|ends| si!(ends.ahead)), "no bound")
+                .either("Slower", end(|ends| si!(ends.slower)), "no bound")
+                .either("Faster", end(|ends| si!(ends.faster)), "no bound")
+        }
+        Message::Status(s) => e
+            .name("Cause", s.cause.name())
+            .value("Count", s.count)
+            .name("Mode", mode(s.mode))
+            .value("Detail", s.detail)
+            .name("Synchronised", if s.synchronised { "GNSS time known" } else { "no GNSS time" })
+            .value("LinksOn", s.links_on),
+    }
+}
+
+/// The messages of the file that carry it.
+fn names_of(message: &Message) -> Vec<String> {
+    let two = |name: &str| vec![format!("{name}A"), format!("{name}B")];
+    let of_said = |speaker: String, said: &Said| match said {
+        Said::Motion(_) => two(&format!("{speaker}Motion")),
+        Said::Intent(_) => vec![format!("{speaker}Intent")],
+        Said::Horizon(_) => vec![format!("{speaker}Horizon")],
+        Said::Geo(_) => vec![format!("{speaker}Position")],
+        Said::Route(_) => vec![format!("{speaker}Route")],
+    };
+    match message {
+        Message::Ego(said) => of_said("Ego".into(), said),
+        Message::Own(said) => of_said("Own".into(), said),
+        Message::Peer(Slot(slot), said) => of_said(format!("Peer{slot}"), said),
+        Message::Sync(_) => vec!["TimeSync".into()],
+        Message::FollowUp(_) => vec!["TimeFollowUp".into()],
+        Message::EgoIntent(_) => vec!["EgoIntent".into()],
+        Message::Range(_) => vec!["RangeSensor".into()],
+        Message::Command(_) => vec!["MotionCommand".into()],
+        Message::Estimate(_) => two("TargetEstimate"),
+        Message::Status(_) => vec!["Health".into()],
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #[test]
+    fn every_signal_of_every_message_reads_in_the_file_as_it_was_meant(message in prop_oneof![to_unit(8), from_unit()]) {
+        let mut frames = Vec::new();
+        Sender::<8>::new(BaseId::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
+        let (names, readings) = decoded(&frames);
+        let expected = expected_of(&message).0;
+        prop_assert_eq!(names, names_of(&message));
+        prop_assert_eq!(readings.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+        for (name, reading) in &readings {
+            match (reading, &expected[name]) {
+                // a quantity is within half a word of its format of the decimal that it stands for
+                (Reading::Value(read), Reading::Value(meant)) => prop_assert!((read - meant).abs() < 1e-6, "{}: {} {}", name, read, meant),
+                (read, meant) => prop_assert_eq!(read, meant, "{}", name),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_file_tells_cycles_and_protection_of_every_message() {
+    let attribute = |id: u16, name: &str| {
+        let of = |a: &&can_dbc::AttributeValueForMessage| a.message_id == MessageId::Standard(id) && a.name == name;
+        match file().attribute_values_message.iter().find(of).map(|a| &a.value) {
+            Some(AttributeValue::Uint(value)) => *value as i64,
+            Some(AttributeValue::Int(value)) => *value,
+            other => panic!("{id} {name} {other:?}"),
+        }
+    };
+    let mut messages = 0;
+    for line in &CATALOGUE {
+        for slot in 0..if line.is_per_slot() { 8 } else { 1 } {
+            let offset = line.offset_for(Slot(slot));
+            let id = BaseId::DEFAULT.plus(offset);
+            assert_eq!(attribute(id, "GenMsgCycleTime"), i64::from(line.cycle_ms));
+            assert_eq!(attribute(id, "GenMsgTimeout"), i64::from(line.timeout_ms));
+            assert_eq!(attribute(id, "E2EDataId"), i64::from(data_id(offset)));
+            assert_eq!(attribute(id, "E2EMaxDeltaCounterInit"), i64::from(line.limits().max_delta_counter_init));
+            assert_eq!(attribute(id, "E2EMaxNoNewOrRepeatedData"), i64::from(line.limits().max_no_new_or_repeated));
+            assert_eq!(attribute(id, "E2ESyncCounterInit"), i64::from(line.limits().sync_counter_init));
+            messages += 1;
+        }
+    }
+    assert_eq!(file().messages.len(), messages);
+}
