@@ -8,7 +8,7 @@ use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::envelope;
-use crate::estimator::{Aim, Driver, Estimator, Reading, State};
+use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Refusal};
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
@@ -232,6 +232,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             speed: sample.speed,
             acceleration: sample.acceleration,
             demand: self.controller.last_demand(),
+            rests: Rests::NONE,
         };
         let age = now.since(sample.at);
         if age <= Duration::ZERO {
