@@ -60,6 +60,10 @@ pub fn evaluate(
         for message in ahead.into_iter().chain([published.message]) {
             listener.hear(at_us, &message, near);
         }
+        // Takes it in, so that it is not taken in anew in every silence.
+        listener.beliefs(at_us, near);
+        ticks.next_if_eq(&at_us);
+        outcome.unit_ticks += 1;
         outcome.sent += 1;
         outcome.delivered += 1;
         outcome.messages.push((timeline.recorded_s(at_us), Some(0.0)));
@@ -97,7 +101,7 @@ impl Start {
         ends.retain(|(end, _)| *end <= end_us);
         ends.sort_by_key(|(end, _)| *end);
         let last_us = ends.last().map_or(i64::MIN, |(end, _)| *end - self.at_us);
-        let mut steps = timeline.ticks(last_us).map(|since_us| self.at_us + since_us).peekable();
+        let mut steps = timeline.ticks(last_us).skip(1).map(|since_us| self.at_us + since_us).peekable();
         let (mut samples, mut ticks) = (Vec::with_capacity(ends.len()), 0);
         for (end, length_s) in ends {
             while let Some(at_us) = steps.next_if(|at_us| *at_us < end) {

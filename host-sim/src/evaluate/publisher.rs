@@ -1,4 +1,9 @@
 //! A recorded vehicle as a sender: a send time enters, the V2X message that it broadcasts then leaves.
+//!
+//! A vehicle whose predecessor is recorded too publishes an intent. Like any vehicle it says whom it follows only while it
+//! drives by its law, and that is decided by what it did: while its acceleration is the law's demand, to within
+//! [`SAME_LAW_MPS2`], it names its predecessor; otherwise it names nobody. A receiver that took a driver's word for a law
+//! that he does not drive by would be metres off.
 
 use holdover::wire::intent::Intent;
 use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
@@ -7,10 +12,17 @@ use holdover::Config;
 
 use super::listener::{PREDECESSOR, TARGET};
 use super::timeline::{Timeline, seconds};
+use crate::heard::HeardIntent;
 use crate::modem::V2xMessage;
 use crate::options::Recording;
 use crate::recording::Motion;
 use crate::vehicle::{acceleration, gnss, metres, speed, station};
+
+/// A vehicle drives by its law while its acceleration is no further than this from what the law demanded
+/// [`LATE_S`] before.
+const SAME_LAW_MPS2: f64 = 0.5;
+/// A car's acceleration follows the demand with a lag of 0.3 s, and its measurement is the slope over the last 0.5 s.
+const LATE_S: f64 = 0.3 + 0.25;
 
 /// The vehicle.
 #[derive(Clone, Debug)]
@@ -18,7 +30,7 @@ pub struct Publisher<'a> {
     motion: &'a Motion,
     timeline: Timeline,
     station: StationHash,
-    intent: Option<Intent>,
+    follows: Option<(&'a Motion, Intent)>,
     tag: u8,
 }
 
@@ -40,7 +52,7 @@ impl<'a> Publisher<'a> {
             None => (target, None),
             Some((_, motion)) => {
                 let ahead = station(PREDECESSOR);
-                (target.following(ahead), Some(Self::new(motion, timeline, ahead)))
+                (target.behind(motion, ahead), Some(Self::new(motion, timeline, ahead)))
             }
         }
     }
@@ -56,12 +68,12 @@ impl<'a> Publisher<'a> {
     /// A vehicle that says where it is but not how it drives.
     #[must_use]
     pub fn new(motion: &'a Motion, timeline: Timeline, station: StationHash) -> Self {
-        Self { motion, timeline, station, intent: None, tag: 0 }
+        Self { motion, timeline, station, follows: None, tag: 0 }
     }
 
-    /// The same, and it says that it follows that station, by the law that the unit is configured with.
+    /// The same behind that vehicle, whose length is a car's; its law is the one that a unit is configured with.
     #[must_use]
-    pub fn following(self, predecessor: StationHash) -> Self {
+    fn behind(self, ahead: &'a Motion, predecessor: StationHash) -> Self {
         let Config { length, lag, limits, law, .. } = Config::car(self.station);
         let intent = Intent {
             length,
@@ -75,7 +87,7 @@ impl<'a> Publisher<'a> {
             limits,
             horizon_tenths: 0,
         };
-        Self { intent: Some(intent), ..self }
+        Self { follows: Some((ahead, intent)), ..self }
     }
 
     /// What it broadcasts at that time: the last recorded sample at or before it; nothing before the first.
@@ -83,7 +95,8 @@ impl<'a> Publisher<'a> {
         let known = self.motion.rows().partition_point(|row| self.timeline.micros(row.t_s) <= at_us);
         let sample = self.motion.rows().get(known.checked_sub(1)?)?;
         let sampled_us = self.timeline.micros(sample.t_s);
-        let acceleration = acceleration(self.motion.past_slope(sample.t_s));
+        let slope_mps2 = self.motion.past_slope(sample.t_s);
+        let acceleration = acceleration(slope_mps2);
         self.tag = (self.tag + 1) % 4;
         let motion = MotionMessage {
             tag: self.tag,
@@ -96,8 +109,23 @@ impl<'a> Publisher<'a> {
             speed_accuracy: None,
             station: self.station,
         };
-        Some(Published { sampled_us, message: V2xMessage { motion, intent: self.intent, horizon: None } })
+        let intent = self.follows.map(|(ahead, intent)| {
+            let is_by_law = (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
+            let predecessor = if is_by_law { intent.predecessor } else { Predecessor::Unknown };
+            Intent { predecessor, ..intent }
+        });
+        Some(Published { sampled_us, message: V2xMessage { motion, intent, horizon: None } })
     }
+}
+
+/// What the law demands of a vehicle at a time, behind another one that is as long as itself.
+fn demand(intent: &Intent, motion: &Motion, ahead: &Motion, at_s: f64) -> f64 {
+    let intent = HeardIntent::from_intent(intent, None);
+    let (own, ahead) = (motion.at(at_s), ahead.at(at_s));
+    let gap_m = ahead.position_m - intent.length_m - own.position_m;
+    let wanted_m = intent.standstill_m + intent.time_gap_s * own.speed_mps;
+    let demand = intent.gain * (gap_m - wanted_m + intent.damping_s * (ahead.speed_mps - own.speed_mps));
+    demand.clamp(-intent.braking_mps2, intent.acceleration_mps2)
 }
 
 #[cfg(test)]
