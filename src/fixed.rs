@@ -19,8 +19,11 @@
 //! |---|---|---|
 //! | speed × seconds = distance | F23 × F29 → F20 | to nearest |
 //! | acceleration × fine seconds = speed | F25 × F30 → F23 | to nearest |
-//! | distance × gain = acceleration | F20 × F29 → F17, then `<< 8` → F25 | to nearest 7.6 µm/s², saturating |
-//! | acceleration × share = acceleration | F25 × F30 → F23, then `<< 2` → F25 | to nearest 0.12 µm/s², saturating |
+//! | distance × gain = acceleration | F20 × F29 → F49, `>> 24` → F25 | to nearest, saturating |
+//! | acceleration × share = acceleration | F25 × F30 → F55, `>> 30` → F25 | to nearest, saturating |
+//!
+//! Where hundreds of products are summed up, in the speed and the position of a horizon, the sum is kept with the 32 bits
+//! below its word ([`Rest`]) and nothing is rounded at all: adding a product is one instruction too (`SMLAL`).
 //!
 //! Sums saturate, except in ring positions, which are modulo 4096 m on purpose ([`crate::units::RingPosition`]).
 
@@ -84,6 +87,70 @@ pub const fn ratio(numerator: i64, denominator: i64, fraction: u32) -> i64 {
 #[must_use]
 pub const fn unratio(word: i64, denominator: i64, fraction: u32) -> i64 {
     divide_rounding(word.saturating_mul(denominator), 1i64.wrapping_shl(fraction))
+}
+
+/// `a·b / 2^(32-BITS)`, rounded to nearest, saturating to within `2^BITS` of the ends.
+#[inline(always)]
+#[must_use]
+#[allow(
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss
+)]
+// as in `mul_hi`; the two halves are meant
+pub const fn mul_shl<const BITS: u32>(a: i32, b: i32) -> i32 {
+    let product = a as i64 * b as i64 + (1 << (31 - BITS));
+    let below = (product as u32) >> (32 - BITS);
+    shl_saturating::<BITS>((product >> 32) as i32) | below as i32
+}
+
+/// The exact product of two words.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::arithmetic_side_effects)] // at most 2⁶² in magnitude
+pub const fn product(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
+}
+
+/// The 32 bits below a word that products are summed up in, so that the sum is exact and only its word is rounded, to
+/// nearest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Rest(u32);
+
+impl Rest {
+    /// Nothing below the word. It stands as half a bit of the word, which is what rounds to nearest.
+    pub const NONE: Self = Self(1 << 31);
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+/// A word and its rest with products added, saturating.
+#[inline(always)]
+#[must_use]
+pub const fn sum(word: i32, rest: Rest, products: i64) -> (i32, Rest) {
+    apart(together(word, rest).saturating_add(products))
+}
+
+/// The same modulo the range of the word.
+#[inline(always)]
+#[must_use]
+pub const fn sum_around(word: i32, rest: Rest, products: i64) -> (i32, Rest) {
+    apart(together(word, rest).wrapping_add(products))
+}
+
+const fn together(word: i32, rest: Rest) -> i64 {
+    (word as i64) << 32 | rest.0 as i64
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the two halves
+const fn apart(sum: i64) -> (i32, Rest) {
+    ((sum >> 32) as i32, Rest(sum as u32))
 }
 
 /// Narrows to 32 bits, saturating.

@@ -9,7 +9,7 @@ use crate::config::{Config, ConfigError, Envelope};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::envelope;
 use crate::estimator::bound::Bound;
-use crate::estimator::{Aim, Driver, Estimator, Reading, State};
+use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Refusal};
 use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
@@ -243,6 +243,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             speed: sample.speed,
             acceleration: sample.acceleration,
             demand: self.controller.last_demand(),
+            rests: Rests::NONE,
         };
         let age = now.since(sample.at);
         if age <= Duration::ZERO {

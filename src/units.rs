@@ -4,8 +4,8 @@
 //! Arithmetic saturates at the ends of the format; nothing wraps except [`RingPosition`], which says so.
 
 use crate::fixed::{
-    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, SecondsFormat, ShareFormat,
-    SpeedFormat, mul_hi, ratio, saturate_i32, shl_saturating, unratio,
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, Rest, SecondsFormat,
+    ShareFormat, SpeedFormat, mul_hi, mul_shl, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -166,7 +166,7 @@ impl Acceleration {
     #[inline(always)]
     #[must_use]
     pub const fn share(self, share: Share) -> Self {
-        Self::from_bits(shl_saturating::<2>(mul_hi(self.to_bits(), share.to_bits())))
+        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
     }
 }
 
@@ -179,7 +179,7 @@ impl Jerk {
     /// The change of acceleration at this jerk for that time, saturating.
     #[must_use]
     pub const fn over(self, time: FineSeconds) -> Acceleration {
-        Acceleration::from_bits(shl_saturating::<2>(mul_hi(self.to_bits(), time.to_bits())))
+        Acceleration::from_bits(mul_shl::<2>(self.to_bits(), time.to_bits()))
     }
 }
 
@@ -188,7 +188,7 @@ impl Distance {
     #[inline(always)]
     #[must_use]
     pub const fn times(self, gain: Gain) -> Acceleration {
-        Acceleration::from_bits(shl_saturating::<8>(mul_hi(self.to_bits(), gain.to_bits())))
+        Acceleration::from_bits(mul_shl::<8>(self.to_bits(), gain.to_bits()))
     }
 }
 
@@ -277,5 +277,13 @@ impl RingPosition {
     #[must_use]
     pub const fn ahead_of(self, other: Self) -> Distance {
         Distance::from_bits(self.0.wrapping_sub(other.0))
+    }
+
+    /// The position and its rest, that far ahead; the way is a sum of products in the format of distances.
+    #[inline(always)]
+    #[must_use]
+    pub const fn along(self, rest: Rest, products: i64) -> (Self, Rest) {
+        let (word, rest) = sum_around(self.0, rest, products);
+        (Self(word), rest)
     }
 }

@@ -25,7 +25,8 @@ use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Follower {
     gain: Gain,
-    gap: Seconds,
+    step: Seconds,
+    time_gap: Seconds,
     damping: Seconds,
     spacing: Distance,
 }
@@ -35,12 +36,7 @@ impl Follower {
     /// distance), over steps of this length.
     #[must_use]
     pub fn over(step: Duration, gain: Gain, damping: Seconds, time_gap: Seconds, spacing: Distance) -> Self {
-        Self {
-            gain: semi_implicit(gain, damping, time_gap, step),
-            gap: time_gap.plus(step.seconds()),
-            damping,
-            spacing,
-        }
+        Self { gain: semi_implicit(gain, damping, time_gap, step), step: step.seconds(), time_gap, damping, spacing }
     }
 
     /// Eq. 13 as an acceleration, before the limits.
@@ -51,7 +47,8 @@ impl Follower {
             .position
             .ahead_of(ahead)
             .plus(self.spacing)
-            .plus(state.speed.over(self.gap))
+            .plus(state.speed.over(self.step)) // apart from t_g: their sum may be beyond the format's 4 s
+            .plus(state.speed.over(self.time_gap))
             .plus(state.speed.minus(ahead_speed).over(self.damping));
         error.times(self.gain).negated()
     }

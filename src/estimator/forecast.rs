@@ -1,7 +1,7 @@
 //! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
 //! horizon brought up to now leaves.
 
-use super::actuator::State;
+use super::actuator::{Rests, State};
 use super::delay::adjusted;
 use super::driver::{Driver, Stride};
 use super::horizon::{Anchor, Grid, Horizon};
@@ -95,6 +95,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             speed: sample.speed.max(Speed::ZERO),
             acceleration: sample.acceleration,
             demand: if self.model.last_demand { sample.demand } else { sample.acceleration },
+            rests: Rests::NONE,
         };
         let index;
         if self.model.stamped {
@@ -122,7 +123,8 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let acceleration = knots.knots.last()?.acceleration;
         let mut last = None;
         for (index, (way, speed)) in (first..).zip(curve.walk(after, self.grid.step)) {
-            let state = State { position: origin.ahead(way), speed, acceleration, demand: acceleration };
+            let state =
+                State { position: origin.ahead(way), speed, acceleration, demand: acceleration, rests: Rests::NONE };
             filling.put(index, state);
             last = Some((index, state));
         }

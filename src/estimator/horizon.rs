@@ -4,7 +4,7 @@
 //! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step,
 //! and between steps, a reading is the cubic that meets both positions and both speeds.
 
-use super::actuator::State;
+use super::actuator::{Rests, State};
 use super::interpolation::between;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Position, RingPosition, Speed};
@@ -111,6 +111,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
                 speed: Speed::ZERO,
                 acceleration: Acceleration::ZERO,
                 demand: Acceleration::ZERO,
+                rests: Rests::NONE,
             },
             anchor: Anchor {
                 at: Instant::ZERO,

@@ -2,10 +2,10 @@
 //! Driver Model's free-road term, eq. 8).
 //!
 //! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle see to it that it decelerates no harder
-//! than comfortable. A target speed below 0.1 m/s is a wish to stop.
+//! than comfortable. A target speed below 0.1 m/s is a wish to stop, as hard as the vehicle's own limit on braking allows.
 
 use crate::fixed::{mul_hi, ratio, saturate_i32, shl_saturating};
-use crate::parameters::{BRAKING_MAX, FREE_ROAD_RATIO_MILLI, STOP_SPEED};
+use crate::parameters::{FREE_ROAD_RATIO_MILLI, STOP_SPEED};
 use crate::units::{Acceleration, Speed};
 
 /// The free-road law of one vehicle.
@@ -17,6 +17,8 @@ pub struct Leader {
     inverse: i32,
 }
 
+/// The wish to stop: harder than any limit that a message can name, which is 20.46 m/s².
+const STOP: Acceleration = Acceleration::from_mm_per_s2(-20_460);
 /// The largest `v/v_∞` in 17 fraction bits.
 const RATIO_MAX: i32 = saturate_i32(ratio(FREE_ROAD_RATIO_MILLI, 1000, 17));
 
@@ -38,7 +40,7 @@ impl Leader {
     #[must_use]
     pub fn wish(&self, speed: Speed) -> Acceleration {
         if self.inverse == 0 {
-            return BRAKING_MAX.negated();
+            return STOP;
         }
         // Ratio to 28 bits: 17 << 11 would overflow beyond 8, and the cut is at 2.8.
         let ratio = shl_saturating::<11>(mul_hi(speed.to_bits(), self.inverse).min(RATIO_MAX));
@@ -53,6 +55,7 @@ impl Leader {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::BRAKING_MAX;
 
     #[test]
     fn the_wish_is_within_20_um_per_s2_of_the_free_road_term() {
@@ -81,6 +84,6 @@ mod tests {
     #[test]
     fn no_target_speed_is_a_wish_to_stop() {
         let leader = Leader::new(Acceleration::from_mm_per_s2(730), Speed::from_mm_per_s(99));
-        assert_eq!(leader.wish(Speed::from_mm_per_s(50)), BRAKING_MAX.negated());
+        assert_eq!(leader.wish(Speed::from_mm_per_s(50)), STOP);
     }
 }

@@ -24,7 +24,7 @@ mod interpolation;
 mod leader;
 mod position;
 
-pub use actuator::{Actuator, State};
+pub use actuator::{Actuator, Rests, State};
 pub use driver::{Aim, Driver, Stride};
 pub use exponential::Decay;
 pub use follower::Follower;

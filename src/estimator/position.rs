@@ -3,6 +3,7 @@
 //! Eq. 9 as printed is `r(t+k) = r(t+k-1) + v(t+k-1) δt` (forward Euler), which costs metres at δt = 1 s. The default is
 //! the trapezoid `½ (v(t+k-1) + v(t+k)) δt`. Both are `v(t+k-1) w₀ + v(t+k) w₁`, so one piece of code serves both.
 
+use crate::fixed::{Rest, product};
 use crate::time::Duration;
 use crate::units::{RingPosition, Seconds, Speed};
 
@@ -21,16 +22,25 @@ impl Path {
         let whole = step.seconds();
         if trapezoid {
             let half = Seconds::from_bits(whole.to_bits() / 2);
-            Self { before: half, after: half }
+            Self { before: whole.minus(half), after: half } // so that the two are the step, to the last bit
         } else {
             Self { before: whole, after: Seconds::ZERO }
         }
     }
 
-    /// The position at the end of the step.
+    /// The position at the end of the step, with its rest.
     #[inline(always)]
     #[must_use]
-    pub const fn follow(&self, position: RingPosition, before: Speed, after: Speed) -> RingPosition {
-        position.ahead(before.over(self.before)).ahead(after.over(self.after))
+    pub const fn follow(
+        &self,
+        position: RingPosition,
+        rest: Rest,
+        before: Speed,
+        after: Speed,
+    ) -> (RingPosition, Rest) {
+        // Two steps of at most 1 s add up to 2⁵³ 256 m at the most.
+        let way = product(before.to_bits(), self.before.to_bits())
+            .wrapping_add(product(after.to_bits(), self.after.to_bits()));
+        position.along(rest, way)
     }
 }
