@@ -7,6 +7,7 @@ pub mod candump;
 pub mod channel;
 pub mod cli;
 pub mod error;
+pub mod evaluate;
 pub mod figures;
 pub mod heard;
 pub mod metrics;

@@ -1,6 +1,10 @@
 //! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
+mod evaluate;
+
+pub use evaluate::{EvaluateOptions, Impairment, Recording};
+
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
 use crate::scenario::{Overrides, Scenario};
@@ -11,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
+    /// Measure the estimate of a recorded vehicle.
+    Evaluate(EvaluateOptions),
 }
 
 /// A run and what becomes of its results.
@@ -49,6 +55,7 @@ impl Options {
     pub fn read(cli: Cli) -> Result<Self, Error> {
         let arguments = match cli.command {
             Some(Command::Run(arguments)) => arguments,
+            Some(Command::Evaluate(arguments)) => return EvaluateOptions::read(arguments).map(Self::Evaluate),
             None => RunArguments { scenario: None, settings: cli.run },
         };
         RunOptions::read(arguments).map(Self::Run)

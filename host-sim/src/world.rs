@@ -365,8 +365,9 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
 }
 
 /// 3.9 s, or as many whole steps as come to at least that, within the capacity.
+#[must_use]
 #[allow(clippy::cast_precision_loss)]
-fn horizon(step_s: f64) -> holdover::time::Duration {
+pub fn horizon(step_s: f64) -> holdover::time::Duration {
     let steps = (3.9 / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
     duration(steps * step_s)
 }
