@@ -1,6 +1,7 @@
 //! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
 //! decided in [`crate::options`].
 
+use crate::replay::{self, arguments::ReplayArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -27,6 +28,9 @@ pub enum Command {
     /// Run a scenario and report on it
     #[command(after_help = AFTER_HELP)]
     Run(RunArguments),
+    /// Give a unit the traffic of a recorded CAN bus and print what it sends
+    #[command(after_help = replay::arguments::AFTER_HELP)]
+    Replay(ReplayArguments),
 }
 
 /// What can follow `run`.

@@ -3,6 +3,7 @@
 
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
+use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +12,8 @@ use std::path::{Path, PathBuf};
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
+    /// Replay a log.
+    Replay(ReplayOptions),
 }
 
 /// A run and what becomes of its results.
@@ -47,11 +50,11 @@ impl Options {
     /// # Errors
     /// Whatever makes the input unusable, and places for output that cannot be written.
     pub fn read(cli: Cli) -> Result<Self, Error> {
-        let arguments = match cli.command {
-            Some(Command::Run(arguments)) => arguments,
-            None => RunArguments { scenario: None, settings: cli.run },
-        };
-        RunOptions::read(arguments).map(Self::Run)
+        match cli.command {
+            Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
+            Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
+            None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
+        }
     }
 }
 

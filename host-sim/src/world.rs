@@ -4,7 +4,7 @@
 //! Order within a tick at time t: what arrived over the channel up to t is put on the buses with its time of arrival;
 //! sensors and time base speak; every unit receives and ticks; what the units broadcast goes into the channel; the bodies
 //! move on to the next tick under the commands. So a message sent without delay at t is used in the next tick, as on
-//! real buses.
+//! real buses; a microsecond goes by before it is on the bus there.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -298,7 +298,8 @@ impl<'a> World<'a> {
         for to in (0..self.vehicles.len()).filter(|to| *to != from) {
             for arrives_s in self.channel.send(Link { from, to }, at_s) {
                 self.sent += 1;
-                let arrives_us = crate::vehicle::micros(arrives_s);
+                // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
+                let arrives_us = crate::vehicle::micros(arrives_s).max(crate::vehicle::micros(at_s) + 1);
                 self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
             }
         }
@@ -358,8 +359,9 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
 }
 
 /// 3.9 s, or as many whole steps as come to at least that, within the capacity.
+#[must_use]
 #[allow(clippy::cast_precision_loss)]
-fn horizon(step_s: f64) -> holdover::time::Duration {
+pub fn horizon(step_s: f64) -> holdover::time::Duration {
     let steps = (3.9 / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
     duration(steps * step_s)
 }
