@@ -5,6 +5,7 @@ mod evaluate;
 
 pub use evaluate::EvaluateArguments;
 
+use crate::replay::{self, arguments::ReplayArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -34,6 +35,9 @@ pub enum Command {
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
     #[command(after_help = evaluate::AFTER_HELP)]
     Evaluate(EvaluateArguments),
+    /// Give a unit the traffic of a recorded CAN bus and print what it sends
+    #[command(after_help = replay::arguments::AFTER_HELP)]
+    Replay(ReplayArguments),
 }
 
 /// What can follow `run`.

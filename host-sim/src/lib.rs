@@ -18,6 +18,7 @@ pub mod output;
 pub mod plant;
 pub mod recording;
 pub mod reference;
+pub mod replay;
 pub mod report;
 pub mod run;
 pub mod scenario;

@@ -93,7 +93,8 @@ impl Start {
     /// Ticks on without news, and compares at each length that ends in time. The unit ticks at every step after the last
     /// message and, where that is no multiple of the step, at the length's end.
     fn last(mut self, motion: &Motion, timeline: Timeline, lengths_s: &[f64], end_us: i64) -> (Vec<Sample>, u64) {
-        let mut ends: Vec<(i64, f64)> = lengths_s.iter().map(|&length_s| (self.at_us + micros(length_s), length_s)).collect();
+        let mut ends: Vec<(i64, f64)> =
+            lengths_s.iter().map(|&length_s| (self.at_us + micros(length_s), length_s)).collect();
         ends.retain(|(end, _)| *end <= end_us);
         ends.sort_by_key(|(end, _)| *end);
         let last_us = ends.last().map_or(i64::MIN, |(end, _)| *end - self.at_us);

@@ -63,7 +63,8 @@ fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
             Impairment::Channel(_, link) => over_link::evaluate(recording, link, options.step_s, &advance),
             Impairment::Outages(lengths_s) => in_silence::evaluate(recording, lengths_s, options.step_s, &advance),
         };
-        outcome.map_err(|cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step"))
+        outcome
+            .map_err(|cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step"))
     };
     let outcomes = options.recordings.par_iter().map(evaluate).collect();
     bar.finish_and_clear();

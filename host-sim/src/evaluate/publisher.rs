@@ -1,9 +1,9 @@
 //! A recorded vehicle as a sender: a send time enters, the V2X message that it broadcasts then leaves.
 
+use holdover::Config;
 use holdover::wire::intent::Intent;
 use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
-use holdover::Config;
 
 use super::listener::{PREDECESSOR, TARGET};
 use super::timeline::{Timeline, seconds};
@@ -107,11 +107,13 @@ mod tests {
 
     #[test]
     fn the_last_sample_at_or_before_a_send_is_sent_with_its_own_time() {
-        let drive = Motion::parse(Path::new("m.csv"), b"t_s,position_m,speed_mps\n1,10,5\n1.1,10.5,5.5\n1.2,11.1,6.5").unwrap();
+        let drive =
+            Motion::parse(Path::new("m.csv"), b"t_s,position_m,speed_mps\n1,10,5\n1.1,10.5,5.5\n1.2,11.1,6.5").unwrap();
         let timeline = Timeline::around(0.0, 0.01);
         let mut sender = Publisher::new(&drive, timeline, station(0));
         assert!(sender.publish(999_999).is_none());
-        let sent: Vec<_> = [1_000_000, 1_099_999, 1_100_000, 9_000_000].iter().filter_map(|at| sender.publish(*at)).collect();
+        let sent: Vec<_> =
+            [1_000_000, 1_099_999, 1_100_000, 9_000_000].iter().filter_map(|at| sender.publish(*at)).collect();
         assert_eq!(sent.iter().map(|s| s.sampled_us).collect::<Vec<_>>(), [1_000_000, 1_000_000, 1_100_000, 1_200_000]);
         assert_eq!(sent[0].message.motion.stamp, sent[1].message.motion.stamp);
         assert_eq!(sent[0].message.motion.acceleration.to_mm_per_s2(), 0);
