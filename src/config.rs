@@ -107,8 +107,11 @@ pub struct Link {
     pub tolerance: Duration,
     /// Older stamps are refused; at most 10 s.
     pub stale: Duration,
-    /// Stamps further in the future are refused: the clocks' error.
+    /// Stamps further in the future are refused.
     pub future: Duration,
+    /// Between a sender's stamp and the unit's own clock there is no more error than this while the unit is synchronised:
+    /// both clocks' errors and the stamp's rounding.
+    pub clock_error: Duration,
     /// A slot may be taken over by another station after this much silence.
     pub slot_reuse: Duration,
     /// Age up to which a target's estimate is driven by.
@@ -121,18 +124,31 @@ pub struct Link {
     pub assumed_delay: Duration,
 }
 
-/// The absolute limits of the last gate; disengaged unless given.
+/// The limits of the last gate; disengaged unless given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Envelope {
     /// Largest acceleration ever commanded.
     pub acceleration: Acceleration,
-    /// Hardest braking ever commanded, as a magnitude.
+    /// Hardest braking ever commanded, as a magnitude: what the vehicle is sure to be capable of.
     pub braking: Acceleration,
-    /// Fastest change ever commanded.
+    /// Fastest change ever commanded, that of emergency braking.
     pub jerk: Jerk,
     /// No acceleration at or beyond this speed.
     pub speed: Speed,
+    /// What is left between the bumpers when both have come to rest.
+    pub margin: Distance,
+}
+
+impl Envelope {
+    /// A car's: 3 m/s², emergency braking of 8 m/s² built up at 25 m/s³, 50 m/s, half a metre.
+    pub const CAR: Self = Self {
+        acceleration: Acceleration::from_mm_per_s2(3_000),
+        braking: Acceleration::from_mm_per_s2(8_000),
+        jerk: Jerk::from_mm_per_s3(25_000),
+        speed: Speed::from_mm_per_s(50_000),
+        margin: Distance::from_mm(500),
+    };
 }
 
 /// Everything that the unit has to be told.
@@ -196,7 +212,7 @@ pub enum ConfigError {
     Link,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     Body,
-    /// A limit of the envelope is zero or negative.
+    /// A limit of the envelope is zero, or one is negative.
     Envelope,
 }
 
@@ -217,7 +233,7 @@ impl core::fmt::Display for ConfigError {
             Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
-            Self::Envelope => "a limit of the envelope is zero or negative",
+            Self::Envelope => "a limit of the envelope is zero, or its margin is negative",
         })
     }
 }
@@ -264,6 +280,7 @@ impl Config {
                 tolerance: Duration::from_millis(150),
                 stale: parameters::STALE_MAX,
                 future: Duration::from_millis(5),
+                clock_error: Duration::from_micros(500),
                 slot_reuse: Duration::from_millis(2000),
                 holdover: Duration::from_millis(15_000),
                 ego_timeout: Duration::from_millis(50),
@@ -315,6 +332,8 @@ impl Config {
                 && link.stale <= parameters::STALE_MAX
                 && link.future >= Duration::ZERO
                 && link.future < millis(1000)
+                && link.clock_error >= Duration::ZERO
+                && link.clock_error < millis(1000)
                 && [link.slot_reuse, link.holdover, link.ego_timeout, link.sync_timeout].into_iter().all(positive)
                 && link.assumed_delay >= Duration::ZERO
                 && link.assumed_delay <= millis(2000),
@@ -327,6 +346,7 @@ impl Config {
                     && e.braking > Acceleration::ZERO
                     && e.jerk > Jerk::ZERO
                     && e.speed > Speed::ZERO
+                    && e.margin >= Distance::ZERO
             }),
             ConfigError::Envelope,
         )

@@ -1,12 +1,54 @@
-//! The last gate before the actuators: a demand enters, a command that is inside absolute limits leaves.
+//! The last gate before the actuators: a demand enters, a command that is inside absolute limits, and with which the
+//! vehicle stays able to stop behind what is certain of the one ahead, leaves.
 //!
 //! It is independent of the controller, disengaged unless configured, and only ever makes a command more careful: each
-//! check is a cap on the acceleration, and the smallest one wins. Only the limit on jerk also bounds from below, because
-//! slamming the brake is not careful.
+//! check is a cap on the acceleration, and the smallest one wins. Only the limits on jerk and on braking bound from
+//! below, because slamming the brake is not careful.
+//!
+//! # Safe distance
+//!
+//! The vehicle ahead cannot stop before the near end of its bound does if that brakes at its hardest
+//! ([`crate::estimator::bound::Bound::nearest_stop`]); through a silence that point does not move. The ego has to be
+//! able to stop before it: RSS' longitudinal rule with the ego's own reaction in full.
+//!
+//! With actuators that lag by `T`, `y = r + T v` and `z = v + T a` move as a double integrator, `ẏ = z`, `ż = u`, exactly.
+//! Emergency braking takes the demand `u` down to `-b` at jerk `j`, which takes `τ = (u + b)/j`. Then
+//!
+//! ```text
+//! V(z, u) = ( z + ½ j (τ + h)² )² / 2b
+//! ```
+//!
+//! is more than all of the way that `y` still makes if the demand `u` holds for one more tick `h` and emergency braking
+//! follows: along that manoeuvre `V` falls by at least the way made, and it is never negative. So `V <= S`, with `S` the
+//! way from `y` to the point, is kept from tick to tick by braking at the latest when it would be broken, and solved for
+//! the demand it is the largest acceleration that keeps the next tick safe:
+//!
+//! ```text
+//! u = sqrt( 2 j ( sqrt(2 b S) - z ) ) - j h - b
+//! ```
+//!
+//! It falls steadily as the way shrinks: there is no cliff. In steady following behind a vehicle that brakes no harder
+//! than the ego it does nothing as long as the newest sample is younger than `t_g - ρ`, with
+//! `ρ = T + 2h + (b + j h)²/(2 j b)`, if the standstill distance covers margin, accuracies and `(b + j h)⁴/(8 j² b)`.
 
 use crate::config::Envelope;
 use crate::time::Duration;
-use crate::units::{Acceleration, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
+
+/// The ego as the gate sees it: its own motion at the uncertain end that is the less safe one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ego {
+    /// Front bumper, as far ahead as it may be.
+    pub position: Position,
+    /// Speed, as high as it may be.
+    pub speed: Speed,
+    /// Acceleration reached.
+    pub acceleration: Acceleration,
+    /// The command in force.
+    pub last: Acceleration,
+    /// Time constant of its actuators.
+    pub lag: FineSeconds,
+}
 
 /// No more acceleration than the absolute limit.
 #[must_use]
@@ -26,12 +68,56 @@ pub fn freshness_cap(is_fresh: bool) -> Acceleration {
     if is_fresh { Acceleration::MAX } else { Acceleration::ZERO }
 }
 
-/// No faster change than the limit on jerk over one period, and no harder braking than the limit on braking.
+/// The way to a point before which the ego has to be able to stop, less the margin, the lag's part and one tick of delay:
+/// `S` of the module's theory.
 #[must_use]
-pub fn rate_limited(envelope: &Envelope, wish: Acceleration, last: Acceleration, period: Duration) -> Acceleration {
+pub fn room(envelope: &Envelope, ego: &Ego, stop_before: Position, period: Duration) -> Distance {
+    let ahead = stop_before.ahead_of(ego.position).minus(envelope.margin);
+    ahead.minus(way(ego.speed, ego.lag)).minus(ego.speed.over(period.seconds()))
+}
+
+/// The largest acceleration that keeps the next tick safe; below the hardest braking if none does.
+#[must_use]
+pub fn distance_cap(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration) -> Acceleration {
+    let braking = micros(envelope.braking);
+    let jerk = i64::from(envelope.jerk.to_mm_per_s3()).saturating_mul(1000);
+    let z = speed_micros(ego.speed).saturating_add(speed_micros(ego.acceleration.over(ego.lag)));
+    let fastest = root(2i64.saturating_mul(braking).saturating_mul(distance_micros(room)));
+    let spare = fastest.saturating_sub(z);
+    if spare < 0 {
+        return Acceleration::MIN;
+    }
+    let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare));
+    let tick = micros(envelope.jerk.over(period.fine_seconds()));
+    from_micros(rise.saturating_sub(tick).saturating_sub(braking))
+}
+
+/// The lowest command that the limits on jerk and braking allow: emergency braking.
+#[must_use]
+pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
     let slew = envelope.jerk.over(period.fine_seconds());
-    let floor = last.minus(slew).max(envelope.braking.negated());
-    wish.min(last.plus(slew)).max(floor)
+    last.minus(slew).max(envelope.braking.negated())
+}
+
+/// The highest command that the limit on jerk allows.
+#[must_use]
+pub fn ceiling(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
+    last.plus(envelope.jerk.over(period.fine_seconds()))
+}
+
+/// Whether emergency braking from now on stops the ego in time: the predicate that the gate keeps.
+#[must_use]
+pub fn is_safe(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration) -> bool {
+    distance_cap(envelope, ego, room, period) >= floor(envelope, ego.last, period)
+}
+
+/// What the gate has to go by besides the ego.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Situation {
+    /// Whether the ego's own motion is fresh.
+    pub is_fresh: bool,
+    /// The nearest point before which the ego has to be able to stop, if there is one.
+    pub stop_before: Option<Position>,
 }
 
 /// The gate: the command that the demand becomes.
@@ -39,65 +125,68 @@ pub fn rate_limited(envelope: &Envelope, wish: Acceleration, last: Acceleration,
 pub fn gate(
     envelope: &Envelope,
     demand: Acceleration,
-    last: Acceleration,
-    speed: Speed,
-    is_fresh: bool,
+    ego: &Ego,
+    situation: &Situation,
     period: Duration,
 ) -> Acceleration {
-    let cap = absolute_cap(envelope).min(speed_cap(envelope, speed)).min(freshness_cap(is_fresh));
-    rate_limited(envelope, demand.min(cap), last, period)
+    let distance = situation
+        .stop_before
+        .map_or(Acceleration::MAX, |point| distance_cap(envelope, ego, room(envelope, ego, point, period), period));
+    let cap = absolute_cap(envelope)
+        .min(speed_cap(envelope, ego.speed))
+        .min(freshness_cap(situation.is_fresh))
+        .min(distance)
+        .min(ceiling(envelope, ego.last, period));
+    demand.min(cap).max(floor(envelope, ego.last, period))
+}
+
+/// Where the ego has to be able to stop behind a vehicle on its own path: behind that one's rear, where its near end would
+/// come to rest.
+#[must_use]
+pub fn stop_behind(nearest_stop: Position, length: Distance) -> Position {
+    nearest_stop.ahead(length.negated())
+}
+
+/// Where the ego has to be able to stop for a vehicle on a path that crosses its own: before the conflict area, until the
+/// rear of that one's near end has left it.
+#[must_use]
+pub fn stop_before_conflict(
+    area_begins: Position,
+    other_near_end: Position,
+    other_length: Distance,
+    other_area_ends: Position,
+) -> Option<Position> {
+    let has_left = other_near_end.ahead(other_length.negated()) >= other_area_ends;
+    if has_left { None } else { Some(area_begins) }
+}
+
+/// `v T`, rounded up by at most a micrometre.
+fn way(speed: Speed, time: FineSeconds) -> Distance {
+    // 23 + 30 - 32 = 21 bits, and one more than half of that.
+    let product = crate::fixed::mul_hi(speed.to_bits(), time.to_bits());
+    Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1))
+}
+
+fn micros(acceleration: Acceleration) -> i64 {
+    acceleration.to_multiple_of(1_000_000)
+}
+
+fn speed_micros(speed: Speed) -> i64 {
+    speed.to_multiple_of(1_000_000)
+}
+
+fn distance_micros(distance: Distance) -> i64 {
+    distance.to_multiple_of(1_000_000)
+}
+
+fn from_micros(micros: i64) -> Acceleration {
+    Acceleration::from_ratio(micros, 1_000_000)
+}
+
+/// The square root, rounded down; 0 of what is negative.
+fn root(x: i64) -> i64 {
+    i64::try_from(x.max(0).unsigned_abs().isqrt()).unwrap_or(i64::MAX)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::units::Jerk;
-
-    const LIMITS: Envelope = Envelope {
-        acceleration: Acceleration::from_mm_per_s2(2000),
-        braking: Acceleration::from_mm_per_s2(6000),
-        jerk: Jerk::from_mm_per_s3(10_000),
-        speed: Speed::from_mm_per_s(30_000),
-    };
-    const PERIOD: Duration = Duration::from_millis(10);
-
-    fn around(mm: i32) -> impl Iterator<Item = i32> {
-        (mm - 5..=mm + 5).chain([-60_000, -1, 0, 1, 60_000])
-    }
-
-    #[test]
-    fn nothing_beyond_the_absolute_limits_gets_out() {
-        for wish in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
-            for last in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
-                let out = gate(&LIMITS, wish, last, Speed::ZERO, true, PERIOD);
-                let last_inside = last >= LIMITS.braking.negated() && last <= LIMITS.acceleration;
-                assert!(
-                    !last_inside || out <= LIMITS.acceleration && out >= LIMITS.braking.negated(),
-                    "{wish:?} {last:?}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn no_change_is_faster_than_the_limit_on_jerk() {
-        for wish in around(100).chain(around(-100)).map(Acceleration::from_mm_per_s2) {
-            let out = rate_limited(&LIMITS, wish, Acceleration::ZERO, PERIOD).to_mm_per_s2();
-            assert_eq!(out, wish.to_mm_per_s2().clamp(-100, 100));
-        }
-    }
-
-    #[test]
-    fn at_the_speed_limit_nothing_accelerates() {
-        for speed in around(30_000) {
-            let cap = speed_cap(&LIMITS, Speed::from_mm_per_s(speed));
-            assert_eq!(cap == Acceleration::ZERO, speed >= 30_000, "{speed}");
-        }
-    }
-
-    #[test]
-    fn a_stale_ego_does_not_accelerate() {
-        let last = Acceleration::from_mm_per_s2(0);
-        assert_eq!(gate(&LIMITS, Acceleration::MAX, last, Speed::ZERO, false, PERIOD), Acceleration::ZERO);
-    }
-}
+mod tests;

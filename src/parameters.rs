@@ -34,6 +34,23 @@ pub const REACH: Distance = Distance::from_mm(1_500_000);
 /// Oldest stamp that any configuration may use.
 pub const STALE_MAX: Duration = Duration::from_millis(10_000);
 
+/// Position accuracy taken where none is published: what satellite positioning without correction keeps to.
+pub const UNPUBLISHED_POSITION_ACCURACY: Distance = Distance::from_mm(5_000);
+/// Speed accuracy taken where none is published.
+pub const UNPUBLISHED_SPEED_ACCURACY: Speed = Speed::from_mm_per_s(1_500);
+
+/// Half a step of a position on the wire, and of a speed, rounded up.
+pub const POSITION_ROUNDING: Distance = Distance::from_mm(1);
+/// See [`POSITION_ROUNDING`].
+pub const SPEED_ROUNDING: Speed = Speed::from_mm_per_s(1);
+
+/// Without time synchronisation a message may have been under way for this long.
+pub const UNKNOWN_DELAY: Duration = Duration::from_millis(2_000);
+
+/// So many implausible samples in a row that are plausible among themselves are believed: then it was the bound that was
+/// wrong (a restart of the sender, a corrected position).
+pub const RECOVERY_SAMPLES: u8 = 5;
+
 /// Default gains: overdamped (poles of `s² + k(t_g+γ)s + k` at -1 and -0.5 for `t_g` = 1 s) and string stable at
 /// `t_g` = 1 s, since `k (1 + 2γ/t_g) t_g² = 2.5 >= 2`.
 pub const GAIN: Gain = Gain::from_milli(500);

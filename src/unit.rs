@@ -5,11 +5,15 @@ use embedded_can::Frame as CanFrame;
 use heapless::Vec;
 
 use crate::clock::Clock;
-use crate::config::{Config, ConfigError};
+use crate::config::{Config, ConfigError, Envelope};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::envelope;
+use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Refusal};
+use crate::parameters::{
+    DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
+};
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
@@ -19,6 +23,10 @@ use crate::wire::{Frame, Predecessor, Received, Receiver, Role, Sender};
 
 mod inbox;
 mod outbox;
+mod range;
+
+/// A view of the range sensor older than this is not driven by.
+const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), status.
 pub const MAX_FRAMES: usize = 16;
@@ -45,6 +53,8 @@ pub struct Estimate {
     pub age: Duration,
     /// Whether the link to the target is on.
     pub link_on: bool,
+    /// What is certain of it at the tick.
+    pub bound: Option<Bound>,
 }
 
 /// The answer of one tick.
@@ -79,6 +89,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     mode: Mode,
     health: Health,
     outbox: outbox::Outbox,
+    ranging: range::Ranging,
     last_tick: Option<Instant>,
 }
 
@@ -103,6 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             mode: Mode::Standby,
             health: Health::new(),
             outbox: outbox::Outbox::new(),
+            ranging: range::Ranging::new(),
             last_tick: None,
         })
     }
@@ -150,9 +162,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
         let speed = ego.map_or(Speed::ZERO, |ego| ego.speed);
         let acceleration = match &self.config.envelope {
-            Some(limits) if self.mode != Mode::Standby => {
-                envelope::gate(limits, demand, last, speed, facts.ego.is_ok(), self.config.period)
-            }
+            Some(limits) if self.mode != Mode::Standby => self.gate(limits, demand, last, ego.as_ref(), &facts, target),
             _ => demand,
         };
         self.controller.correct(acceleration);
@@ -189,6 +199,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = match &self.ego {
             None => Err(FaultCause::EgoMissing),
             Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
+            Some(_) if self.ranging.disagrees() => Err(FaultCause::RangeDisagrees),
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
@@ -272,7 +283,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 });
                 Course::Law { driver: self.driver(), target: reading }
             }
-            Mode::Fallback { since, .. } => Course::Caution { since },
+            Mode::Fallback { since, .. } => match self.still_known(now, target) {
+                Some(ahead) => Course::Cruise { ahead },
+                None => Course::Caution { since },
+            },
             Mode::Fault { .. } => Course::Brake,
         }
     }
@@ -280,7 +294,65 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn estimate(&self, now: Instant, index: usize, reading: Reading) -> Option<Estimate> {
         let track = self.peers.get(index)?;
         let age = now.since(track.newest()?.at);
-        Some(Estimate { reading, age, link_on: track.link().is_on(now, &self.config.link) })
+        let link_on = track.link().is_on(now, &self.config.link);
+        Some(Estimate { reading, age, link_on, bound: self.bound(index, now) })
+    }
+
+    /// What is certain of a peer at an instant, now or later.
+    #[must_use]
+    pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
+        let track = self.peers.get(index)?;
+        Some(track.certainty().bound()?.after(at, &track.reach()))
+    }
+
+    /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
+    /// or the near end of what is certain. Never a stale sample.
+    fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
+        if let Some(seen) = self.ranging.ahead(now, RANGE_TIMEOUT) {
+            return Some(seen);
+        }
+        let index = target?;
+        let bound = self.bound(index, now)?;
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        let position = bound.lowest_position().ahead(length.negated());
+        Some(Reading { position, speed: bound.lowest_speed() })
+    }
+
+    /// The last gate, with the ego at the less safe end of its accuracies.
+    fn gate(
+        &self,
+        limits: &Envelope,
+        demand: Acceleration,
+        last: Acceleration,
+        ego: Option<&State>,
+        facts: &Facts,
+        target: Option<usize>,
+    ) -> Acceleration {
+        let sample = self.ego.unwrap_or(Sample::UNKNOWN);
+        let state = ego.copied().unwrap_or_default();
+        let moved = state.position.ahead_of(sample.position.ring());
+        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);
+        let faster = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
+        let ego = envelope::Ego {
+            position: sample.position.ahead(moved).ahead(off),
+            speed: state.speed.plus(faster),
+            acceleration: state.acceleration,
+            last,
+            lag: self.config.lag,
+        };
+        let situation = envelope::Situation {
+            is_fresh: facts.ego.is_ok(),
+            stop_before: target.and_then(|index| self.stop_behind(index)),
+        };
+        envelope::gate(limits, demand, &ego, &situation, self.config.period)
+    }
+
+    /// The point behind a peer before which the ego has to be able to stop.
+    fn stop_behind(&self, index: usize) -> Option<crate::units::Position> {
+        let track = self.peers.get(index)?;
+        let stop = track.certainty().bound()?.nearest_stop(&track.reach());
+        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        Some(envelope::stop_behind(stop, length))
     }
 
     /// What is refused, by cause.

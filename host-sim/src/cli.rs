@@ -1,6 +1,11 @@
 //! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
 //! decided in [`crate::options`].
 
+mod evaluate;
+
+pub use evaluate::EvaluateArguments;
+
+use crate::replay::{self, arguments::ReplayArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -27,6 +32,12 @@ pub enum Command {
     /// Run a scenario and report on it
     #[command(after_help = AFTER_HELP)]
     Run(RunArguments),
+    /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
+    #[command(after_help = evaluate::AFTER_HELP)]
+    Evaluate(EvaluateArguments),
+    /// Give a unit the traffic of a recorded CAN bus and print what it sends
+    #[command(after_help = replay::arguments::AFTER_HELP)]
+    Replay(ReplayArguments),
 }
 
 /// What can follow `run`.
@@ -91,6 +102,7 @@ Examples:
   holdover-sim run city.toml --out city  your scenario, its report in city/
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
+  holdover-sim evaluate --help           measure the estimate on recordings
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

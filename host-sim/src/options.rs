@@ -1,8 +1,13 @@
 //! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
+mod evaluate;
+
+pub use evaluate::{EvaluateOptions, Impairment, Recording};
+
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
+use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +16,10 @@ use std::path::{Path, PathBuf};
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
+    /// Measure the estimate of a recorded vehicle.
+    Evaluate(EvaluateOptions),
+    /// Replay a log.
+    Replay(ReplayOptions),
 }
 
 /// A run and what becomes of its results.
@@ -47,11 +56,12 @@ impl Options {
     /// # Errors
     /// Whatever makes the input unusable, and places for output that cannot be written.
     pub fn read(cli: Cli) -> Result<Self, Error> {
-        let arguments = match cli.command {
-            Some(Command::Run(arguments)) => arguments,
-            None => RunArguments { scenario: None, settings: cli.run },
-        };
-        RunOptions::read(arguments).map(Self::Run)
+        match cli.command {
+            Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
+            Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
+            None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
+        }
     }
 }
 

@@ -114,7 +114,9 @@ impl Motion {
         if let Some(recorded) = newest.acceleration_mps2 {
             return recorded;
         }
-        let start = self.rows[..end].partition_point(|row| row.t_s < newest.t_s - SLOPE_WINDOW_S);
+        // The sample at exactly 0.5 s counts, and differences of decimal fractions are exact only nearly.
+        let from_s = newest.t_s - SLOPE_WINDOW_S - 1e-9;
+        let start = self.rows[..end].partition_point(|row| row.t_s < from_s);
         slope(&self.rows[start..end])
     }
 
@@ -176,11 +178,23 @@ impl ChannelTrace {
         Self::parse(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?)
     }
 
+    /// Reads a file that lasts: of two rows or more.
+    ///
+    /// # Errors
+    /// See [`ChannelTrace::read`]; and only one row.
+    pub fn read_lasting(file: &Path) -> Result<Self, Error> {
+        Self::parse_rows(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?, 2)
+    }
+
     /// Reads the bytes of a file; its name is for the errors.
     ///
     /// # Errors
     /// Not text, no rows, a column missing, not a number or negative, time not increasing.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        Self::parse_rows(file, bytes, 1)
+    }
+
+    fn parse_rows(file: &Path, bytes: &[u8], least: usize) -> Result<Self, Error> {
         let table = Table::parse(file, bytes, CHANNEL_COLUMNS)?;
         let (t, delay) = (table.column(&TIME)?, table.column(&DELAY)?);
         let mut rows: Vec<ChannelRow> = Vec::new();
@@ -189,7 +203,7 @@ impl ChannelTrace {
             line.follows(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
         }
-        table.has_rows(rows.len(), 1)?;
+        table.has_rows(rows.len(), least)?;
         Ok(Self { rows })
     }
 

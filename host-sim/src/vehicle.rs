@@ -24,6 +24,11 @@ pub const STEPS: usize = 400;
 /// The simulated unit: the same core as on the ECU, with the same capacities.
 pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
+/// Cycle of the time base, in seconds.
+const SYNC_EVERY_S: f64 = 0.5;
+/// Cycle of the driver's wish, in seconds.
+const WISH_EVERY_S: f64 = 0.1;
+
 /// GNSS time at the start of every run, in microseconds: some moment, with all digits in use.
 pub const EPOCH_US: u64 = 1_465_000_123_456_700;
 
@@ -143,11 +148,24 @@ impl Vehicle {
         at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
     }
 
-    /// The time base's two messages.
+    /// What the vehicle puts on its unit's bus in a period: its motion, and what the driver wants and the time base when
+    /// they are due.
     ///
     /// # Errors
     /// The bus's.
-    pub fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
+    pub fn speak(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
+        self.sense(at_s)?;
+        if is_due(at_s, WISH_EVERY_S, period_s) {
+            self.wish(at_s)?;
+        }
+        if is_due(at_s, SYNC_EVERY_S, period_s) {
+            self.synchronise(at_s)?;
+        }
+        Ok(())
+    }
+
+    /// The time base's two messages.
+    fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
         self.synced = (self.synced + 1) % 16;
         let time = gnss(at_s).as_micros();
         #[allow(clippy::cast_possible_truncation)] // 32 bits of seconds last until 2116
@@ -159,10 +177,7 @@ impl Vehicle {
     }
 
     /// The vehicle's own motion, as its sensors see it now.
-    ///
-    /// # Errors
-    /// The bus's.
-    pub fn sense(&mut self, at_s: f64) -> io::Result<()> {
+    fn sense(&mut self, at_s: f64) -> io::Result<()> {
         self.tag = (self.tag + 1) % 4;
         let motion = Motion {
             tag: self.tag,
@@ -179,11 +194,9 @@ impl Vehicle {
     }
 
     /// What the driver wants.
-    ///
-    /// # Errors
-    /// The bus's.
-    pub fn wish(&mut self, at_s: f64) -> io::Result<()> {
-        self.put(at_s, &Message::EgoIntent(self.wish))
+    fn wish(&mut self, at_s: f64) -> io::Result<()> {
+        let wish = EgoIntent { engaged: self.engaged, ..self.wish };
+        self.put(at_s, &Message::EgoIntent(wish))
     }
 
     /// A message from the channel.
@@ -197,11 +210,8 @@ impl Vehicle {
         frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
     }
 
-    /// Lets the unit receive all that has been on the bus up to now, without a tick.
-    ///
-    /// # Errors
-    /// The bus's.
-    pub fn receive(&mut self, at_s: f64) -> io::Result<()> {
+    /// Lets the unit receive all that has been on the bus up to now.
+    fn receive(&mut self, at_s: f64) -> io::Result<()> {
         let now = self.instant(at_s);
         while let Some((at, frame)) = self.ecu.receive(now)? {
             let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
@@ -245,6 +255,12 @@ impl Vehicle {
         debug_assert!(sent.is_ok(), "the vehicle says nothing that the catalogue has no line for");
         result
     }
+}
+
+/// Whether something of that cycle is due in the tick at `at_s`.
+fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
+    let phase = (at_s + 1e-9).rem_euclid(cycle_s);
+    phase < period_s - 1e-9
 }
 
 /// What the driver of a follower, or of a leader, wants.

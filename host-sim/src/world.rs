@@ -4,7 +4,7 @@
 //! Order within a tick at time t: what arrived over the channel up to t is put on the buses with its time of arrival;
 //! sensors and time base speak; every unit receives and ticks; what the units broadcast goes into the channel; the bodies
 //! move on to the next tick under the commands. So a message sent without delay at t is used in the next tick, as on
-//! real buses.
+//! real buses; a microsecond goes by before it is on the bus there.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -28,10 +28,8 @@ use crate::scenario::Scenario;
 use crate::streams::{Purpose, stream, unit};
 use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
 
-/// Cycle of the time base, in seconds.
-const SYNC_EVERY_S: f64 = 0.5;
-/// Cycle of the driver's wish, in seconds.
-const WISH_EVERY_S: f64 = 0.1;
+/// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
+const WARM_UP_S: f64 = 1.0;
 
 /// One tick of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,19 +223,26 @@ impl<'a> World<'a> {
         Ok(trace)
     }
 
+    /// The time before the run, as every real unit knows it: it has power and ticks, its time base and its sensors
+    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. It ends when
+    /// the own messages, which go out from the first tick on, are due at time 0.
     fn warm_up(&mut self) -> io::Result<()> {
+        let period_s = self.scenario.period_s;
+        let messages = (WARM_UP_S * self.scenario.message_rate_hz).ceil();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
+        let ticks = (messages / self.scenario.message_rate_hz / period_s - 1e-9).ceil() as u32;
+        self.place_recorded_leader(0.0);
         for vehicle in &mut self.vehicles {
-            for half_seconds in (1..=3).rev() {
-                let at_s = -f64::from(half_seconds) * SYNC_EVERY_S;
-                vehicle.synchronise(at_s)?;
-                vehicle.wish(at_s)?;
-                vehicle.receive(at_s)?;
+            let (start_m, engages) = (vehicle.plant.position_m, vehicle.engaged);
+            vehicle.engaged = false;
+            for tick in (1..=ticks).rev() {
+                let at_s = -f64::from(tick) * period_s;
+                vehicle.plant.position_m = start_m + vehicle.plant.speed_mps * at_s;
+                vehicle.speak(at_s, period_s)?;
+                vehicle.tick(at_s)?;
             }
-            for periods in [2.0, 1.0] {
-                let at_s = -periods * self.scenario.period_s;
-                vehicle.sense(at_s)?;
-                vehicle.receive(at_s)?;
-            }
+            vehicle.plant.position_m = start_m;
+            vehicle.engaged = engages;
         }
         Ok(())
     }
@@ -248,13 +253,7 @@ impl<'a> World<'a> {
         self.show_to_paper(at_s)?;
         let mut broadcasts = Vec::new();
         for vehicle in &mut self.vehicles {
-            vehicle.sense(at_s)?;
-            if is_due(at_s, WISH_EVERY_S, self.scenario.period_s) {
-                vehicle.wish(at_s)?;
-            }
-            if is_due(at_s, SYNC_EVERY_S, self.scenario.period_s) {
-                vehicle.synchronise(at_s)?;
-            }
+            vehicle.speak(at_s, self.scenario.period_s)?;
             broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
         }
         trace.times_s.push(at_s);
@@ -299,7 +298,8 @@ impl<'a> World<'a> {
         for to in (0..self.vehicles.len()).filter(|to| *to != from) {
             for arrives_s in self.channel.send(Link { from, to }, at_s) {
                 self.sent += 1;
-                let arrives_us = crate::vehicle::micros(arrives_s);
+                // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
+                let arrives_us = crate::vehicle::micros(arrives_s).max(crate::vehicle::micros(at_s) + 1);
                 self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
             }
         }
@@ -315,12 +315,6 @@ impl<'a> World<'a> {
         leader.plant.acceleration_mps2 = motion.past_slope(motion.start_s() + at_s);
         leader.command_mps2 = leader.plant.acceleration_mps2;
     }
-}
-
-/// Whether something of that cycle is due in the tick at `at_s`.
-fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
-    let phase = (at_s + 1e-9).rem_euclid(cycle_s);
-    phase < period_s - 1e-9
 }
 
 fn record(vehicle: &Vehicle) -> Tick {
@@ -365,8 +359,9 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
 }
 
 /// 3.9 s, or as many whole steps as come to at least that, within the capacity.
+#[must_use]
 #[allow(clippy::cast_precision_loss)]
-fn horizon(step_s: f64) -> holdover::time::Duration {
+pub fn horizon(step_s: f64) -> holdover::time::Duration {
     let steps = (3.9 / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
     duration(steps * step_s)
 }

@@ -10,8 +10,10 @@ use std::process::{Command, Output, Stdio};
 fn options(arguments: &str) -> Result<RunOptions, String> {
     let words = std::iter::once("holdover-sim").chain(arguments.split_whitespace());
     let cli = Cli::try_parse_from(words).map_err(|error| error.to_string())?;
-    let Options::Run(options) = Options::read(cli).map_err(|error| error.to_string())?;
-    Ok(options)
+    match Options::read(cli).map_err(|error| error.to_string())? {
+        Options::Run(options) => Ok(options),
+        other => panic!("{other:?} is no run"),
+    }
 }
 
 fn holdover_sim(arguments: &[&str]) -> Output {

@@ -13,9 +13,9 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Driver, Reading, State};
+use crate::estimator::{Driver, Follower, Reading, State};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Share, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 
 /// What the controller drives by in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,11 @@ pub enum Course {
         driver: Driver,
         /// The target's reading and length.
         target: Option<(Reading, Option<Distance>)>,
+    },
+    /// Adaptive cruise control: behind what is still known, seen from the rear bumper of the vehicle ahead.
+    Cruise {
+        /// Rear bumper and speed of the vehicle ahead.
+        ahead: Reading,
     },
     /// Caution: braking that grows slowly.
     Caution {
@@ -53,6 +58,18 @@ pub struct Controller {
 /// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
 /// one that is not costs comfort first.
 const CAUTION: Jerk = Jerk::from_mm_per_s3(500);
+
+/// Gains of the cruise control.
+struct Seen {
+    gain: Gain,
+    damping: Seconds,
+    time_gap: Seconds,
+}
+
+/// Softer than the cooperative law and with a longer time gap, because nothing is known of what the vehicle ahead
+/// intends: overdamped (poles at -0.23 and -0.65 /s).
+const CRUISE: Seen =
+    Seen { gain: Gain::from_milli(150), damping: Seconds::from_millis(3_999), time_gap: Seconds::from_millis(1_800) };
 
 /// Within this time a vehicle at its speed limit closes on it.
 const SPEED_LIMIT_TIME: i64 = 2;
@@ -89,11 +106,14 @@ impl Controller {
                 *demand
             }
             (Course::Law { driver, target }, Some(ego)) => self.by_law(config, driver, ego, *target),
+            (Course::Cruise { ahead }, Some(ego)) => self.cruise(config, ego, ahead),
             (Course::Caution { since }, _) => {
                 let braking = growth(now.since(*since)).min(config.limits.braking);
                 self.slewed(config, braking.negated())
             }
-            (Course::Brake | Course::Law { .. }, _) => self.slewed(config, config.limits.braking.negated()),
+            (Course::Brake | Course::Law { .. } | Course::Cruise { .. }, _) => {
+                self.slewed(config, config.limits.braking.negated())
+            }
         };
         self.demand
     }
@@ -110,6 +130,17 @@ impl Controller {
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
         let demand = stride.demand(ego, ahead);
         demand.min(speed_cap(config.law.max_speed, ego.speed))
+    }
+
+    /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.
+    fn cruise(&self, config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
+        let Seen { gain, damping, time_gap } = CRUISE;
+        let time_gap = time_gap.max(config.law.time_gap);
+        let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill);
+        let wish = law.wish(ego, ahead.position.ring(), ahead.speed);
+        let limits = config.limits;
+        let inside = wish.limited(limits.braking.negated(), limits.acceleration);
+        self.slewed(config, inside.min(speed_cap(config.law.max_speed, ego.speed)))
     }
 
     fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {

@@ -1,17 +1,28 @@
-//! The unit's mode: facts of this tick enter, the mode and since when leave.
+//! The unit's mode: facts of this tick enter, the mode with its data leaves.
+//!
+//! # Theory of operation
 //!
 //! ```text
-//! Standby      not engaged
-//! Cooperative  the target's link is on, or the ego leads
-//! Holdover     the target's link is off, and its estimate is young enough to drive by
-//! Fallback     no target to drive by
-//! Fault        the ego's own motion is unknown
+//!              engaged, own motion known
+//!  Standby ---------------------------------> Cooperative <---+  the target's link is on, or the ego leads
+//!     ^                                        |   ^           |
+//!     | not engaged                   link off |   | link on   | link on: at once after NeverHeard and NotAssociated,
+//!     |  (from everywhere)                     v   |           | for REJOIN after Silent
+//!     |                                      Holdover          |
+//!     |                                        |               |
+//!     |        silent for longer than a        v               |
+//!     |        holdover lasts, or no target  Fallback ---------+
+//!     |
+//!     +--- Fault  from everywhere while engaged: own motion unknown, or the range sensor contradicts what is heard;
+//!                 left when that has not been so for RECOVER
 //! ```
 //!
-//! The ego's own state comes first: without it nothing can be commanded but braking. Then the driver's wish, then the
-//! target.
+//! The driver's wish comes first, then the ego's own state (without it nothing can be commanded but braking), then the
+//! target. Cooperative and Holdover drive by the same law on the same estimate, so passing between them changes nothing
+//! but what is said; that is why they need no hysteresis beyond the link's own tolerance. Leaving Fallback or Fault
+//! changes the law, so it takes the cause to be gone for a while; the controller's limit on jerk leads over.
 
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::wire::command::ModeCode;
 
 /// Why there is no target to drive by.
@@ -36,7 +47,15 @@ pub enum FaultCause {
     EgoMissing = 1,
     /// It has stopped coming.
     EgoStale = 2,
+    /// What the range sensor sees and what is heard of the target exclude one another.
+    RangeDisagrees = 3,
 }
+
+/// A target that fell silent has to be heard for this long before it is followed again: three messages at 10 Hz.
+pub const REJOIN: Duration = Duration::from_millis(300);
+
+/// A fault has to be gone for this long.
+pub const RECOVER: Duration = Duration::from_millis(500);
 
 /// The mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +77,8 @@ pub enum Mode {
         since: Instant,
         /// Why.
         cause: FallbackCause,
+        /// Since when the target is heard again.
+        heard_since: Option<Instant>,
     },
     /// Braking.
     Fault {
@@ -65,6 +86,8 @@ pub enum Mode {
         since: Instant,
         /// Why.
         cause: FaultCause,
+        /// Since when the cause is gone.
+        gone_since: Option<Instant>,
     },
 }
 
@@ -86,7 +109,7 @@ pub enum TargetFact {
 pub struct Facts {
     /// The driver's wish.
     pub engaged: bool,
-    /// The ego's own motion.
+    /// Whether the ego's own motion is known and nothing contradicts it.
     pub ego: Result<(), FaultCause>,
     /// The target.
     pub target: TargetFact,
@@ -96,33 +119,60 @@ impl Mode {
     /// The mode of this tick.
     #[must_use]
     pub fn next(self, facts: &Facts, now: Instant) -> Self {
-        match (facts.engaged, facts.ego, facts.target) {
-            (false, ..) => Self::Standby,
-            (true, Err(cause), _) => self.fault(cause, now),
-            (true, Ok(()), TargetFact::NotNeeded | TargetFact::On) => Self::Cooperative,
-            (true, Ok(()), TargetFact::Off) => self.hold_over(now),
-            (true, Ok(()), TargetFact::Lost(cause)) => self.fall_back(cause, now),
+        if !facts.engaged {
+            return Self::Standby;
+        }
+        if let Err(cause) = facts.ego {
+            return self.fault(cause, now);
+        }
+        if let Some(fault) = self.still_faulty(now) {
+            return fault;
+        }
+        match facts.target {
+            TargetFact::NotNeeded => Self::Cooperative,
+            TargetFact::On => self.still_falling_back(now).unwrap_or(Self::Cooperative),
+            TargetFact::Off => self.hold_over(now),
+            TargetFact::Lost(cause) => self.fall_back(cause, now),
         }
     }
 
     fn fault(self, cause: FaultCause, now: Instant) -> Self {
         match self {
-            Self::Fault { since, cause: same } if same == cause => Self::Fault { since, cause },
-            _ => Self::Fault { since: now, cause },
+            Self::Fault { since, cause: same, .. } if same == cause => Self::Fault { since, cause, gone_since: None },
+            _ => Self::Fault { since: now, cause, gone_since: None },
         }
     }
 
+    /// A fault whose cause is gone, until it has been for long enough.
+    fn still_faulty(self, now: Instant) -> Option<Self> {
+        let Self::Fault { since, cause, gone_since } = self else { return None };
+        let gone = gone_since.unwrap_or(now);
+        (now.since(gone) < RECOVER).then_some(Self::Fault { since, cause, gone_since: Some(gone) })
+    }
+
+    /// A fallback for silence whose target is heard again, until it has been for long enough.
+    fn still_falling_back(self, now: Instant) -> Option<Self> {
+        let Self::Fallback { since, cause: FallbackCause::Silent, heard_since } = self else { return None };
+        let heard = heard_since.unwrap_or(now);
+        let cause = FallbackCause::Silent;
+        (now.since(heard) < REJOIN).then_some(Self::Fallback { since, cause, heard_since: Some(heard) })
+    }
+
+    /// A target whose link is off: what was falling back goes on falling back until it is heard.
     fn hold_over(self, now: Instant) -> Self {
         match self {
             Self::Holdover { .. } => self,
+            Self::Fallback { since, cause: FallbackCause::Silent, .. } => {
+                Self::Fallback { since, cause: FallbackCause::Silent, heard_since: None }
+            }
             _ => Self::Holdover { since: now },
         }
     }
 
     fn fall_back(self, cause: FallbackCause, now: Instant) -> Self {
         match self {
-            Self::Fallback { since, .. } => Self::Fallback { since, cause },
-            _ => Self::Fallback { since: now, cause },
+            Self::Fallback { since, .. } => Self::Fallback { since, cause, heard_since: None },
+            _ => Self::Fallback { since: now, cause, heard_since: None },
         }
     }
 
@@ -187,6 +237,40 @@ mod tests {
         let lost = |cause| Facts { target: TargetFact::Lost(cause), ..FINE };
         let mode = Mode::Cooperative.next(&lost(FallbackCause::NeverHeard), at(0));
         let mode = mode.next(&lost(FallbackCause::Silent), at(10));
-        assert_eq!(mode, Mode::Fallback { since: at(0), cause: FallbackCause::Silent });
+        assert_eq!(mode, Mode::Fallback { since: at(0), cause: FallbackCause::Silent, heard_since: None });
+    }
+
+    #[test]
+    fn a_silent_target_is_followed_again_when_it_has_been_heard_for_three_messages() {
+        let lost = Facts { target: TargetFact::Lost(FallbackCause::Silent), ..FINE };
+        let mut mode = Mode::Cooperative.next(&lost, at(0));
+        for millis in (10..310).step_by(10) {
+            mode = mode.next(&FINE, at(millis));
+            assert_eq!(mode.code(), ModeCode::Fallback, "{millis}");
+        }
+        assert_eq!(mode.next(&FINE, at(310)), Mode::Cooperative);
+        // One moment off starts the time anew.
+        let again = mode.next(&Facts { target: TargetFact::Off, ..FINE }, at(305)).next(&FINE, at(310));
+        assert_eq!(again.code(), ModeCode::Fallback);
+    }
+
+    #[test]
+    fn a_target_that_was_never_heard_is_followed_at_once() {
+        for cause in [FallbackCause::NeverHeard, FallbackCause::NotAssociated] {
+            let lost = Facts { target: TargetFact::Lost(cause), ..FINE };
+            assert_eq!(Mode::Standby.next(&lost, at(0)).next(&FINE, at(10)), Mode::Cooperative);
+        }
+    }
+
+    #[test]
+    fn a_fault_lasts_until_its_cause_has_been_gone_for_half_a_second() {
+        let faulty = Facts { ego: Err(FaultCause::RangeDisagrees), ..FINE };
+        let mut mode = Mode::Cooperative.next(&faulty, at(0));
+        for millis in (10..510).step_by(10) {
+            mode = mode.next(&FINE, at(millis));
+            assert_eq!(mode.code(), ModeCode::Fault, "{millis}");
+        }
+        assert_eq!(mode.next(&FINE, at(510)), Mode::Cooperative);
+        assert_eq!(mode.next(&faulty, at(510)).next(&FINE, at(520)).code(), ModeCode::Fault);
     }
 }

@@ -12,6 +12,7 @@
 //! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
 
 mod actuator;
+pub mod bound;
 mod chain;
 mod delay;
 mod driver;
@@ -40,6 +41,16 @@ use crate::time::{Duration, Instant};
 use crate::units::Distance;
 use crate::wire::{Predecessor, StationHash};
 
+/// What a horizon is brought up to now from.
+enum Source<'a> {
+    /// The peer's newest sample, which is news.
+    Heard(&'a Sample),
+    /// What another sensor made of its state.
+    Seen(&'a Sample),
+    /// No news.
+    Nothing,
+}
+
 /// All horizons of one unit.
 #[derive(Clone, Debug)]
 pub struct Estimator<const PEERS: usize, const STEPS: usize> {
@@ -51,6 +62,8 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     /// The step of each peer, until its intent or its predecessor changes.
     strides: [Option<Stride>; PEERS],
     news: [bool; PEERS],
+    /// What another sensor made of a peer's state, until it is used.
+    correction: Option<(usize, Sample)>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -68,6 +81,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             horizons: core::array::from_fn(|_| Horizon::empty()),
             strides: [None; PEERS],
             news: [false; PEERS],
+            correction: None,
             own: Horizon::empty(),
             station,
             own_length,
@@ -85,6 +99,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         if let Some(news) = self.news.get_mut(index) {
             *news = true;
         }
+    }
+
+    /// Takes note of a peer's state as another sensor corrected it; news of the peer itself in the same tick goes first.
+    pub fn note_correction(&mut self, index: usize, sample: Sample) {
+        self.correction = Some((index, sample));
     }
 
     /// Takes note that a peer drives by another law, or behind somebody else.
@@ -107,12 +126,17 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Brings every peer's horizon up to now.
     pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) {
         let present = self.grid.at_or_before(now);
+        let correction = self.correction.take();
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
             let (Some(sample), Some(news)) = (track.newest(), self.news.get_mut(index)) else { continue };
-            let is_news = core::mem::take(news);
-            self.update_one(present, peers, index, track, is_news.then_some(sample));
+            let source = match &correction {
+                _ if core::mem::take(news) => Source::Heard(sample),
+                Some((corrected, sample)) if *corrected == index => Source::Seen(sample),
+                _ => Source::Nothing,
+            };
+            self.update_one(present, peers, index, track, &source);
         }
     }
 
@@ -122,7 +146,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         peers: &Peers<PEERS, SAMPLES>,
         index: usize,
         track: &Track<SAMPLES>,
-        news: Option<&Sample>,
+        source: &Source<'_>,
     ) {
         let ahead = self.ahead(peers, index);
         let length_ahead = match ahead {
@@ -153,12 +177,13 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let delay = if model.stamped { None } else { Some(track.link().delay()) };
         let forecast =
             Forecast { grid: self.grid, length: self.length, model, driver, stride, length_ahead, ahead, delay };
-        match news {
-            Some(sample) => {
+        match source {
+            Source::Heard(sample) => {
                 let knots = track.knots().filter(|_| model.received).zip(track.intent());
                 forecast.anchor(horizon, present, sample, knots);
             }
-            None => forecast.extend(horizon, present),
+            Source::Seen(sample) => forecast.anchor(horizon, present, sample, None),
+            Source::Nothing => forecast.extend(horizon, present),
         }
     }
 

@@ -4,6 +4,7 @@
 //! another station or from too far away is refused by the rules of [`Track::admit`].
 
 mod link;
+pub mod plausibility;
 mod sample;
 mod track;
 
@@ -40,6 +41,11 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
     #[must_use]
     pub fn get(&self, index: usize) -> Option<&Track<SAMPLES>> {
         self.tracks.get(index)
+    }
+
+    /// The track of a slot by its index, to be changed.
+    pub fn get_index_mut(&mut self, index: usize) -> Option<&mut Track<SAMPLES>> {
+        self.tracks.get_mut(index)
     }
 
     /// All slots in their order.

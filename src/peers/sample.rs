@@ -34,6 +34,21 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// At rest at the origin, of nobody: what stands for an ego that was never heard of.
+    pub const UNKNOWN: Self = Self {
+        at: Instant::ZERO,
+        received: Instant::ZERO,
+        stamp: Stamp::from_raw(0),
+        position: Position::ZERO,
+        speed: Speed::ZERO,
+        acceleration: Acceleration::ZERO,
+        demand: Acceleration::ZERO,
+        position_accuracy: None,
+        speed_accuracy: None,
+        station: StationHash(0),
+        tag: 0,
+    };
+
     /// Of a motion message whose stamp was at `at`, near a position known otherwise.
     #[must_use]
     pub fn of(motion: &Motion, at: Instant, received: Instant, near: Option<Position>) -> Self {

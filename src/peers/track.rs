@@ -3,8 +3,10 @@
 use heapless::Vec;
 
 use super::link::Link;
+use super::plausibility::{Belief, Certainty};
 use super::sample::Sample;
 use crate::config::Link as Limits;
+use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::time::{Duration, Instant};
 use crate::wire::StationHash;
@@ -25,6 +27,7 @@ pub enum Admission {
 #[derive(Clone, Debug)]
 pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
+    certainty: Certainty,
     intent: Option<Intent>,
     knots: Option<(Instant, Knots)>,
     link: Link,
@@ -34,7 +37,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// A free slot.
     #[must_use]
     pub const fn new(period: Duration) -> Self {
-        Self { samples: Vec::new(), intent: None, knots: None, link: Link::new(period) }
+        Self { samples: Vec::new(), certainty: Certainty::NONE, intent: None, knots: None, link: Link::new(period) }
     }
 
     /// Whose track it is.
@@ -53,6 +56,24 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub fn samples(&self) -> &[Sample] {
         &self.samples
+    }
+
+    /// What is certain of it.
+    #[must_use]
+    pub const fn certainty(&self) -> &Certainty {
+        &self.certainty
+    }
+
+    /// Narrows what is certain of it by what another sensor saw; whether the two agree.
+    pub fn narrow(&mut self, other: &Bound) -> bool {
+        let reach = self.reach();
+        self.certainty.narrow(other, &reach)
+    }
+
+    /// How fast it can change its speed: as published, or the worst there is.
+    #[must_use]
+    pub fn reach(&self) -> Reach {
+        self.intent.as_ref().map_or(Reach::WORST, |intent| Reach::published(&intent.limits))
     }
 
     /// What it said of how it drives.
@@ -82,11 +103,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// 3. of another station while this one was heard within `limits.slot_reuse`: [`Refusal::StationConflict`]; after
     ///    that the slot starts anew;
     /// 4. with a stamp that is held already: [`Refusal::Duplicate`];
-    /// 5. older than a full history: [`Refusal::OutOfOrder`].
+    /// 5. older than a full history: [`Refusal::OutOfOrder`];
+    /// 6. newer than all held, but contradicting what is certain of the station: see
+    ///    [`plausibility`](super::plausibility).
     ///
     /// # Errors
-    /// As listed; nothing is changed then.
-    pub fn admit(&mut self, sample: Sample, limits: &Limits) -> Result<Admission, Refusal> {
+    /// As listed; nothing but the evidence of misbehaviour is changed then.
+    pub fn admit(&mut self, sample: Sample, doubt: &Doubt, limits: &Limits) -> Result<Admission, Refusal> {
         let age = sample.received.since(sample.at);
         if age > limits.stale {
             return Err(Refusal::Stale);
@@ -102,6 +125,12 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
         if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, &sample)) {
             return Err(Refusal::Duplicate);
+        }
+        if self.newest().is_none_or(|newest| newest.at < sample.at) {
+            let reach = self.reach();
+            if self.certainty.judge(&sample, self.samples.last(), doubt, &reach)? == Belief::Recovered {
+                self.samples.clear();
+            }
         }
         let admission = self.insert(sample)?;
         self.link.heard(sample.received, sample.at);

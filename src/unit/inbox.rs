@@ -3,6 +3,7 @@
 
 use super::OnboardUnit;
 use crate::health::Refusal;
+use crate::peers::plausibility::doubt;
 use crate::peers::{Admission, Sample};
 use crate::time::{Duration, Instant};
 use crate::wire::motion::Motion;
@@ -17,8 +18,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
             Message::EgoIntent(wish) => self.wish = Some(*wish),
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
+            Message::Range(seen) => self.take_range(at, *seen)?,
             // Understood, and of use to later stages only.
-            Message::Ego(_) | Message::Range(_) => {}
+            Message::Ego(_) => {}
             Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}
         }
         Ok(())
@@ -53,14 +55,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Said::Motion(motion) => {
                 let instant = self.instant_of(motion, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
                 let ego = self.ego.map(|ego| ego.position);
+                let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
                 let station = track.station();
                 let near = ego.or(track.newest().map(|sample| sample.position));
                 let sample = Sample::of(motion, instant, at, near);
+                let doubt = doubt(&sample, is_synchronised, &self.config.link);
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
                 }
-                let admission = track.admit(sample, &self.config.link)?;
+                let admission = track.admit(sample, &doubt, &self.config.link)?;
                 if station != Some(sample.station) {
                     self.estimator.forget(index);
                     self.estimator.note_change(&self.peers);

@@ -7,13 +7,14 @@ use heapless::Vec;
 use super::{Estimate, MAX_FRAMES, OnboardUnit};
 use crate::config::Config;
 use crate::controller::Mode;
+use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Reading};
 use crate::health::Refusal;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 use crate::wire::command::Command;
-use crate::wire::estimate::TargetEstimate;
+use crate::wire::estimate::{Ends, TargetEstimate};
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
@@ -169,7 +170,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             position: WirePosition::from_position(estimate.reading.position),
             speed: estimate.reading.speed,
             age: estimate.age,
-            ends: None,
+            ends: estimate.bound.as_ref().map(|bound| ends(&estimate.reading, bound)),
         }
     }
 
@@ -230,8 +231,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 }
 
+/// The bound as distances from the estimate. An estimate outside its bound widens it.
+fn ends(reading: &Reading, bound: &Bound) -> Ends {
+    Ends {
+        behind: reading.position.ahead_of(bound.lowest_position()).max(Distance::ZERO),
+        ahead: bound.highest_position().ahead_of(reading.position).max(Distance::ZERO),
+        slower: reading.speed.minus(bound.lowest_speed()).max(Speed::ZERO),
+        faster: bound.highest_speed().minus(reading.speed).max(Speed::ZERO),
+    }
+}
+
 /// A change of speed over a time, saturating.
-fn slope(change: Speed, time: Duration) -> Acceleration {
+pub(super) fn slope(change: Speed, time: Duration) -> Acceleration {
     // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
     let change = i64::from(change.to_bits()).saturating_mul(4_000_000);
     let slope = change.checked_div(time.as_micros()).unwrap_or(0);

@@ -1,0 +1,480 @@
+/*
+ * The C interface of holdover. Made from the sources by cbindgen; changes by hand are lost.
+ *
+ *     static uint64_t unit[HOLDOVER_UNIT_SIZE / sizeof(uint64_t)];
+ *
+ *     holdover_default_config(&config);                once; then fill in what is different
+ *     holdover_init(unit, sizeof unit, &config);       once
+ *     holdover_receive(unit, at_us, &frame);           for every CAN frame
+ *     holdover_tick(unit, now_us, &answer);            every period; answer.frames are to be sent
+ *
+ * Every function checks what it is given. The functions of one unit have to take turns; several units do not disturb one
+ * another.
+ */
+
+#ifndef HOLDOVER_H
+#define HOLDOVER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The most frames that one tick sends.
+#define HOLDOVER_MAX_FRAMES 16
+
+// The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
+#define HOLDOVER_VERSION 256
+
+// Bytes of memory that a unit needs, on every target.
+#define HOLDOVER_UNIT_SIZE 40960
+
+// What the address of that memory has to be a multiple of.
+#define HOLDOVER_UNIT_ALIGN 8
+
+// What became of a call. Negative: it was refused, for the cause that the code names. A refused call changes nothing; a
+// refused frame changes its cause's count and the end-to-end state of its identifier.
+enum holdover_status_t
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Done; of a frame: a message was taken in.
+  HOLDOVER_OK = 0,
+  // A good frame of a message whose other frames are still to come.
+  HOLDOVER_PENDING = 1,
+  // A frame that is not one of the catalogue's, or not for this unit.
+  HOLDOVER_FOREIGN = 2,
+  // A pointer is null.
+  HOLDOVER_NULL = -1,
+  // An address is not a multiple of what its type needs.
+  HOLDOVER_MISALIGNED = -2,
+  // The memory is smaller than `HOLDOVER_UNIT_SIZE`.
+  HOLDOVER_TOO_SMALL = -3,
+  // There is no unit in the memory.
+  HOLDOVER_NOT_INITIALISED = -4,
+  // There is a unit in the memory already; `holdover_release` makes it free.
+  HOLDOVER_ALREADY_INITIALISED = -5,
+  // Something wrote past the end of the unit. It is not used any more; `holdover_init` makes a new one.
+  HOLDOVER_OVERRUN = -6,
+  // Another call is in this unit: receive and tick have to take turns.
+  HOLDOVER_BUSY = -7,
+  // A frame has more than 8 bytes.
+  HOLDOVER_FRAME_LENGTH = -8,
+  // An identifier has more than 11 bits, or more than 29 if it is an extended one.
+  HOLDOVER_FRAME_ID = -9,
+  // The code is not that of a refusal (`HOLDOVER_REFUSED_...`).
+  HOLDOVER_NO_CAUSE = -10,
+  // `base_id` is above 0x740.
+  HOLDOVER_CONFIG_BASE_ID = -32,
+  // A switch is neither 0 nor 1.
+  HOLDOVER_CONFIG_SWITCH = -33,
+  // `period` is outside 1 to 100 ms.
+  HOLDOVER_CONFIG_PERIOD = -34,
+  // `step` is outside 1 ms to 1 s.
+  HOLDOVER_CONFIG_STEP = -35,
+  // `horizon` is shorter than two steps, longer than 25.5 s, or needs more steps than the capacity.
+  HOLDOVER_CONFIG_HORIZON = -36,
+  // `length` is outside 0 to 40.95 m.
+  HOLDOVER_CONFIG_LENGTH = -37,
+  // `lag` is outside 0 to 1.998 s.
+  HOLDOVER_CONFIG_LAG = -38,
+  // A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s^2 or than emergency
+  // braking.
+  HOLDOVER_CONFIG_LIMITS = -39,
+  // `time_gap` is outside 0.1 to 3.995 s.
+  HOLDOVER_CONFIG_TIME_GAP = -40,
+  // `standstill` is outside 0 to 10.23 m.
+  HOLDOVER_CONFIG_STANDSTILL = -41,
+  // A gain is out of range.
+  HOLDOVER_CONFIG_GAIN = -42,
+  // The semi-implicit step is unstable: `k dt^2 >= 4 + 2 k dt (t_g + gamma)`.
+  HOLDOVER_CONFIG_UNSTABLE = -43,
+  // A speed is outside 0 to 65.534 m/s.
+  HOLDOVER_CONFIG_SPEED = -44,
+  // `a_max` of the free road is below 0.1 m/s^2 or above the limit on acceleration.
+  HOLDOVER_CONFIG_FREE_ROAD = -45,
+  // A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+  HOLDOVER_CONFIG_LINK = -46,
+  // The vehicle of eqs 1-3 has no mass or no brakes.
+  HOLDOVER_CONFIG_BODY = -47,
+  // A limit of the envelope is zero or negative.
+  HOLDOVER_CONFIG_ENVELOPE = -48,
+  // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
+  HOLDOVER_REFUSED_LENGTH = -64,
+  // The E2E checksum does not fit.
+  HOLDOVER_REFUSED_CHECKSUM = -65,
+  // The E2E counter repeats the last one: the same frame twice.
+  HOLDOVER_REFUSED_REPEATED = -66,
+  // More E2E counters are missing than the message tolerates.
+  HOLDOVER_REFUSED_COUNTER_GAP = -67,
+  // The E2E counter is outside 0 to 14.
+  HOLDOVER_REFUSED_COUNTER_RANGE = -68,
+  // The E2E state machine has not seen enough good frames of this identifier yet.
+  HOLDOVER_REFUSED_NOT_YET_TRUSTED = -69,
+  // A field holds a value outside its range, or a reserved one.
+  HOLDOVER_REFUSED_RANGE = -70,
+  // The parts of a message do not belong together, or one of them is missing.
+  HOLDOVER_REFUSED_TORN = -71,
+  // The stamp is older than the unit uses.
+  HOLDOVER_REFUSED_STALE = -72,
+  // The stamp lies in the future by more than the clock's error.
+  HOLDOVER_REFUSED_FUTURE = -73,
+  // A sample with this stamp is held already.
+  HOLDOVER_REFUSED_DUPLICATE = -74,
+  // A sample that is newer than this one is held already, and this one no longer fits the history.
+  HOLDOVER_REFUSED_OUT_OF_ORDER = -75,
+  // A slot beyond the unit's capacity.
+  HOLDOVER_REFUSED_UNKNOWN_SLOT = -76,
+  // Another station claims a slot whose station is still alive.
+  HOLDOVER_REFUSED_STATION_CONFLICT = -77,
+  // A peer too far away to have anything to do with the unit.
+  HOLDOVER_REFUSED_TOO_FAR = -78,
+  // A follow-up without its sync message, or out of sequence.
+  HOLDOVER_REFUSED_SYNC_SEQUENCE = -79,
+  // A position that cannot be reached from the sample before it.
+  HOLDOVER_REFUSED_JUMP = -80,
+  // A speed that does not fit the positions.
+  HOLDOVER_REFUSED_IMPLAUSIBLE = -81,
+  // A value that does not change though it has to.
+  HOLDOVER_REFUSED_STUCK = -82,
+  // A time before one that the unit was given already.
+  HOLDOVER_REFUSED_CLOCK_BACKWARDS = -83,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum holdover_status_t holdover_status_t;
+#else
+typedef int32_t holdover_status_t;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// What brings the acceleration about.
+enum holdover_effort_t
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Net engine force in N.
+  HOLDOVER_EFFORT_FORCE = 0,
+  // Brake torque in N m.
+  HOLDOVER_EFFORT_BRAKE_TORQUE = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum holdover_effort_t holdover_effort_t;
+#else
+typedef uint8_t holdover_effort_t;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// In which mode a command was computed.
+enum holdover_mode_t
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // Not engaged: the command is not to be used.
+  HOLDOVER_MODE_STANDBY = 0,
+  // Driving by fresh messages, or leading.
+  HOLDOVER_MODE_COOPERATIVE = 1,
+  // Driving by the estimate, the link being off.
+  HOLDOVER_MODE_HOLDOVER = 2,
+  // No target to drive by: braking that grows slowly.
+  HOLDOVER_MODE_FALLBACK = 3,
+  // The own motion is unknown: braking as configured.
+  HOLDOVER_MODE_FAULT = 4,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum holdover_mode_t holdover_mode_t;
+#else
+typedef uint8_t holdover_mode_t;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Why it is in a fallback or a fault.
+enum holdover_cause_t
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint8_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+  // It is in neither.
+  HOLDOVER_CAUSE_NONE = 0,
+  // Nobody said whom to follow.
+  HOLDOVER_CAUSE_NOT_ASSOCIATED = 1,
+  // The target was never heard.
+  HOLDOVER_CAUSE_NEVER_HEARD = 2,
+  // The target has been silent for longer than a holdover lasts.
+  HOLDOVER_CAUSE_SILENT = 3,
+  // The own motion never came.
+  HOLDOVER_CAUSE_EGO_MISSING = 4,
+  // The own motion has stopped coming.
+  HOLDOVER_CAUSE_EGO_STALE = 5,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum holdover_cause_t holdover_cause_t;
+#else
+typedef uint8_t holdover_cause_t;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// Limits of the controller, and of the vehicle.
+typedef struct holdover_limits_t {
+  // Largest acceleration in mm/s2.
+  uint32_t acceleration_mm_s2;
+  // Hardest braking in normal driving in mm/s2.
+  uint32_t braking_mm_s2;
+  // Fastest change of acceleration in mm/s3.
+  uint32_t jerk_mm_s3;
+  // Hardest braking in an emergency in mm/s2.
+  uint32_t emergency_braking_mm_s2;
+} holdover_limits_t;
+
+// The vehicle of eqs 1 to 3.
+typedef struct holdover_body_t {
+  // Mass in kg.
+  uint32_t mass_kg;
+  // Brake force per brake torque in 1/(1000 m).
+  uint32_t ratio_milli;
+  // Aerodynamic drag in mN/(m/s)^2.
+  uint32_t drag_milli;
+  // Friction in mN/(m/s).
+  uint32_t friction_milli;
+  // Mechanical drag in N.
+  uint32_t mechanical_n;
+} holdover_body_t;
+
+// The law of eqs 5 and 7.
+typedef struct holdover_law_t {
+  // Desired time gap in ms.
+  uint32_t time_gap_ms;
+  // Distance kept at standstill in mm.
+  uint32_t standstill_mm;
+  // Gain in 1/(1000 s^2).
+  uint32_t gain_milli;
+  // Damping in ms.
+  uint32_t damping_ms;
+  // Largest acceleration on a free road in mm/s2.
+  uint32_t free_road_acceleration_mm_s2;
+  // Speed wanted on a free road until `EgoIntent` says otherwise, in mm/s.
+  uint32_t target_speed_mm_s;
+  // Speed never demanded beyond, in mm/s.
+  uint32_t max_speed_mm_s;
+} holdover_law_t;
+
+// What is in the prediction model; each is 1 (as it should be) or 0 (as in the paper).
+typedef struct holdover_model_t {
+  // The actuators' lag.
+  uint8_t lag;
+  // The controller's limits on acceleration and jerk.
+  uint8_t limits;
+  // The sender's last demand as the start of the jerk limit.
+  uint8_t last_demand;
+  // The standstill distance.
+  uint8_t standstill;
+  // Trapezoidal positions; otherwise forward Euler.
+  uint8_t trapezoid;
+  // Read-out between steps; otherwise the nearest step.
+  uint8_t interpolate;
+  // Samples are brought from their stamp to now by the model; otherwise by eqs 10 to 12.
+  uint8_t stamped;
+  // A horizon never runs out; otherwise its last value is held.
+  uint8_t endless;
+  // A horizon that the peer computed itself is used in preference.
+  uint8_t received;
+  // After a silence the controller is led from the old estimate to the new one.
+  uint8_t smooth;
+} holdover_model_t;
+
+// The prediction.
+typedef struct holdover_prediction_t {
+  // Prediction step in us.
+  uint32_t step_us;
+  // How far ahead, in us.
+  uint32_t horizon_us;
+  // What is in the model.
+  struct holdover_model_t model;
+} holdover_prediction_t;
+
+// What counts as a link.
+typedef struct holdover_link_t {
+  // Period with which the own messages are sent, and a peer's until its own is measured; in us.
+  uint32_t period_us;
+  // The link is off when no valid message came for a period and this; in us.
+  uint32_t tolerance_us;
+  // Older stamps are refused; in us.
+  uint32_t stale_us;
+  // Stamps further in the future are refused; in us.
+  uint32_t future_us;
+  // A slot may be taken over by another station after this much silence; in us.
+  uint32_t slot_reuse_us;
+  // Silence up to which a target's estimate is driven by; in us.
+  uint32_t holdover_us;
+  // Age up to which the own motion is usable; in us.
+  uint32_t ego_timeout_us;
+  // Age up to which a time synchronisation holds; in us.
+  uint32_t sync_timeout_us;
+  // Delay assumed while there is no synchronisation; in us.
+  uint32_t assumed_delay_us;
+} holdover_link_t;
+
+// The absolute limits of the last gate.
+typedef struct holdover_envelope_t {
+  // 1: there is this gate; 0: there is none, and the rest is ignored.
+  uint8_t engaged;
+  // Largest acceleration ever commanded in mm/s2.
+  uint32_t acceleration_mm_s2;
+  // Hardest braking ever commanded in mm/s2.
+  uint32_t braking_mm_s2;
+  // Fastest change ever commanded in mm/s3.
+  uint32_t jerk_mm_s3;
+  // No acceleration at or beyond this speed in mm/s.
+  uint32_t speed_mm_s;
+} holdover_envelope_t;
+
+// Everything that the unit has to be told. Times that are compared with the clock are in us, as the clock is; all else is
+// in thousandths of its unit. `docs/INTEGRATION.md` has ranges and defaults.
+typedef struct holdover_config_t {
+  // The own station's 8-bit hash.
+  uint8_t station;
+  // First CAN identifier of the catalogue.
+  uint16_t base_id;
+  // Period of the task that calls `holdover_tick`, in us.
+  uint32_t period_us;
+  // Bumper to bumper, in mm.
+  uint32_t length_mm;
+  // Time constant of the actuators, in ms.
+  uint32_t lag_ms;
+  // Limits of the controller, and of the vehicle.
+  struct holdover_limits_t limits;
+  // The vehicle of eqs 1 to 3.
+  struct holdover_body_t body;
+  // The law.
+  struct holdover_law_t law;
+  // The prediction.
+  struct holdover_prediction_t prediction;
+  // The link.
+  struct holdover_link_t link;
+  // The last gate.
+  struct holdover_envelope_t envelope;
+} holdover_config_t;
+
+// A classic CAN frame. The library sends standard frames with 8 bytes only.
+typedef struct holdover_frame_t {
+  // The identifier; up to 0x7FF, or 0x1FFFFFFF if it is an extended one.
+  uint32_t id;
+  // Not 0: the identifier has 29 bits.
+  uint8_t extended;
+  // Not 0: a remote frame.
+  uint8_t remote;
+  // Bytes of data; up to 8.
+  uint8_t length;
+  // The data; what lies behind its length is ignored.
+  uint8_t data[8];
+} holdover_frame_t;
+
+// The command to the actuators.
+typedef struct holdover_command_t {
+  // Demanded acceleration in mm/s2, rounded to nearest; negative: braking.
+  int32_t acceleration_mm_s2;
+  // What brings it about by the configured vehicle model.
+  holdover_effort_t effort;
+  // In which mode it was computed.
+  holdover_mode_t mode;
+  // Why it is in a fallback or a fault.
+  holdover_cause_t cause;
+  // 1: the envelope changed it; else 0.
+  uint8_t limited;
+  // How much of the effort, in N or N m; up to 65,534.
+  uint16_t effort_value;
+  // Counts ticks; modulo 64.
+  uint8_t tick;
+} holdover_command_t;
+
+// Where the target is now, as the unit believes.
+typedef struct holdover_estimate_t {
+  // Front bumper of the target along the lane in mm, rounded to nearest.
+  int64_t position_mm;
+  // Age of the newest sample that it rests on in us; negative: its stamp lies ahead of the clock.
+  int64_t age_us;
+  // Its speed in mm/s, rounded to nearest.
+  int32_t speed_mm_s;
+  // 1: there is an estimate; 0: there is none, and all the rest is 0.
+  uint8_t valid;
+  // 1: the link to the target is on; else 0.
+  uint8_t link_on;
+} holdover_estimate_t;
+
+// The answer of one tick.
+typedef struct holdover_answer_t {
+  // The command to the actuators.
+  struct holdover_command_t command;
+  // The estimate of the target.
+  struct holdover_estimate_t estimate;
+  // How many frames there are to send.
+  uint32_t frame_count;
+  // The frames, in the order in which they are to be sent; the rest is 0.
+  struct holdover_frame_t frames[HOLDOVER_MAX_FRAMES];
+} holdover_answer_t;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library; to be compared with `HOLDOVER_VERSION` once at start, since structs of another version may
+// be laid out differently.
+uint32_t holdover_version(void);
+
+// The name of a code, as a string in ASCII that is there for good; `"unknown"` if there is no such code.
+const char *holdover_status_name(int32_t status);
+
+// Fills in the configuration of a car: 1,500 kg, 4.8 m, 100 Hz, time gap 1 s, station 0, no envelope.
+//
+// # Safety
+// `config` has to point to memory for a configuration that nobody else uses during the call.
+holdover_status_t holdover_default_config(struct holdover_config_t *config);
+
+// Makes a unit in `memory`, of which there are `size` bytes: at least `HOLDOVER_UNIT_SIZE`, at an address that is a multiple
+// of `HOLDOVER_UNIT_ALIGN`. The configuration is copied. What is refused leaves the memory as it was.
+//
+// The memory should be zero; if it may still hold the unit of a program that ran before (a section that a reset does not
+// clear), call `holdover_release` before.
+//
+// # Safety
+// `memory` has to be the caller's for as long as the unit is used, and nobody else may write to it. `config` has to
+// point to a configuration.
+holdover_status_t holdover_init(void *memory, size_t size, const struct holdover_config_t *config);
+
+// Ends the use of a unit; its memory may be used for anything then, also for another unit.
+//
+// # Safety
+// As `holdover_tick`.
+holdover_status_t holdover_release(void *unit);
+
+// Takes in one frame, received at `at_us` microseconds of a clock that never goes back. Frames may come in any order and at
+// any time. Positive or zero: what became of it; else the cause for which it was refused.
+//
+// # Safety
+// `frame` has to point to a frame; `unit` as in `holdover_tick`.
+holdover_status_t holdover_receive(void *unit, uint64_t at_us, const struct holdover_frame_t *frame);
+
+// The task of one period, at `now_us` microseconds of the same clock; the frames of the answer are then to be sent. If the
+// call is refused, the answer is mode standby (the command is not to be used) without frames.
+//
+// # Safety
+// `unit` has to be memory in which `holdover_init` was called, or that is at least as large; `answer` has to point to
+// memory for an answer, outside of the unit, that nobody else uses during the call.
+holdover_status_t holdover_tick(void *unit, uint64_t now_us, struct holdover_answer_t *answer);
+
+// How often frames were refused for a cause since the unit was made; `cause` is one of `HOLDOVER_REFUSED_...`. 0 if
+// the call is refused.
+//
+// # Safety
+// `count` has to point to memory for a number that nobody else uses during the call; `unit` as in `holdover_tick`.
+holdover_status_t holdover_count(void *unit, int32_t cause, uint32_t *count);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* HOLDOVER_H */

@@ -1,0 +1,150 @@
+//! The functions of the library: what a C program has enters, a status leaves.
+//!
+//! No pointer is used before it is checked, and no output is left unwritten: what a caller reads after a refused call is
+//! harmless.
+
+use core::ffi::{c_char, c_void};
+
+use holdover::time::Instant;
+use holdover::wire::StationHash;
+use holdover::{Reception, config};
+
+use crate::answer::Answer;
+use crate::config::Config;
+use crate::frame::{Frame, Heard};
+use crate::memory;
+use crate::pointer;
+use crate::status::{self, Status};
+
+/// The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
+pub const HOLDOVER_VERSION: u32 = 0x000100;
+
+/// The version of the library; to be compared with `HOLDOVER_VERSION` once at start, since structs of another version may
+/// be laid out differently.
+#[unsafe(no_mangle)]
+pub extern "C" fn holdover_version() -> u32 {
+    HOLDOVER_VERSION
+}
+
+/// The name of a code, as a string in ASCII that is there for good; `"unknown"` if there is no such code.
+#[unsafe(no_mangle)]
+pub extern "C" fn holdover_status_name(status: i32) -> *const c_char {
+    status::name(status).as_ptr()
+}
+
+/// Fills in the configuration of a car: 1,500 kg, 4.8 m, 100 Hz, time gap 1 s, station 0, no envelope.
+///
+/// # Safety
+/// `config` has to point to memory for a configuration that nobody else uses during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_default_config(config: *mut Config) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    match unsafe { pointer::write(config) } {
+        Ok(place) => {
+            place.write(Config::from(&config::Config::car(StationHash(0))));
+            Status::Ok
+        }
+        Err(cause) => cause,
+    }
+}
+
+/// Makes a unit in `memory`, of which there are `size` bytes: at least `HOLDOVER_UNIT_SIZE`, at an address that is a multiple
+/// of `HOLDOVER_UNIT_ALIGN`. The configuration is copied. What is refused leaves the memory as it was.
+///
+/// The memory should be zero; if it may still hold the unit of a program that ran before (a section that a reset does not
+/// clear), call `holdover_release` before.
+///
+/// # Safety
+/// `memory` has to be the caller's for as long as the unit is used, and nobody else may write to it. `config` has to
+/// point to a configuration.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_init(memory: *mut c_void, size: usize, config: *const Config) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    let made = unsafe { pointer::read(config) }
+        .and_then(config::Config::try_from)
+        // SAFETY: checked there, and the caller vouches for the rest.
+        .and_then(|config| unsafe { memory::occupy(memory, size, &config) });
+    made.map_or_else(|cause| cause, |()| Status::Ok)
+}
+
+/// Ends the use of a unit; its memory may be used for anything then, also for another unit.
+///
+/// # Safety
+/// As [`holdover_tick`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_release(unit: *mut c_void) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    unsafe { memory::vacate(unit) }.map_or_else(|cause| cause, |()| Status::Ok)
+}
+
+/// Takes in one frame, received at `at_us` microseconds of a clock that never goes back. Frames may come in any order and at
+/// any time. Positive or zero: what became of it; else the cause for which it was refused.
+///
+/// # Safety
+/// `frame` has to point to a frame; `unit` as in [`holdover_tick`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_receive(unit: *mut c_void, at_us: u64, frame: *const Frame) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    let received = unsafe { pointer::read(frame) }.and_then(Heard::try_from).and_then(|frame| {
+        // SAFETY: checked there, and the caller vouches for the rest.
+        unsafe { memory::enter(unit, |unit| unit.receive(Instant::from_micros(at_us), &frame)) }
+    });
+    match received {
+        Ok(Ok(Reception::Taken)) => Status::Ok,
+        Ok(Ok(Reception::Pending)) => Status::Pending,
+        Ok(Ok(Reception::Foreign)) => Status::Foreign,
+        Ok(Err(cause)) => Status::from(cause),
+        Err(cause) => cause,
+    }
+}
+
+/// The task of one period, at `now_us` microseconds of the same clock; the frames of the answer are then to be sent. If the
+/// call is refused, the answer is mode standby (the command is not to be used) without frames.
+///
+/// # Safety
+/// `unit` has to be memory in which [`holdover_init`] was called, or that is at least as large; `answer` has to point to
+/// memory for an answer, outside of the unit, that nobody else uses during the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_tick(unit: *mut c_void, now_us: u64, answer: *mut Answer) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    let place = match unsafe { pointer::write(answer) } {
+        Ok(place) => place,
+        Err(cause) => return cause,
+    };
+    // SAFETY: checked there, and the caller vouches for the rest.
+    match unsafe { memory::enter(unit, |unit| unit.tick(Instant::from_micros(now_us))) } {
+        Ok(answer) => {
+            place.write(Answer::from(&answer));
+            Status::Ok
+        }
+        Err(cause) => {
+            place.write(Answer::NONE);
+            cause
+        }
+    }
+}
+
+/// How often frames were refused for a cause since the unit was made; `cause` is one of `HOLDOVER_REFUSED_...`. 0 if
+/// the call is refused.
+///
+/// # Safety
+/// `count` has to point to memory for a number that nobody else uses during the call; `unit` as in [`holdover_tick`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_count(unit: *mut c_void, cause: i32, count: *mut u32) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    let place = match unsafe { pointer::write(count) } {
+        Ok(place) => place,
+        Err(cause) => return cause,
+    };
+    place.write(0);
+    let counted = status::cause_of(cause)
+        // SAFETY: checked there, and the caller vouches for the rest.
+        .and_then(|cause| unsafe { memory::enter(unit, |unit| unit.health().of(cause)) });
+    match counted {
+        Ok(count) => {
+            place.write(count);
+            Status::Ok
+        }
+        Err(cause) => cause,
+    }
+}

@@ -1,0 +1,233 @@
+//! What every function returns: the core's causes enter, one code each leaves.
+//!
+//! Not negative: done. From -1 on: a mistake of the caller. From -32 on: the configuration. From -64 on: a refused frame,
+//! `-64 - n` being the cause that has the number `n` on the bus (`Health.Cause`). Numbers in use never change.
+
+use core::ffi::CStr;
+
+use holdover::ConfigError;
+use holdover::health::Refusal;
+
+/// What became of a call. Negative: it was refused, for the cause that the code names. A refused call changes nothing; a
+/// refused frame changes its cause's count and the end-to-end state of its identifier.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Done; of a frame: a message was taken in.
+    Ok = 0,
+    /// A good frame of a message whose other frames are still to come.
+    Pending = 1,
+    /// A frame that is not one of the catalogue's, or not for this unit.
+    Foreign = 2,
+    /// A pointer is null.
+    Null = -1,
+    /// An address is not a multiple of what its type needs.
+    Misaligned = -2,
+    /// The memory is smaller than `HOLDOVER_UNIT_SIZE`.
+    TooSmall = -3,
+    /// There is no unit in the memory.
+    NotInitialised = -4,
+    /// There is a unit in the memory already; `holdover_release` makes it free.
+    AlreadyInitialised = -5,
+    /// Something wrote past the end of the unit. It is not used any more; `holdover_init` makes a new one.
+    Overrun = -6,
+    /// Another call is in this unit: receive and tick have to take turns.
+    Busy = -7,
+    /// A frame has more than 8 bytes.
+    FrameLength = -8,
+    /// An identifier has more than 11 bits, or more than 29 if it is an extended one.
+    FrameId = -9,
+    /// The code is not that of a refusal (`HOLDOVER_REFUSED_...`).
+    NoCause = -10,
+    /// `base_id` is above 0x740.
+    ConfigBaseId = -32,
+    /// A switch is neither 0 nor 1.
+    ConfigSwitch = -33,
+    /// `period` is outside 1 to 100 ms.
+    ConfigPeriod = -34,
+    /// `step` is outside 1 ms to 1 s.
+    ConfigStep = -35,
+    /// `horizon` is shorter than two steps, longer than 25.5 s, or needs more steps than the capacity.
+    ConfigHorizon = -36,
+    /// `length` is outside 0 to 40.95 m.
+    ConfigLength = -37,
+    /// `lag` is outside 0 to 1.998 s.
+    ConfigLag = -38,
+    /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s^2 or than emergency
+    /// braking.
+    ConfigLimits = -39,
+    /// `time_gap` is outside 0.1 to 3.995 s.
+    ConfigTimeGap = -40,
+    /// `standstill` is outside 0 to 10.23 m.
+    ConfigStandstill = -41,
+    /// A gain is out of range.
+    ConfigGain = -42,
+    /// The semi-implicit step is unstable: `k dt^2 >= 4 + 2 k dt (t_g + gamma)`.
+    ConfigUnstable = -43,
+    /// A speed is outside 0 to 65.534 m/s.
+    ConfigSpeed = -44,
+    /// `a_max` of the free road is below 0.1 m/s^2 or above the limit on acceleration.
+    ConfigFreeRoad = -45,
+    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+    ConfigLink = -46,
+    /// The vehicle of eqs 1-3 has no mass or no brakes.
+    ConfigBody = -47,
+    /// A limit of the envelope is zero or negative.
+    ConfigEnvelope = -48,
+    /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
+    RefusedLength = -64,
+    /// The E2E checksum does not fit.
+    RefusedChecksum = -65,
+    /// The E2E counter repeats the last one: the same frame twice.
+    RefusedRepeated = -66,
+    /// More E2E counters are missing than the message tolerates.
+    RefusedCounterGap = -67,
+    /// The E2E counter is outside 0 to 14.
+    RefusedCounterRange = -68,
+    /// The E2E state machine has not seen enough good frames of this identifier yet.
+    RefusedNotYetTrusted = -69,
+    /// A field holds a value outside its range, or a reserved one.
+    RefusedRange = -70,
+    /// The parts of a message do not belong together, or one of them is missing.
+    RefusedTorn = -71,
+    /// The stamp is older than the unit uses.
+    RefusedStale = -72,
+    /// The stamp lies in the future by more than the clock's error.
+    RefusedFuture = -73,
+    /// A sample with this stamp is held already.
+    RefusedDuplicate = -74,
+    /// A sample that is newer than this one is held already, and this one no longer fits the history.
+    RefusedOutOfOrder = -75,
+    /// A slot beyond the unit's capacity.
+    RefusedUnknownSlot = -76,
+    /// Another station claims a slot whose station is still alive.
+    RefusedStationConflict = -77,
+    /// A peer too far away to have anything to do with the unit.
+    RefusedTooFar = -78,
+    /// A follow-up without its sync message, or out of sequence.
+    RefusedSyncSequence = -79,
+    /// A position that cannot be reached from the sample before it.
+    RefusedJump = -80,
+    /// A speed that does not fit the positions.
+    RefusedImplausible = -81,
+    /// A value that does not change though it has to.
+    RefusedStuck = -82,
+    /// A time before one that the unit was given already.
+    RefusedClockBackwards = -83,
+}
+
+impl From<ConfigError> for Status {
+    fn from(error: ConfigError) -> Self {
+        match error {
+            ConfigError::Period => Self::ConfigPeriod,
+            ConfigError::Step => Self::ConfigStep,
+            ConfigError::Horizon => Self::ConfigHorizon,
+            ConfigError::Length => Self::ConfigLength,
+            ConfigError::Lag => Self::ConfigLag,
+            ConfigError::Limits => Self::ConfigLimits,
+            ConfigError::TimeGap => Self::ConfigTimeGap,
+            ConfigError::Standstill => Self::ConfigStandstill,
+            ConfigError::Gain => Self::ConfigGain,
+            ConfigError::Unstable => Self::ConfigUnstable,
+            ConfigError::Speed => Self::ConfigSpeed,
+            ConfigError::FreeRoad => Self::ConfigFreeRoad,
+            ConfigError::Link => Self::ConfigLink,
+            ConfigError::Body => Self::ConfigBody,
+            ConfigError::Envelope => Self::ConfigEnvelope,
+        }
+    }
+}
+
+impl From<Refusal> for Status {
+    fn from(cause: Refusal) -> Self {
+        match cause {
+            Refusal::Length => Self::RefusedLength,
+            Refusal::Checksum => Self::RefusedChecksum,
+            Refusal::Repeated => Self::RefusedRepeated,
+            Refusal::CounterGap => Self::RefusedCounterGap,
+            Refusal::CounterRange => Self::RefusedCounterRange,
+            Refusal::NotYetTrusted => Self::RefusedNotYetTrusted,
+            Refusal::Range => Self::RefusedRange,
+            Refusal::Torn => Self::RefusedTorn,
+            Refusal::Stale => Self::RefusedStale,
+            Refusal::Future => Self::RefusedFuture,
+            Refusal::Duplicate => Self::RefusedDuplicate,
+            Refusal::OutOfOrder => Self::RefusedOutOfOrder,
+            Refusal::UnknownSlot => Self::RefusedUnknownSlot,
+            Refusal::StationConflict => Self::RefusedStationConflict,
+            Refusal::TooFar => Self::RefusedTooFar,
+            Refusal::SyncSequence => Self::RefusedSyncSequence,
+            Refusal::Jump => Self::RefusedJump,
+            Refusal::Implausible => Self::RefusedImplausible,
+            Refusal::Stuck => Self::RefusedStuck,
+            Refusal::ClockBackwards => Self::RefusedClockBackwards,
+        }
+    }
+}
+
+/// Every code with its name.
+const NAMES: &[(Status, &CStr)] = &[
+    (Status::Ok, c"ok"),
+    (Status::Pending, c"pending"),
+    (Status::Foreign, c"foreign"),
+    (Status::Null, c"a pointer is null"),
+    (Status::Misaligned, c"an address is not a multiple of what its type needs"),
+    (Status::TooSmall, c"the memory is smaller than HOLDOVER_UNIT_SIZE"),
+    (Status::NotInitialised, c"there is no unit in the memory"),
+    (Status::AlreadyInitialised, c"there is a unit in the memory already"),
+    (Status::Overrun, c"something wrote past the end of the unit"),
+    (Status::Busy, c"another call is in the unit"),
+    (Status::FrameLength, c"a frame has more than 8 bytes"),
+    (Status::FrameId, c"an identifier has more bits than its kind"),
+    (Status::NoCause, c"the code is not that of a refusal"),
+    (Status::ConfigBaseId, c"configuration: base_id is above 0x740"),
+    (Status::ConfigSwitch, c"configuration: a switch is neither 0 nor 1"),
+    (Status::ConfigPeriod, c"configuration: period"),
+    (Status::ConfigStep, c"configuration: step"),
+    (Status::ConfigHorizon, c"configuration: horizon"),
+    (Status::ConfigLength, c"configuration: length"),
+    (Status::ConfigLag, c"configuration: lag"),
+    (Status::ConfigLimits, c"configuration: limits"),
+    (Status::ConfigTimeGap, c"configuration: time_gap"),
+    (Status::ConfigStandstill, c"configuration: standstill"),
+    (Status::ConfigGain, c"configuration: gain"),
+    (Status::ConfigUnstable, c"configuration: unstable"),
+    (Status::ConfigSpeed, c"configuration: speed"),
+    (Status::ConfigFreeRoad, c"configuration: free_road"),
+    (Status::ConfigLink, c"configuration: link"),
+    (Status::ConfigBody, c"configuration: body"),
+    (Status::ConfigEnvelope, c"configuration: envelope"),
+    (Status::RefusedLength, c"refused: length"),
+    (Status::RefusedChecksum, c"refused: checksum"),
+    (Status::RefusedRepeated, c"refused: repeated"),
+    (Status::RefusedCounterGap, c"refused: counter_gap"),
+    (Status::RefusedCounterRange, c"refused: counter_range"),
+    (Status::RefusedNotYetTrusted, c"refused: not_yet_trusted"),
+    (Status::RefusedRange, c"refused: range"),
+    (Status::RefusedTorn, c"refused: torn"),
+    (Status::RefusedStale, c"refused: stale"),
+    (Status::RefusedFuture, c"refused: future"),
+    (Status::RefusedDuplicate, c"refused: duplicate"),
+    (Status::RefusedOutOfOrder, c"refused: out_of_order"),
+    (Status::RefusedUnknownSlot, c"refused: unknown_slot"),
+    (Status::RefusedStationConflict, c"refused: station_conflict"),
+    (Status::RefusedTooFar, c"refused: too_far"),
+    (Status::RefusedSyncSequence, c"refused: sync_sequence"),
+    (Status::RefusedJump, c"refused: jump"),
+    (Status::RefusedImplausible, c"refused: implausible"),
+    (Status::RefusedStuck, c"refused: stuck"),
+    (Status::RefusedClockBackwards, c"refused: clock_backwards"),
+];
+
+/// The name of a code in ASCII; `"unknown"` if there is no such code.
+pub fn name(code: i32) -> &'static CStr {
+    NAMES.iter().find(|(status, _)| *status as i32 == code).map_or(c"unknown", |(_, name)| name)
+}
+
+/// The cause that a code stands for.
+///
+/// # Errors
+/// [`Status::NoCause`] if it is not the code of a refused frame.
+pub fn cause_of(code: i32) -> Result<Refusal, Status> {
+    Refusal::ALL.into_iter().find(|cause| Status::from(*cause) as i32 == code).ok_or(Status::NoCause)
+}

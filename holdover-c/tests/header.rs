@@ -1,0 +1,60 @@
+//! `holdover.h` says what the sources say.
+
+use std::path::Path;
+
+fn header() -> String {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(package.join("cbindgen.toml")).unwrap();
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for name in ["answer", "config", "doors", "frame", "memory", "status"] {
+        builder = builder.with_src(package.join("src").join(name).with_extension("rs"));
+    }
+    let mut text = Vec::new();
+    builder.generate().unwrap().write(&mut text);
+    let text = String::from_utf8(text).unwrap();
+    // The generator names values after their type; the type's `_t` has no place there, nor has Rust's markup.
+    text.replace("HOLDOVER_STATUS_T_", "HOLDOVER_").replace("_T_", "_").replace("[`", "`").replace("`]", "`")
+}
+
+#[test]
+fn the_committed_header_is_the_one_that_the_sources_make() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("holdover.h");
+    let made = header();
+    if std::env::var_os("HOLDOVER_WRITE_HEADER").is_some() {
+        std::fs::write(&path, &made).unwrap();
+    }
+    let committed = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        committed == made,
+        "holdover.h is not up to date: HOLDOVER_WRITE_HEADER=1 cargo test -p holdover-c --test header writes it"
+    );
+}
+
+#[test]
+fn the_header_is_ascii() {
+    let line = header().lines().find(|line| !line.is_ascii()).map(str::to_owned);
+    assert_eq!(line, None);
+}
+
+#[test]
+fn the_header_has_every_function_of_the_library() {
+    let doors = include_str!("../src/doors.rs");
+    let names: Vec<_> = doors
+        .lines()
+        .filter_map(|line| line.split_once("extern \"C\" fn ")?.1.split_once('('))
+        .map(|(name, _)| name)
+        .collect();
+    assert!(names.len() >= 8, "{names:?}");
+    let header = header();
+    for name in names {
+        assert!(header.contains(&format!("{name}(")), "{name}");
+    }
+}
+
+#[test]
+fn the_version_is_the_package_s() {
+    let part = |text: &str| text.parse::<u32>().unwrap();
+    let (major, minor, patch) =
+        (env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH"));
+    assert_eq!(holdover_c::holdover_version(), part(major) << 16 | part(minor) << 8 | part(patch));
+}

@@ -1,0 +1,88 @@
+//! What became of the frames of a log: receptions enter, counts by message and by cause leave.
+
+use std::collections::BTreeMap;
+
+use embedded_can::{Frame as _, Id};
+use holdover::Reception;
+use holdover::health::Refusal;
+use holdover::wire::BaseId;
+use holdover::wire::catalogue;
+
+use crate::bus::Frame;
+
+/// The counts. Every frame is either recognised, refused or ignored.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    base: BaseId,
+    recognised: BTreeMap<u16, u64>,
+    refused: [u64; Refusal::ALL.len()],
+    ignored: u64,
+    ticks: u64,
+}
+
+impl Tally {
+    /// Nothing yet, on a bus whose catalogue starts at `base`.
+    #[must_use]
+    pub fn new(base: BaseId) -> Self {
+        Self { base, recognised: BTreeMap::new(), refused: [0; Refusal::ALL.len()], ignored: 0, ticks: 0 }
+    }
+
+    /// Counts a frame that the unit was given.
+    pub fn count(&mut self, frame: &Frame, reception: Result<Reception, Refusal>) {
+        match (reception, frame.id()) {
+            (Ok(Reception::Pending | Reception::Taken), Id::Standard(id)) => {
+                *self.recognised.entry(id.as_raw()).or_default() += 1;
+            }
+            (Ok(_), _) => self.ignored += 1,
+            (Err(cause), _) => self.refused[cause as usize] += 1,
+        }
+    }
+
+    /// Counts a frame that the unit could not be given.
+    pub fn ignore(&mut self) {
+        self.ignored += 1;
+    }
+
+    /// Counts a tick.
+    pub fn tick(&mut self) {
+        self.ticks += 1;
+    }
+
+    /// All frames.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.recognised.values().sum::<u64>() + self.refused.iter().sum::<u64>() + self.ignored
+    }
+
+    /// Good frames of each message, by its name in the DBC, in the order of the identifiers.
+    #[must_use]
+    pub fn recognised(&self) -> Vec<(String, u64)> {
+        self.recognised.iter().map(|(id, count)| (self.name(*id), *count)).collect()
+    }
+
+    /// Refused frames by cause, those that occurred.
+    #[must_use]
+    pub fn refused(&self) -> Vec<(&'static str, u64)> {
+        let counts = Refusal::ALL.iter().zip(self.refused);
+        counts.filter(|(_, count)| *count > 0).map(|(cause, count)| (cause.name(), count)).collect()
+    }
+
+    /// Frames that are none of the unit's business.
+    #[must_use]
+    pub fn ignored(&self) -> u64 {
+        self.ignored
+    }
+
+    /// Ticks of the unit.
+    #[must_use]
+    pub fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    fn name(&self, id: u16) -> String {
+        match self.base.offset_of(id).and_then(catalogue::find) {
+            Some((_, line, slot)) => line.name.replace("{slot}", &slot.0.to_string()),
+            None => format!("{id:#05x}"),
+        }
+    }
+}

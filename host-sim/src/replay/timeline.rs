@@ -1,0 +1,120 @@
+//! The log's clock: the times of a log's lines enter, the times of the unit's ticks leave.
+//!
+//! The first tick is at the first line's time and every further one a period later. What lies at or before a tick is
+//! received before it. Merged logs are a little out of order, so a line may lie up to [`DISORDER`] before the latest one
+//! above it; ticks never go back for it.
+
+use holdover::time::{Duration, Instant};
+
+use crate::error::Error;
+
+/// How far a line may lie before the latest one above it.
+pub const DISORDER: Duration = Duration::from_millis(1_000);
+
+/// How long a log may be silent. A longer gap is a clock that was set, or two logs in one, and ticking on through years
+/// would take days.
+pub const LONGEST_GAP: Duration = Duration::from_millis(3_600_000);
+
+/// When the unit ticks.
+#[derive(Clone, Copy, Debug)]
+pub struct Timeline {
+    period: Duration,
+    /// The next tick and the latest line, once there was a line.
+    next: Option<(Instant, Instant)>,
+}
+
+impl Timeline {
+    /// Nothing read yet; ticks are to be a period apart.
+    #[must_use]
+    pub fn new(period: Duration) -> Self {
+        Self { period, next: None }
+    }
+
+    /// Takes note of a line's time. All its [`Timeline::due`] ticks are to be made then, before what the line says is
+    /// received.
+    ///
+    /// # Errors
+    /// A time that no log of one recording has.
+    pub fn read(&mut self, at: Instant) -> Result<(), Error> {
+        let (next, latest) = self.next.unwrap_or((at, at));
+        let step = at.since(latest);
+        let split = "sort the log by time, or split it where its clock was set";
+        if step < Duration::ZERO.minus(DISORDER) {
+            return Err(Error::new(format!("the time is {} before that of a line above", spelled(step)), split));
+        }
+        if step > LONGEST_GAP {
+            return Err(Error::new(format!("the time is {} after that of the line above", spelled(step)), split));
+        }
+        self.next = Some((next, latest.max(at)));
+        Ok(())
+    }
+
+    /// The next tick before the latest line; `None`: what that line says comes first.
+    pub fn due(&mut self) -> Option<Instant> {
+        let (tick, latest) = self.next.filter(|(tick, latest)| tick < latest)?;
+        self.next = Some((tick.plus(self.period), latest));
+        Some(tick)
+    }
+
+    /// The last tick, the first at or after the last line; `None` if there was no line.
+    #[must_use]
+    pub fn last(self) -> Option<Instant> {
+        self.next.map(|(tick, _)| tick)
+    }
+}
+
+fn spelled(step: Duration) -> String {
+    let millis = step.as_millis().unsigned_abs();
+    format!("{}.{:03} s", millis / 1000, millis % 1000)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(millis: u64) -> Instant {
+        Instant::from_micros(millis * 1000)
+    }
+
+    /// The ticks, in ms, that are due before each line is received, and the last one.
+    fn ticks(lines: &[u64]) -> Vec<Vec<u64>> {
+        let mut timeline = Timeline::new(Duration::from_millis(10));
+        let mut ticks = Vec::new();
+        for line in lines {
+            timeline.read(at(*line)).unwrap();
+            ticks.push(std::iter::from_fn(|| timeline.due()).map(|tick| tick.as_micros() / 1000).collect());
+        }
+        ticks.push(timeline.last().map(|tick| tick.as_micros() / 1000).into_iter().collect());
+        ticks
+    }
+
+    #[test]
+    fn a_line_at_the_time_of_a_tick_is_received_before_it() {
+        assert_eq!(ticks(&[100, 110, 111]), [vec![], vec![100], vec![110], vec![120]]);
+        assert_eq!(ticks(&[100, 100]), [vec![], vec![], vec![100]]);
+        assert_eq!(ticks(&[]), [vec![]]);
+    }
+
+    #[test]
+    fn ticks_fill_a_gap_and_never_go_back() {
+        assert_eq!(ticks(&[5, 40, 12, 46]), [vec![], vec![5, 15, 25, 35], vec![], vec![45], vec![55]]);
+    }
+
+    #[test]
+    fn a_second_of_disorder_is_taken_and_no_more() {
+        let mut timeline = Timeline::new(Duration::from_millis(10));
+        timeline.read(at(5000)).unwrap();
+        timeline.read(at(4000)).unwrap();
+        let error = timeline.read(at(3999)).unwrap_err().to_string();
+        assert!(error.starts_with("the time is 1.001 s before that of a line above; sort the log"), "{error}");
+    }
+
+    #[test]
+    fn an_hour_of_silence_is_taken_and_no_more() {
+        let mut timeline = Timeline::new(Duration::from_millis(10));
+        timeline.read(at(0)).unwrap();
+        timeline.read(at(3_600_000)).unwrap();
+        let error = timeline.read(at(7_200_001)).unwrap_err().to_string();
+        assert!(error.starts_with("the time is 3600.001 s after that of the line above; sort the log"), "{error}");
+    }
+}

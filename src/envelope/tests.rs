@@ -1,0 +1,133 @@
+//! Facts about the gate: each check against a one-line oracle with values dense around its boundary, and the safe distance
+//! against a float64 simulation of emergency braking.
+
+use super::*;
+use crate::units::Jerk;
+
+const LIMITS: Envelope = Envelope {
+    acceleration: Acceleration::from_mm_per_s2(2000),
+    braking: Acceleration::from_mm_per_s2(6000),
+    jerk: Jerk::from_mm_per_s3(10_000),
+    speed: Speed::from_mm_per_s(30_000),
+    margin: Distance::from_mm(500),
+};
+const PERIOD: Duration = Duration::from_millis(10);
+const FREE: Situation = Situation { is_fresh: true, stop_before: None };
+
+fn ego(speed: i32, acceleration: i32, last: i32) -> Ego {
+    Ego {
+        position: Position::ZERO,
+        speed: Speed::from_mm_per_s(speed),
+        acceleration: Acceleration::from_mm_per_s2(acceleration),
+        last: Acceleration::from_mm_per_s2(last),
+        lag: FineSeconds::from_millis(300),
+    }
+}
+
+fn around(mm: i32) -> impl Iterator<Item = i32> {
+    (mm - 5..=mm + 5).chain([-60_000, -1, 0, 1, 60_000])
+}
+
+#[test]
+fn nothing_beyond_the_absolute_limits_gets_out() {
+    for wish in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
+        for last in around(2000).chain(around(-6000)).filter(|last| (-6000..=2000).contains(last)) {
+            let out = gate(&LIMITS, wish, &ego(0, 0, last), &FREE, PERIOD);
+            assert!(out <= LIMITS.acceleration && out >= LIMITS.braking.negated(), "{wish:?} {last:?}");
+        }
+    }
+}
+
+#[test]
+fn no_change_is_faster_than_the_limit_on_jerk() {
+    for wish in around(100).chain(around(-100)) {
+        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego(0, 0, 0), &FREE, PERIOD).to_mm_per_s2();
+        assert_eq!(out, wish.clamp(-100, 100));
+    }
+}
+
+#[test]
+fn at_the_speed_limit_nothing_accelerates() {
+    for speed in around(30_000) {
+        let cap = speed_cap(&LIMITS, Speed::from_mm_per_s(speed));
+        assert_eq!(cap == Acceleration::ZERO, speed >= 30_000, "{speed}");
+    }
+}
+
+#[test]
+fn a_stale_ego_does_not_accelerate() {
+    let stale = Situation { is_fresh: false, ..FREE };
+    for wish in around(0) {
+        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego(10_000, 0, 0), &stale, PERIOD);
+        assert_eq!(out.to_mm_per_s2(), wish.clamp(-100, 0));
+    }
+}
+
+#[test]
+fn the_gate_only_ever_makes_a_demand_more_careful() {
+    for wish in (-7000..3000).step_by(370) {
+        for room in (-10_000..100_000).step_by(7_310) {
+            let ego = ego(15_000, 0, wish.clamp(-6000, 2000));
+            let situation = Situation { is_fresh: true, stop_before: Some(Position::from_mm(room)) };
+            let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego, &situation, PERIOD);
+            assert!(out.to_mm_per_s2() <= wish || wish < -6000, "{wish} {room} {out:?}");
+        }
+    }
+}
+
+#[test]
+fn a_crossing_vehicle_is_waited_for_until_its_rear_has_left() {
+    let (area, length, ends) = (Position::from_mm(50_000), Distance::from_mm(4_800), Position::from_mm(20_000));
+    for front in 24_790..=24_810 {
+        let stop = stop_before_conflict(area, Position::from_mm(front), length, ends);
+        assert_eq!(stop.is_some(), front - 4_800 < 20_000, "{front}");
+    }
+}
+
+/// Way that is made if this demand holds for one tick and emergency braking follows, in float64 with 1 ms steps.
+fn braking_way(limits: &Envelope, speed: f64, acceleration: f64, first: f64) -> f64 {
+    let (b, j) = (f64::from(limits.braking.to_mm_per_s2()) / 1e3, f64::from(limits.jerk.to_mm_per_s3()) / 1e3);
+    let (mut v, mut a, mut u, mut way) = (speed, acceleration, first, 0.0);
+    let mut tick = 0;
+    while v > 0.0 && tick < 100_000 {
+        if tick % 10 == 0 && tick > 0 {
+            u = (u - j * 0.01).max(-b);
+        }
+        let h = 1e-3;
+        let kept = (-h / 0.3f64).exp();
+        let next = v + u * h + (a - u) * 0.3 * (1.0 - kept);
+        way += 0.5 * (v + next.max(0.0)) * h;
+        a = u + (a - u) * kept;
+        v = next;
+        tick += 1;
+    }
+    way
+}
+
+#[test]
+fn the_largest_acceleration_leaves_enough_room_to_stop_and_not_much_more() {
+    let (b, j, h, lag) = (6.0, 10.0, 0.01, 0.3);
+    let (mut tightest, mut judged) = (f64::MAX, 0);
+    for speed in (1_000..40_000).step_by(1_730) {
+        for acceleration in [-5000, -2000, 0, 1500] {
+            for room in (1_000..120_000).step_by(1_110) {
+                let ego = ego(speed, acceleration, acceleration);
+                let point = Position::from_mm(room);
+                let cap = distance_cap(&LIMITS, &ego, super::room(&LIMITS, &ego, point, PERIOD), PERIOD);
+                if cap < LIMITS.braking.negated() || cap > LIMITS.acceleration {
+                    continue;
+                }
+                let (first, v): (f64, f64) = (cap.get().to_num(), f64::from(speed) / 1e3);
+                let left = room as f64 / 1e3 - braking_way(&LIMITS, v, f64::from(acceleration) / 1e3, first);
+                // The margin, one tick of delay, what the bounds on the lag's end and on the ramp give away, and the
+                // ramp's staircase.
+                let rise = (first + b) / j;
+                let given_away = 0.5 * b * lag * lag + j * (rise + h).powi(3) / 6.0;
+                let staircase = v * 0.5 * j * rise * h / b;
+                assert!(left <= 0.5 + v * h + given_away + staircase + 0.05, "{speed} {acceleration} {room}: {left}");
+                (tightest, judged) = (tightest.min(left), judged + 1);
+            }
+        }
+    }
+    assert!(tightest >= 0.5 && judged > 300, "{tightest} of {judged}");
+}

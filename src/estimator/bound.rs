@@ -1,0 +1,227 @@
+//! The bound: what is certain of a vehicle's position and speed. A sample with its accuracies, and the vehicle's published
+//! limits, enter; the lowest and the highest position and speed at any later instant leave. The truth is between them as
+//! long as the sample was within its accuracies and the vehicle keeps to its limits.
+//!
+//! The two ends are two vehicles of their own. The *near* one was as far back and as slow as the sample allows, has braked
+//! as hard as it can ever since, and stands when it has come to rest; the *far* one was as far ahead and as fast, and has
+//! accelerated as hard as it can, up to the highest speed there is. No truth gets behind the one or ahead of the other, in
+//! position or in speed, because both are monotone in acceleration and in time. They are not symmetric: a car brakes
+//! harder than it accelerates.
+//!
+//! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the truth.
+//! Products stay below 2⁶³: speeds are at most 65.534e6, the times for which they change at most 6.6e8 (0.1 m/s² up to
+//! that speed), all times are cut at [`LONGEST`].
+
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::intent::Limits;
+
+/// The highest speed there is: what the wire can say, in µm/s.
+const TOP_SPEED: i64 = 65_534_000;
+/// Beyond an hour the far end says nothing any more.
+const LONGEST: i64 = 3_600_000_000;
+const MICRO: i64 = 1_000_000;
+
+/// How fast a vehicle can change its speed, as magnitudes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Reach {
+    /// Hardest acceleration.
+    pub acceleration: Acceleration,
+    /// Hardest braking.
+    pub braking: Acceleration,
+}
+
+impl Reach {
+    /// What is physically possible on a dry road with any road vehicle, where nothing was published.
+    pub const WORST: Self =
+        Self { acceleration: Acceleration::from_mm_per_s2(6_000), braking: Acceleration::from_mm_per_s2(12_000) };
+
+    /// As published; not less than 0.1 m/s² each, so that a rest takes finite time.
+    #[must_use]
+    pub fn published(limits: &Limits) -> Self {
+        const LEAST: Acceleration = Acceleration::from_mm_per_s2(100);
+        Self { acceleration: limits.acceleration.max(LEAST), braking: limits.emergency_braking.max(LEAST) }
+    }
+}
+
+/// What is uncertain about a sample at its stamp.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Doubt {
+    /// Position, to either side.
+    pub position: Distance,
+    /// Speed, to either side.
+    pub speed: Speed,
+    /// How much earlier than the instant taken for it the sample may really be from.
+    pub earlier: Duration,
+    /// How much later.
+    pub later: Duration,
+}
+
+/// One end: a position in µm and a speed in µm/s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct End {
+    position: i64,
+    speed: i64,
+}
+
+impl End {
+    /// After braking for `micros`, rounded down.
+    fn braked(self, micros: i64, braking: Acceleration) -> Self {
+        let braking = micro_up(braking.to_bits(), 25).max(1);
+        let to_rest = ceil(self.speed.saturating_mul(MICRO), braking);
+        if micros >= to_rest {
+            // v²/2a: speeds below 2²⁶ squared stay below 2⁵².
+            let way = floor(self.speed.saturating_mul(self.speed), braking.saturating_mul(2));
+            return Self { position: self.position.saturating_add(way), speed: 0 };
+        }
+        let lost = ceil(braking.saturating_mul(micros), MICRO).min(self.speed);
+        let way = floor(self.speed.saturating_mul(2).saturating_sub(lost).saturating_mul(micros), 2 * MICRO);
+        Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
+    }
+
+    /// After accelerating for `micros` up to the top speed, rounded up.
+    fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
+        let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
+        let to_top = ceil(TOP_SPEED.saturating_sub(self.speed).max(0).saturating_mul(MICRO), acceleration);
+        let rising = micros.min(to_top);
+        let gained = ceil(acceleration.saturating_mul(rising), MICRO);
+        let way = ceil(self.speed.saturating_mul(2).saturating_add(gained).saturating_mul(rising), 2 * MICRO);
+        let speed = self.speed.saturating_add(gained).min(TOP_SPEED.max(self.speed));
+        let rest = ceil(speed.saturating_mul(micros.saturating_sub(rising)), MICRO);
+        Self { position: self.position.saturating_add(way).saturating_add(rest), speed }
+    }
+}
+
+/// The bound at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Bound {
+    at: Instant,
+    near: End,
+    far: End,
+}
+
+impl Bound {
+    /// Around a sample that is taken to be of `at`. The bound is that of `at` or of the latest instant that the sample may
+    /// really be from.
+    #[must_use]
+    pub fn around(at: Instant, position: Position, speed: Speed, doubt: &Doubt, reach: &Reach) -> Self {
+        let (position, speed) = (micro_position(position), (i64::from(speed.to_bits()), 23));
+        let off = micro_up(doubt.position.to_bits(), 20);
+        let faster = micro_up(doubt.speed.to_bits(), 23);
+        let slow = micro_down_64(speed.0, speed.1).saturating_sub(faster).max(0);
+        let fast = micro_up_64(speed.0, speed.1).saturating_add(faster).max(0);
+        let near = End { position: position.0.saturating_sub(off), speed: slow };
+        let far = End { position: position.1.saturating_add(off), speed: fast };
+        // Of the earliest instant the far end has come furthest; the near end is furthest back if it is of the latest. The
+        // speeds may have changed for the whole of the time in doubt, either way.
+        let whole = doubt.earlier.plus(doubt.later).as_micros().clamp(0, LONGEST);
+        let slower = near.braked(whole, reach.braking);
+        Self {
+            at: at.plus(doubt.later),
+            near: End { position: near.position, speed: slower.speed },
+            far: far.accelerated(whole, reach.acceleration),
+        }
+    }
+
+    /// The instant that it is of.
+    #[must_use]
+    pub const fn at(&self) -> Instant {
+        self.at
+    }
+
+    /// The bound at a later instant; at an earlier one it is what it is.
+    #[must_use]
+    pub fn after(&self, now: Instant, reach: &Reach) -> Self {
+        let micros = now.since(self.at).as_micros();
+        if micros <= 0 {
+            return *self;
+        }
+        let far = if micros > LONGEST {
+            End { position: i64::MAX, speed: TOP_SPEED }
+        } else {
+            self.far.accelerated(micros, reach.acceleration)
+        };
+        Self { at: now, near: self.near.braked(micros.min(LONGEST), reach.braking), far }
+    }
+
+    /// What both bounds agree on, at the later one's instant; `None` if they contradict one another.
+    #[must_use]
+    pub fn and(&self, other: &Self, reach: &Reach) -> Option<Self> {
+        let at = self.at.max(other.at);
+        let (a, b) = (self.after(at, reach), other.after(at, reach));
+        let near = End { position: a.near.position.max(b.near.position), speed: a.near.speed.max(b.near.speed) };
+        let far = End { position: a.far.position.min(b.far.position), speed: a.far.speed.min(b.far.speed) };
+        (near.position <= far.position && near.speed <= far.speed).then_some(Self { at, near, far })
+    }
+
+    /// The lowest position, rounded down.
+    #[must_use]
+    pub const fn lowest_position(&self) -> Position {
+        Position::from_bits(floor_shifted(self.near.position, 20))
+    }
+
+    /// The highest position, rounded up.
+    #[must_use]
+    pub const fn highest_position(&self) -> Position {
+        Position::from_bits(floor_shifted(self.far.position.saturating_neg(), 20).saturating_neg())
+    }
+
+    /// The lowest speed, rounded down.
+    #[must_use]
+    pub const fn lowest_speed(&self) -> Speed {
+        Speed::from_bits(crate::fixed::saturate_i32(floor_shifted(self.near.speed, 23)))
+    }
+
+    /// The highest speed, rounded up.
+    #[must_use]
+    pub const fn highest_speed(&self) -> Speed {
+        Speed::from_bits(crate::fixed::saturate_i32(
+            floor_shifted(self.far.speed.saturating_neg(), 23).saturating_neg(),
+        ))
+    }
+
+    /// Where the near end comes to rest if it goes on braking: behind this the vehicle cannot stop, however long the
+    /// silence. It never moves back, rounded down.
+    #[must_use]
+    pub fn nearest_stop(&self, reach: &Reach) -> Position {
+        let stopped = self.near.braked(LONGEST, reach.braking);
+        Position::from_bits(floor_shifted(stopped.position, 20))
+    }
+}
+
+/// A word with `fraction` bits in millionths, rounded up.
+fn micro_up(word: i32, fraction: u32) -> i64 {
+    micro_up_64(i64::from(word), fraction)
+}
+
+fn micro_up_64(word: i64, fraction: u32) -> i64 {
+    ceil(word.saturating_mul(MICRO), 1i64.wrapping_shl(fraction))
+}
+
+fn micro_down_64(word: i64, fraction: u32) -> i64 {
+    floor(word.saturating_mul(MICRO), 1i64.wrapping_shl(fraction))
+}
+
+/// A position in µm, rounded down and up; exact up to ±8.8e6 m, beyond which it saturates.
+fn micro_position(position: Position) -> (i64, i64) {
+    (micro_down_64(position.to_bits(), 20), micro_up_64(position.to_bits(), 20))
+}
+
+/// Millionths as a word with `fraction` bits, rounded down.
+const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
+    micros.saturating_mul(1i64.wrapping_shl(fraction)).div_euclid(MICRO)
+}
+
+/// Quotient rounded down, for a positive divisor.
+fn floor(dividend: i64, divisor: i64) -> i64 {
+    dividend.checked_div_euclid(divisor).unwrap_or(i64::MIN)
+}
+
+/// Quotient rounded up, for a positive divisor.
+fn ceil(dividend: i64, divisor: i64) -> i64 {
+    floor(dividend.saturating_neg(), divisor).saturating_neg()
+}

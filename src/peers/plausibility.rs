@@ -1,0 +1,131 @@
+//! Misbehaving peers: a sample, and what is certain of its sender, enter; the sample's place in that, or the name of what is
+//! wrong with it, leaves.
+//!
+//! What is certain is the [`Bound`] carried on from all believed samples. A sample that contradicts it cannot come from a
+//! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Refusal::Jump`], or
+//! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). So a speed that does not
+//! fit the positions is found as soon as they have drifted apart by more than the published accuracies. An acceleration
+//! beyond what any road vehicle can do is implausible by itself.
+//!
+//! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
+//! track starts anew from them.
+
+use super::Sample;
+use crate::config::Link;
+use crate::estimator::bound::{Bound, Doubt, Reach};
+use crate::health::Refusal;
+use crate::parameters::{
+    POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY, UNPUBLISHED_POSITION_ACCURACY,
+    UNPUBLISHED_SPEED_ACCURACY,
+};
+use crate::time::Duration;
+
+/// What is certain of a peer, and the evidence against it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Certainty {
+    bound: Option<Bound>,
+    suspects: Option<(Bound, u8)>,
+}
+
+/// How a believed sample is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Belief {
+    /// It agrees with what was certain.
+    Agrees,
+    /// It is the last of enough that agree with one another: what was certain is given up.
+    Recovered,
+}
+
+impl Certainty {
+    /// Nothing is certain.
+    pub const NONE: Self = Self { bound: None, suspects: None };
+
+    /// The bound, if there is one.
+    #[must_use]
+    pub const fn bound(&self) -> Option<&Bound> {
+        self.bound.as_ref()
+    }
+
+    /// Narrows the bound by something else that is certain; whether they agree.
+    pub fn narrow(&mut self, other: &Bound, reach: &Reach) -> bool {
+        let Some(bound) = self.bound.as_ref() else { return true };
+        match bound.and(other, reach) {
+            Some(both) => {
+                self.bound = Some(both);
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Judges a sample that is newer than all before, `last` being the one before it.
+    ///
+    /// # Errors
+    /// `Implausible`, `Jump` or `Stuck`; the evidence is kept.
+    pub fn judge(
+        &mut self,
+        sample: &Sample,
+        last: Option<&Sample>,
+        doubt: &Doubt,
+        reach: &Reach,
+    ) -> Result<Belief, Refusal> {
+        if sample.acceleration.magnitude() > Reach::WORST.braking {
+            return Err(Refusal::Implausible);
+        }
+        let around = Bound::around(sample.at, sample.position, sample.speed, doubt, reach);
+        let Some(bound) = &self.bound else {
+            self.bound = Some(around);
+            return Ok(Belief::Agrees);
+        };
+        if let Some(both) = bound.and(&around, reach) {
+            *self = Self { bound: Some(both), suspects: None };
+            return Ok(Belief::Agrees);
+        }
+        let refusal = name(bound, &around, sample, last, reach);
+        let (suspect, count) = match &self.suspects {
+            Some((suspect, count)) => match suspect.and(&around, reach) {
+                Some(both) => (both, count.saturating_add(1)),
+                None => (around, 1),
+            },
+            None => (around, 1),
+        };
+        if count >= RECOVERY_SAMPLES {
+            *self = Self { bound: Some(suspect), suspects: None };
+            return Ok(Belief::Recovered);
+        }
+        self.suspects = Some((suspect, count));
+        Err(refusal)
+    }
+}
+
+/// What contradicts what.
+fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, reach: &Reach) -> Refusal {
+    let carried = bound.after(around.at(), reach);
+    let out_of_reach =
+        around.highest_position() < carried.lowest_position() || around.lowest_position() > carried.highest_position();
+    let same_again = last.is_some_and(|last| last.position == sample.position && last.speed == sample.speed);
+    match (out_of_reach, same_again) {
+        (true, true) => Refusal::Stuck,
+        (true, false) => Refusal::Jump,
+        (false, _) => Refusal::Implausible,
+    }
+}
+
+/// What is uncertain about a sample.
+#[must_use]
+pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link) -> Doubt {
+    let (earlier, later) = if is_synchronised {
+        (link.clock_error, link.clock_error)
+    } else {
+        // It was taken for as old as the assumed delay, and may be of any age up to the largest.
+        (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)
+    };
+    Doubt {
+        position: sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING),
+        speed: sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING),
+        earlier,
+        later,
+    }
+}
