@@ -2,6 +2,7 @@
 //! decided in [`crate::options`].
 
 use crate::replay::{self, arguments::ReplayArguments};
+use crate::sweep::{self, arguments::SweepArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -28,6 +29,9 @@ pub enum Command {
     /// Run a scenario and report on it
     #[command(after_help = AFTER_HELP)]
     Run(RunArguments),
+    /// Run a scenario at several prediction steps with many seeds, on all cores
+    #[command(after_help = sweep::arguments::AFTER_HELP)]
+    Sweep(SweepArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),

@@ -5,6 +5,7 @@ use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
+use crate::sweep::options::SweepOptions;
 use std::path::{Path, PathBuf};
 
 /// What to do.
@@ -12,6 +13,8 @@ use std::path::{Path, PathBuf};
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
+    /// Run a scenario at several steps with many seeds.
+    Sweep(SweepOptions),
     /// Replay a log.
     Replay(ReplayOptions),
 }
@@ -52,6 +55,7 @@ impl Options {
     pub fn read(cli: Cli) -> Result<Self, Error> {
         match cli.command {
             Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
+            Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }
@@ -102,7 +106,10 @@ fn typed(overrides: &Overrides) -> Vec<String> {
 }
 
 /// That the report's folder is not a file; missing folders are created when it is written.
-fn can_be_folder(folder: &Path) -> Result<(), Error> {
+///
+/// # Errors
+/// It is a file, or has no name.
+pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
     let cause = if folder.as_os_str().is_empty() {
         "is an empty name".to_owned()
     } else if folder.exists() && !folder.is_dir() {
