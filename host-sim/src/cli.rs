@@ -6,6 +6,7 @@ mod evaluate;
 pub use evaluate::EvaluateArguments;
 
 use crate::replay::{self, arguments::ReplayArguments};
+use crate::sweep::{self, arguments::SweepArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -35,6 +36,9 @@ pub enum Command {
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
     #[command(after_help = evaluate::AFTER_HELP)]
     Evaluate(EvaluateArguments),
+    /// Run a scenario at several prediction steps with many seeds, on all cores
+    #[command(after_help = sweep::arguments::AFTER_HELP)]
+    Sweep(SweepArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),

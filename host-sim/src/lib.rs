@@ -23,6 +23,7 @@ pub mod report;
 pub mod run;
 pub mod scenario;
 pub mod streams;
+pub mod sweep;
 pub mod vehicle;
 pub mod verdict;
 pub mod world;

@@ -9,6 +9,7 @@ use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
+use crate::sweep::options::SweepOptions;
 use std::path::{Path, PathBuf};
 
 /// What to do.
@@ -18,6 +19,8 @@ pub enum Options {
     Run(RunOptions),
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
+    /// Run a scenario at several steps with many seeds.
+    Sweep(SweepOptions),
     /// Replay a log.
     Replay(ReplayOptions),
 }
@@ -59,6 +62,7 @@ impl Options {
         match cli.command {
             Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }
@@ -109,7 +113,10 @@ fn typed(overrides: &Overrides) -> Vec<String> {
 }
 
 /// That the report's folder is not a file; missing folders are created when it is written.
-fn can_be_folder(folder: &Path) -> Result<(), Error> {
+///
+/// # Errors
+/// It is a file, or has no name.
+pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
     let cause = if folder.as_os_str().is_empty() {
         "is an empty name".to_owned()
     } else if folder.exists() && !folder.is_dir() {

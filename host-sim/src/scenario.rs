@@ -130,6 +130,14 @@ impl Scenario {
         validate::scenario(file, text, overrides)
     }
 
+    /// The same scenario at another prediction step.
+    ///
+    /// # Errors
+    /// A step outside 1 ms to 1 s.
+    pub fn at_step(&self, step_s: f64) -> Result<Self, Error> {
+        Ok(Self { step_s: validate::step(step_s)?, ..self.clone() })
+    }
+
     /// Where every vehicle starts, drawn by that seed; the same for the same seed, and each vehicle's own numbers are
     /// drawn apart from those of the others. A leader without a position starts far enough along the lane for the
     /// last vehicle to start at 0 or beyond.

@@ -92,7 +92,7 @@ mod tests {
     fn a_line_at_the_time_of_a_tick_is_received_before_it() {
         assert_eq!(ticks(&[100, 110, 111]), [vec![], vec![100], vec![110], vec![120]]);
         assert_eq!(ticks(&[100, 100]), [vec![], vec![], vec![100]]);
-        assert_eq!(ticks(&[]), [vec![]]);
+        assert_eq!(ticks(&[]), [Vec::<u64>::new()]);
     }
 
     #[test]

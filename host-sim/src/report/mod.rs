@@ -2,15 +2,16 @@
 //! address of anything outside; no time of day, so the same results are the same bytes.
 //!
 //! ```text
-//! results -> run -> plot (figures) -> page (tables, prose, style) -> String
+//! results -> run, sweep -> plot (figures) -> page (tables, prose, style) -> String
 //! ```
 //!
 //! [`plot`] knows axes and shapes but nothing of vehicles; [`page`] knows HTML; [`run`] says which figures the report of
-//! one run has. Everything is escaped in one place, [`markup`].
+//! one run has, [`sweep`] that of many. Everything is escaped in one place, [`markup`].
 
 pub mod markup;
 pub mod page;
 pub mod plot;
 pub mod run;
+pub mod sweep;
 
 pub use run::RunReport;

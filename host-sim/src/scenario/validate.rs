@@ -75,6 +75,11 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     })
 }
 
+/// A prediction step.
+pub fn step(step_s: f64) -> Result<f64, Error> {
+    STEP.check(step_s)
+}
+
 fn duration_s(document: &Document, given: Found<f64>, motion: Option<&Motion>) -> Result<f64, Error> {
     let Some(motion) = motion else { return Ok(given.value) };
     let recorded = motion.duration_s();

@@ -1,0 +1,69 @@
+//! What a tick costs: a scenario and a seed enter, the wall time of its follower's `tick` leaves.
+//!
+//! The traffic on the follower's bus is recorded first; then a unit with the same configuration receives it again, with
+//! nothing else going on in between, and only its `tick` is timed. Whatever disturbs a pass makes it longer, so the
+//! fastest of a few counts.
+
+use std::hint::black_box;
+use std::time;
+
+use holdover::Config;
+use holdover::time::Instant;
+use serde::Serialize;
+
+use crate::bus::Frame;
+use crate::error::Error;
+use crate::run::simulate;
+use crate::scenario::Scenario;
+use crate::vehicle::{Unit, micros};
+use crate::world::{Measured, config};
+
+const PASSES: usize = 5;
+/// As much of a run is enough.
+const LONGEST_S: f64 = 20.0;
+/// The unit's clock at time 0 of the run; what is recorded begins before.
+const POWERED_BEFORE_US: u64 = 60_000_000;
+
+/// What a tick costs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Timing {
+    /// Mean wall time of the follower's `tick` over the ticks of a run, of the fastest pass.
+    pub ns_per_tick: f64,
+    /// Ticks in a second of doing nothing else.
+    pub updates_per_s: f64,
+}
+
+/// Measures it, on this thread alone.
+///
+/// # Errors
+/// What a unit finds wrong with the configuration that the scenario gives it.
+pub fn measure(scenario: &Scenario, seed: u64) -> Result<Timing, Error> {
+    let scenario = Scenario { duration_s: scenario.duration_s.min(LONGEST_S), ..scenario.clone() };
+    let by = Measured::of(&scenario).by;
+    let (trace, _) = simulate(&scenario, seed, Some(by), |_| {})?;
+    let config = config(&scenario, by);
+    let unit = Unit::new(&config)
+        .map_err(|cause| Error::new(format!("the units refuse the scenario: {cause}"), "change it accordingly"))?;
+    let passes = (0..PASSES).map(|_| pass(unit.clone(), &config, &trace.log, trace.times_s.len()));
+    let ns_per_tick = passes.fold(f64::INFINITY, f64::min);
+    Ok(Timing { ns_per_tick, updates_per_s: 1e9 / ns_per_tick })
+}
+
+fn pass(mut unit: Unit, config: &Config, log: &[(f64, Frame)], ticks: usize) -> f64 {
+    let clock = |at_s: f64| Instant::from_micros(POWERED_BEFORE_US.saturating_add_signed(micros(at_s)));
+    let mut frames = log.iter().peekable();
+    let mut spent = time::Duration::ZERO;
+    let mut now = clock(0.0);
+    for _ in 0..ticks {
+        while let Some((at_s, frame)) = frames.next_if(|(at_s, _)| clock(*at_s) <= now) {
+            let _ = unit.receive(clock(*at_s), frame); // a refusal is the unit's to count
+        }
+        let start = time::Instant::now();
+        black_box(unit.tick(black_box(now)));
+        spent += start.elapsed();
+        now = now.plus(config.period);
+    }
+    #[allow(clippy::cast_precision_loss)] // a few thousand ticks
+    let mean = spent.as_nanos() as f64 / ticks as f64;
+    mean
+}
