@@ -123,7 +123,7 @@ impl Relay {
         }
         let heard_s = |slot: &usize| self.slots[*slot].map_or(0.0, |tenant| tenant.heard_s);
         let longest = (0..self.slots.len()).min_by(|a, b| heard_s(a).total_cmp(&heard_s(b)))?;
-        (at_s - heard_s(&longest) >= SLOT_REUSE_S).then_some(longest)
+        (at_s - heard_s(&longest) >= SLOT_REUSE_S - 1e-9).then_some(longest)
     }
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
