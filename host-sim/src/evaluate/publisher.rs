@@ -11,10 +11,10 @@ use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
 
 use super::listener::{PREDECESSOR, TARGET};
+use super::options::Recording;
 use super::timeline::{Timeline, seconds};
 use crate::heard::HeardIntent;
 use crate::modem::V2xMessage;
-use crate::options::Recording;
 use crate::recording::Motion;
 use crate::vehicle::{acceleration, gnss, metres, speed, station};
 
@@ -110,7 +110,8 @@ impl<'a> Publisher<'a> {
             station: self.station,
         };
         let intent = self.follows.map(|(ahead, intent)| {
-            let is_by_law = (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
+            let is_by_law =
+                (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
             let predecessor = if is_by_law { intent.predecessor } else { Predecessor::Unknown };
             Intent { predecessor, ..intent }
         });

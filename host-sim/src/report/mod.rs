@@ -2,15 +2,17 @@
 //! address of anything outside; no time of day, so the same results are the same bytes.
 //!
 //! ```text
-//! results -> run -> plot (figures) -> page (tables, prose, style) -> String
+//! results -> run, evaluate -> plot (figures) -> page (tables, prose, style) -> String
 //! ```
 //!
-//! [`plot`] knows axes and shapes but nothing of vehicles; [`page`] knows HTML; [`run`] says which figures the report of
-//! one run has. Everything is escaped in one place, [`markup`].
+//! [`plot`] knows axes and shapes but nothing of vehicles; [`page`] knows HTML; [`run`] and [`evaluate`] say which figures
+//! the report of one run, or of one evaluation, has. Everything is escaped in one place, [`markup`].
 
+pub mod evaluate;
 pub mod markup;
 pub mod page;
 pub mod plot;
 pub mod run;
 
+pub use evaluate::EvaluateReport;
 pub use run::RunReport;

@@ -8,7 +8,6 @@ use holdover::time::Instant;
 
 use crate::candump::LogWriter;
 use crate::error::Error;
-use crate::report::RunReport;
 use crate::scenario::Scenario;
 use crate::vehicle::{EPOCH_US, micros};
 use crate::world::Trace;
@@ -76,10 +75,13 @@ pub fn write_log(file: &Path, trace: &Trace) -> Result<(), Error> {
     log.finish().map(|_| ()).map_err(|error| unwritable(&error))
 }
 
-/// Writes the report into its folder and says where.
-pub fn write_report(folder: &Path, report: &RunReport) -> Result<PathBuf, Error> {
+/// Writes a report's page into its folder and says where.
+///
+/// # Errors
+/// A folder or file that cannot be written.
+pub fn write_report(folder: &Path, page: &str) -> Result<PathBuf, Error> {
     fs::create_dir_all(folder).map_err(|error| Error::unwritable(folder, &error))?;
     let file = folder.join("index.html");
-    fs::write(&file, report.render()).map_err(|error| Error::unwritable(&file, &error))?;
+    fs::write(&file, page).map_err(|error| Error::unwritable(&file, &error))?;
     Ok(file)
 }
