@@ -1,10 +1,7 @@
 //! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
 //! decided in [`crate::options`].
 
-mod evaluate;
-
-pub use evaluate::EvaluateArguments;
-
+use crate::evaluate::{self, arguments::EvaluateArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use crate::sweep::{self, arguments::SweepArguments};
 use clap::{Args, Parser, Subcommand};
@@ -34,7 +31,7 @@ pub enum Command {
     #[command(after_help = AFTER_HELP)]
     Run(RunArguments),
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
-    #[command(after_help = evaluate::AFTER_HELP)]
+    #[command(after_help = evaluate::arguments::AFTER_HELP)]
     Evaluate(EvaluateArguments),
     /// Run a scenario at several prediction steps with many seeds, on all cores
     #[command(after_help = sweep::arguments::AFTER_HELP)]

@@ -1,12 +1,9 @@
 //! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
-mod evaluate;
-
-pub use evaluate::{EvaluateOptions, Impairment, Recording};
-
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
+use crate::evaluate::options::EvaluateOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
 use crate::sweep::options::SweepOptions;
@@ -128,7 +125,10 @@ pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
 }
 
 /// That a file can be written there, without losing an input or another output.
-fn can_be_file(option: &str, file: &Path, taken: &[&Path]) -> Result<(), Error> {
+///
+/// # Errors
+/// It is a folder or in none, is taken, or has no name.
+pub fn can_be_file(option: &str, file: &Path, taken: &[&Path]) -> Result<(), Error> {
     let name = quoted(&file.to_string_lossy());
     let (cause, remedy) = if file.as_os_str().is_empty() {
         ("is an empty name".to_owned(), "name a file")

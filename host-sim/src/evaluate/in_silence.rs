@@ -10,12 +10,12 @@ use holdover::ConfigError;
 use rayon::prelude::*;
 
 use super::listener::{Deaf, Listener};
+use super::options::Recording;
 use super::publisher::Publisher;
 use super::sample::{Outcome, Sample};
 use super::timeline::{Timeline, seconds};
 use crate::baseline::Estimate;
 use crate::modem::V2xMessage;
-use crate::options::Recording;
 use crate::recording::Motion;
 use crate::vehicle::{metres, micros};
 

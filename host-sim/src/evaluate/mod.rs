@@ -6,10 +6,13 @@
 //!                                                             -> baselines                      -> report, trace
 //! ```
 
+pub mod arguments;
 pub mod figures;
 pub mod in_silence;
 pub mod listener;
+pub mod options;
 pub mod over_link;
+mod page;
 pub mod publisher;
 pub mod sample;
 mod table;
@@ -22,10 +25,11 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::error::Error;
-use crate::options::{EvaluateOptions, Impairment, Recording};
 use crate::output;
+use crate::run::write_report;
 use crate::verdict::Verdict;
 use figures::{Results, Timing};
+use options::{EvaluateOptions, Impairment, Recording};
 use sample::Outcome;
 
 /// Evaluates what the options name and writes all that they ask for.
@@ -42,11 +46,18 @@ pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
     if let Some(file) = &options.trace {
         trace::write(file, &outcomes)?;
     }
+    let report = match &options.report {
+        Some(folder) => Some(write_report(folder, &page::report(options, &outcomes, &results).render())?),
+        None => None,
+    };
     if options.json {
         let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
         output::print(&format!("{json}\n"))?;
     } else {
         output::print(&table::text(options, &outcomes, &results))?;
+    }
+    if let Some(report) = report {
+        output::say(&format!("report: {}", report.display()));
     }
     Ok(Verdict::Pass)
 }

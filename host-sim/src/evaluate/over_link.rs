@@ -3,13 +3,13 @@
 use holdover::ConfigError;
 
 use super::listener::Listener;
+use super::options::Recording;
 use super::publisher::{Published, Publisher};
 use super::sample::{Outcome, Sample};
 use super::timeline::{Timeline, seconds};
 use crate::baseline::Estimate;
 use crate::channel::OLDEST_S;
 use crate::modem::V2xMessage;
-use crate::options::Recording;
 use crate::recording::ChannelTrace;
 use crate::vehicle::{metres, micros};
 

@@ -11,10 +11,10 @@ use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
 
 use super::listener::{PREDECESSOR, TARGET};
+use super::options::Recording;
 use super::timeline::{Timeline, seconds};
 use crate::heard::HeardIntent;
 use crate::modem::V2xMessage;
-use crate::options::Recording;
 use crate::recording::Motion;
 use crate::vehicle::{acceleration, gnss, metres, speed, station};
 

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::figures::{Figures, Results, figures};
+use super::options::EvaluateOptions;
 use super::sample::Outcome;
-use crate::options::EvaluateOptions;
 use crate::report::markup::count;
 
 /// The tables.
@@ -72,9 +72,9 @@ fn recordings(text: &mut String, options: &EvaluateOptions, outcomes: &[Outcome]
 }
 
 /// The name and the count of each class.
-fn heads(figures: &Figures) -> Vec<(String, usize)> {
+pub fn heads(figures: &Figures) -> Vec<(String, usize)> {
     let ages = figures.by_age.iter().flatten().map(|class| {
-        let name = class.to_s.map_or(format!("{} s-", class.from_s), |to_s| format!("{}-{to_s} s", class.from_s));
+        let name = class.to_s.map_or(format!("≥{} s", class.from_s), |to_s| format!("{}–{to_s} s", class.from_s));
         (name, class.count)
     });
     let outages = figures.by_outage.iter().flatten().map(|class| (format!("{} s", class.outage_s), class.count));

@@ -1,8 +1,8 @@
 //! The options of `evaluate`: raw values enter; recordings that have been read and that belong together leave.
 
-use super::{can_be_file, can_be_folder};
-use crate::cli::EvaluateArguments;
+use super::arguments::EvaluateArguments;
 use crate::error::{Error, quoted};
+use crate::options::{can_be_file, can_be_folder};
 use crate::recording::{ChannelTrace, Motion};
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,11 @@ pub enum Impairment {
 }
 
 impl EvaluateOptions {
-    pub(super) fn read(arguments: EvaluateArguments) -> Result<Self, Error> {
+    /// Reads what the command line names and checks it.
+    ///
+    /// # Errors
+    /// Whatever makes the input unusable, and places for output that cannot be written.
+    pub fn read(arguments: EvaluateArguments) -> Result<Self, Error> {
         if !(0.001..=1.0).contains(&arguments.step) {
             let cause = format!("is {}", arguments.step);
             return Err(Error::new(cause, "give seconds from 0.001 to 1").in_option("--step"));
@@ -67,6 +71,15 @@ impl EvaluateOptions {
         }
         let EvaluateArguments { step: step_s, json, trace, .. } = arguments;
         Ok(Self { recordings, impairment, step_s, json, report, trace })
+    }
+
+    /// The lengths of the silences, if those are to be measured.
+    #[must_use]
+    pub fn lengths_s(&self) -> Option<&[f64]> {
+        match &self.impairment {
+            Impairment::Channel(..) => None,
+            Impairment::Outages(lengths_s) => Some(lengths_s),
+        }
     }
 }
 
@@ -148,17 +161,6 @@ impl Recording {
                 Err(Error::new(cause, "give a longer recording, or shorter lengths to --outage").in_file(&self.file))
             }
             None => Ok(()),
-        }
-    }
-}
-
-impl EvaluateOptions {
-    /// The lengths of the silences, if those are to be measured.
-    #[must_use]
-    pub fn lengths_s(&self) -> Option<&[f64]> {
-        match &self.impairment {
-            Impairment::Channel(..) => None,
-            Impairment::Outages(lengths_s) => Some(lengths_s),
         }
     }
 }
