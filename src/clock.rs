@@ -45,10 +45,11 @@ impl Clock {
     /// # Errors
     /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago.
     pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Refusal> {
-        let (marked, sync) = self.mark.take().ok_or(Refusal::SyncSequence)?;
+        let (marked, sync) = self.mark.ok_or(Refusal::SyncSequence)?;
         if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
             return Err(Refusal::SyncSequence);
         }
+        self.mark = None;
         self.fix = Some(Fix { local: marked, gnss: follow_up.time_of(&sync) });
         Ok(())
     }
@@ -107,6 +108,16 @@ mod tests {
             let instant = clock.instant_of(GnssTime::from_micros(gnss).stamp(), received).unwrap();
             assert!(instant.since(taken).as_micros().abs() <= 50, "{age}");
         }
+    }
+
+    #[test]
+    fn a_follow_up_of_another_sync_message_does_not_spoil_the_right_one() {
+        let mut clock = Clock::new();
+        let at = Instant::from_micros(5);
+        clock.sync(at, Sync { sequence: 3, seconds: 1 });
+        assert_eq!(clock.follow_up(at, FollowUp { sequence: 4, micros: 0 }), Err(Refusal::SyncSequence));
+        assert_eq!(clock.follow_up(at, FollowUp { sequence: 3, micros: 0 }), Ok(()));
+        assert_eq!(clock.follow_up(at, FollowUp { sequence: 3, micros: 0 }), Err(Refusal::SyncSequence));
     }
 
     #[test]

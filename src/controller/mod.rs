@@ -128,8 +128,7 @@ impl Controller {
         let length = target.and_then(|(_, length)| length);
         let stride = driver.over(config.period, length, &config.prediction.model);
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
-        let demand = stride.demand(ego, ahead);
-        demand.min(speed_cap(config.law.max_speed, ego.speed))
+        stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed))
     }
 
     /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.

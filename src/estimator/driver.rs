@@ -129,23 +129,23 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The demand of this step: the wish within the vehicle's limits. A follower without a predecessor fades.
+    /// The demand of this step: the wish, but no more than the cap, within the vehicle's limits. A follower without a
+    /// predecessor fades.
     #[inline(always)]
     #[must_use]
-    pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>) -> Acceleration {
-        match (&self.course, ahead) {
-            (Course::Lead(leader), _) => self.actuator.limit(leader.wish(state.speed), state.demand),
-            (Course::Follow(follower), Some((position, speed))) => {
-                self.actuator.limit(follower.wish(state, position, speed), state.demand)
-            }
-            (Course::Follow(_), None) | (Course::Fade, _) => Acceleration::ZERO,
-        }
+    pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>, cap: Acceleration) -> Acceleration {
+        let wish = match (&self.course, ahead) {
+            (Course::Lead(leader), _) => leader.wish(state.speed),
+            (Course::Follow(follower), Some((position, speed))) => follower.wish(state, position, speed),
+            (Course::Follow(_), None) | (Course::Fade, _) => return Acceleration::ZERO,
+        };
+        self.actuator.limit(wish.min(cap), state.demand)
     }
 
     /// The state at the end of the step.
     #[inline(always)]
     #[must_use]
     pub fn take(&self, state: State, ahead: Option<(RingPosition, Speed)>) -> State {
-        self.actuator.drive(state, self.demand(&state, ahead))
+        self.actuator.drive(state, self.demand(&state, ahead, Acceleration::MAX))
     }
 }

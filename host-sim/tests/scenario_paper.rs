@@ -1,0 +1,106 @@
+//! The paper's scenario holds its limits: seeds enter, and over the worst of them the follower's estimate of the ego, the
+//! gaps and the speeds stay within what is promised. A committed table shows every change of behaviour as a readable
+//! diff of numbers; `HOLDOVER_UPDATE_SNAPSHOTS=1 cargo test -p holdover-sim` writes it anew.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use holdover_sim::figures::{Errors, Summary, Timing};
+use holdover_sim::run::simulate;
+use holdover_sim::scenario::{Overrides, Scenario};
+use rayon::prelude::*;
+
+const SEEDS: u64 = 100;
+/// Half as long again as the 0.3 s that every vehicle publishes.
+const WRONG_LAG_S: f64 = 0.45;
+
+fn paper() -> Scenario {
+    let scenario = Scenario::read(None, &Overrides::default()).expect("the defaults are a scenario");
+    assert_eq!(
+        (scenario.step_s, scenario.vehicles.len(), scenario.ego),
+        (0.01, 5, 2),
+        "the paper's scenario as pinned"
+    );
+    assert!(scenario.vehicles.iter().all(|vehicle| vehicle.lag_s == 0.3 && vehicle.plant_lag_s == 0.3));
+    scenario
+}
+
+/// The same with plants that are lazier than their units say.
+fn with_wrong_lag() -> Scenario {
+    let mut scenario = paper();
+    scenario.vehicles.iter_mut().for_each(|vehicle| vehicle.plant_lag_s = WRONG_LAG_S);
+    scenario
+}
+
+/// The figures without the wall clock's.
+fn summary(scenario: &Scenario, seed: u64) -> Summary {
+    let (_, summary) = simulate(scenario, seed, None, |_| ()).expect("the scenario is accepted");
+    Summary { timing: Timing { realtime_factor: 0.0 }, ..summary }
+}
+
+/// The largest position error over all seeds; nobody collides or makes a full stop in any of them.
+fn worst_over_all_seeds(scenario: &Scenario) -> f64 {
+    let worst = |seed| {
+        let summary = summary(scenario, seed);
+        assert_eq!((summary.collisions, summary.full_stops), (0, 0), "seed {seed}: {summary:?}");
+        assert!(summary.min_gap_m > Some(0.0), "seed {seed}: {summary:?}");
+        summary.ours.max_position_error_m.unwrap_or_else(|| panic!("seed {seed}: the ego was never estimated"))
+    };
+    (1..=SEEDS).into_par_iter().map(worst).reduce(|| 0.0, f64::max)
+}
+
+#[test]
+fn the_estimate_is_within_25_mm_where_the_published_lag_is_the_plants() {
+    let worst = worst_over_all_seeds(&paper());
+    assert!(worst <= 0.025, "{worst} m");
+}
+
+#[test]
+fn the_estimate_is_within_150_mm_where_every_plant_is_half_as_lazy_again_as_published() {
+    let worst = worst_over_all_seeds(&with_wrong_lag());
+    assert!(worst <= 0.15, "{worst} m");
+}
+
+#[test]
+fn the_same_seed_is_the_same_run_and_another_seed_another() {
+    let scenario = paper();
+    assert_eq!(summary(&scenario, 7), summary(&scenario, 7));
+    assert_ne!(summary(&scenario, 7), summary(&scenario, 8));
+}
+
+#[test]
+fn the_figures_are_those_of_the_committed_table() {
+    let mut table = String::from(
+        "The ego's position as its follower estimates it: errors in m from t = 1 s on, ours and the literal paper's.\n\n\
+         plants  seed |     max     p99     rms | paper max     p99     rms | least gap, m  speed, m/s  stops  collisions\n",
+    );
+    for (name, scenario) in [("0.30 s", paper()), ("0.45 s", with_wrong_lag())] {
+        for seed in 1..=5 {
+            table += &row(name, seed, &summary(&scenario, seed));
+        }
+    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots/paper.txt");
+    if std::env::var_os("HOLDOVER_UPDATE_SNAPSHOTS").is_some() {
+        std::fs::write(&file, &table).expect("the table can be written");
+    }
+    let committed = std::fs::read_to_string(&file).expect("the table is committed");
+    assert_eq!(
+        table.lines().collect::<Vec<_>>(),
+        committed.lines().collect::<Vec<_>>(),
+        "behaviour changed; if that was meant, write the table anew with HOLDOVER_UPDATE_SNAPSHOTS=1"
+    );
+}
+
+fn row(plants: &str, seed: u64, summary: &Summary) -> String {
+    let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    let errors = |errors: &Errors| {
+        [errors.max_position_error_m, errors.p99_position_error_m, errors.rms_position_error_m].map(known)
+    };
+    let ([max, p99, rms], [paper_max, paper_p99, paper_rms]) = (errors(&summary.ours), errors(&summary.paper));
+    let (gap, speed) = (known(summary.min_gap_m), known(summary.min_speed_mps));
+    let (stops, collisions) = (summary.full_stops, summary.collisions);
+    let mut row = String::new();
+    let _ = write!(row, "{plants}  {seed:>4} | {max:>7.4} {p99:>7.4} {rms:>7.4} | {paper_max:>9.4} {paper_p99:>7.4} ");
+    let _ = writeln!(row, "{paper_rms:>7.4} | {gap:>12.3} {speed:>11.3} {stops:>6} {collisions:>11}");
+    row
+}
