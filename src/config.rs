@@ -244,6 +244,45 @@ const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
 const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
 
 impl Config {
+    /// Of a unit that is not started: all zero, and refused by every check.
+    pub(crate) const NONE: Self = Self {
+        station: StationHash(0),
+        base_id: BaseId::NONE,
+        period: Duration::ZERO,
+        length: Distance::ZERO,
+        lag: FineSeconds::ZERO,
+        limits: Limits {
+            acceleration: Acceleration::ZERO,
+            braking: Acceleration::ZERO,
+            jerk: Jerk::ZERO,
+            emergency_braking: Acceleration::ZERO,
+        },
+        body: Body { mass_kg: 0, ratio_milli: 0, drag_milli: 0, friction_milli: 0, mechanical_n: 0 },
+        law: Law {
+            time_gap: Seconds::ZERO,
+            standstill: Distance::ZERO,
+            gain: Gain::ZERO,
+            damping: Seconds::ZERO,
+            free_road_acceleration: Acceleration::ZERO,
+            target_speed: Speed::ZERO,
+            max_speed: Speed::ZERO,
+        },
+        prediction: Prediction { step: Duration::ZERO, horizon: Duration::ZERO, model: Model::PAPER },
+        link: Link {
+            period: Duration::ZERO,
+            tolerance: Duration::ZERO,
+            stale: Duration::ZERO,
+            future: Duration::ZERO,
+            clock_error: Duration::ZERO,
+            slot_reuse: Duration::ZERO,
+            holdover: Duration::ZERO,
+            ego_timeout: Duration::ZERO,
+            sync_timeout: Duration::ZERO,
+            assumed_delay: Duration::ZERO,
+        },
+        envelope: None,
+    };
+
     /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
     /// interpolation needs).
     #[must_use]

@@ -122,6 +122,8 @@ pub struct Rest(u32);
 impl Rest {
     /// Nothing below the word. It stands as half a bit of the word, which is what rounds to nearest.
     pub const NONE: Self = Self(1 << 31);
+    /// Of no word: all zero.
+    pub(crate) const UNSET: Self = Self(0);
 }
 
 impl Default for Rest {

@@ -33,6 +33,7 @@ pub mod envelope;
 pub mod estimator;
 pub mod fixed;
 pub mod health;
+mod held;
 pub mod parameters;
 pub mod peers;
 pub mod time;

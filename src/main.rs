@@ -10,7 +10,6 @@ mod board;
 #[cfg(target_os = "none")]
 mod firmware {
     use crate::board::{self, Board};
-    use core::mem::MaybeUninit;
     use holdover::wire::StationHash;
     use holdover::{Config, OnboardUnit};
 
@@ -21,11 +20,13 @@ mod firmware {
 
     #[cortex_m_rt::entry]
     fn start() -> ! {
-        // The entry attribute hands this static out as `&'static mut`, once. `ci.sh cross` finds it by its name, and the
-        // size of the unit with it.
-        static mut UNIT: MaybeUninit<Unit> = MaybeUninit::uninit();
-        let Ok(unit) = Unit::new(&CONFIG) else { board::stop() };
-        let unit = UNIT.write(unit);
+        // The entry attribute hands this static out as `&'static mut`, once. `ci.sh` finds it by its name, and the size
+        // of the unit with it.
+        static mut UNIT: Unit = Unit::idle();
+        let unit = UNIT;
+        if unit.start(&CONFIG).is_err() {
+            board::stop();
+        }
         let mut board = Board::start();
         loop {
             while let Some((at, frame)) = board.receive() {

@@ -11,6 +11,7 @@ use crate::envelope;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Refusal};
+use crate::held::Held;
 use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
@@ -19,7 +20,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
-use crate::wire::{Frame, Predecessor, Received, Receiver, Role, Sender};
+use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
 
 mod inbox;
 mod outbox;
@@ -79,8 +80,8 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     receiver: Receiver<PEERS>,
     sender: Sender<0>,
     clock: Clock,
-    ego: Option<Sample>,
-    wish: Option<EgoIntent>,
+    ego: Held<Sample>,
+    wish: Held<EgoIntent>,
     peers: Peers<PEERS, SAMPLES>,
     estimator: Estimator<PEERS, STEPS>,
     /// Whom the ego follows, with the gains looked up when that began.
@@ -94,29 +95,68 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// A unit that has not heard anything yet.
-    ///
-    /// # Errors
-    /// The first value of the configuration that is out of its documented range.
-    pub fn new(config: &Config) -> Result<Self, ConfigError> {
-        config.check(STEPS)?;
-        Ok(Self {
-            config: *config,
-            receiver: Receiver::new(config.base_id, Role::Unit),
-            sender: Sender::new(config.base_id),
+    /// A unit that is not started: it refuses to hear anything and says nothing. Every byte of it is zero, so a `static`
+    /// that begins with it takes no room in flash, and [`start`](Self::start) starts it where it lies.
+    #[must_use]
+    pub const fn idle() -> Self {
+        Self {
+            config: Config::NONE,
+            receiver: Receiver::new(BaseId::NONE, Role::Unit),
+            sender: Sender::new(BaseId::NONE),
             clock: Clock::new(),
-            ego: None,
-            wish: None,
-            peers: Peers::new(config.link.period),
-            estimator: Estimator::new(&config.prediction, config.steps(), config.station, config.length),
+            ego: Held::Nothing,
+            wish: Held::Nothing,
+            peers: Peers::idle(),
+            estimator: Estimator::idle(),
             association: None,
-            controller: Controller::new(config.period),
+            controller: Controller::idle(),
             mode: Mode::Standby,
             health: Health::new(),
             outbox: outbox::Outbox::new(),
             ranging: range::Ranging::new(),
             last_tick: None,
-        })
+        }
+    }
+
+    /// Starts the unit, or starts it anew: it has not heard anything yet.
+    ///
+    /// # Errors
+    /// The first value of the configuration that is out of its documented range; nothing is changed then.
+    #[inline(never)] // what it needs on the stack is not to stay there
+    pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
+        config.check(STEPS)?;
+        // Field by field, because the whole of it would pass over the stack.
+        self.config = *config;
+        self.receiver = Receiver::new(config.base_id, Role::Unit);
+        self.sender = Sender::new(config.base_id);
+        self.clock = Clock::new();
+        self.ego.clear();
+        self.wish.clear();
+        self.peers.start(config.link.period);
+        self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
+        self.association = None;
+        self.controller = Controller::new(config.period);
+        self.mode = Mode::Standby;
+        self.health = Health::new();
+        self.outbox = outbox::Outbox::new();
+        self.ranging = range::Ranging::new();
+        self.last_tick = None;
+        Ok(())
+    }
+
+    /// A unit that is started, by value: for those who have tens of kilobytes of stack.
+    ///
+    /// # Errors
+    /// As for [`start`](Self::start).
+    pub fn new(config: &Config) -> Result<Self, ConfigError> {
+        let mut unit = Self::idle();
+        unit.start(config)?;
+        Ok(unit)
+    }
+
+    /// A configuration that was checked has a period.
+    fn is_started(&self) -> bool {
+        self.config.period > Duration::ZERO
     }
 
     /// Takes in one frame received at `at`. Bounded time; frames may come in any order and at any time.
@@ -125,6 +165,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The named cause for which the frame, or the message that it completes, is refused. It is counted, and nothing else
     /// is changed by it but the end-to-end state of its identifier.
     pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Refusal> {
+        if !self.is_started() {
+            return Ok(Reception::Foreign);
+        }
         let result = match self.receiver.receive(frame) {
             Ok(Received::Foreign) => Ok(Reception::Foreign),
             Ok(Received::Pending) => Ok(Reception::Pending),
@@ -175,7 +218,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     fn monotonic(&mut self, now: Instant) -> Instant {
         let Some(last) = self.last_tick else {
-            self.estimator.start(now);
+            self.estimator.start_grid(now);
             self.last_tick = Some(now);
             return now;
         };
@@ -189,21 +232,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The slot of whom the ego is to follow.
     fn target(&self) -> Option<usize> {
-        match self.wish?.predecessor {
+        match self.wish.get()?.predecessor {
             Predecessor::Station(station) => self.peers.index_of(station),
             Predecessor::None | Predecessor::Unknown => None,
         }
     }
 
     fn facts(&self, now: Instant, target: Option<usize>, readable: bool) -> Facts {
-        let ego = match &self.ego {
+        let ego = match self.ego.as_ref() {
             None => Err(FaultCause::EgoMissing),
             Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
             Some(_) if self.ranging.disagrees() => Err(FaultCause::RangeDisagrees),
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
-        let target = match (self.wish.map(|wish| wish.predecessor), track) {
+        let target = match (self.wish.get().map(|wish| wish.predecessor), track) {
             (Some(Predecessor::None), _) => TargetFact::NotNeeded,
             (None | Some(Predecessor::Unknown), _) => TargetFact::Lost(FallbackCause::NotAssociated),
             (Some(Predecessor::Station(_)), Some(track)) if readable => {
@@ -218,26 +261,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
             (Some(Predecessor::Station(_)), _) => TargetFact::Lost(FallbackCause::NeverHeard),
         };
-        Facts { engaged: self.wish.is_some_and(|wish| wish.engaged), ego, target }
+        Facts { engaged: self.wish.get().is_some_and(|wish| wish.engaged), ego, target }
     }
 
     /// Looks the gains up when the target changes.
     fn associate(&mut self, reading: Option<Reading>) {
-        let Some(Predecessor::Station(station)) = self.wish.map(|wish| wish.predecessor) else {
+        let Some(Predecessor::Station(station)) = self.wish.get().map(|wish| wish.predecessor) else {
             self.association = None;
             return;
         };
         if self.association.is_some_and(|(associated, _)| associated == station) {
             return;
         }
-        let (Some(target), Some(ego)) = (reading, self.ego) else { return };
+        let (Some(target), Some(ego)) = (reading, self.ego.get()) else { return };
         let headway = target.position.ahead_of(ego.position);
         self.association = Some((station, Gains::look_up(&self.config.law, ego.speed, target.speed, headway)));
     }
 
     /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
     fn ego_at(&self, now: Instant) -> Option<State> {
-        let sample = self.ego?;
+        let sample = self.ego.get()?;
         let state = State {
             position: sample.position.ring(),
             speed: sample.speed,
@@ -256,7 +299,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
         let law = &self.config.law;
-        let wish = self.wish;
+        let wish = self.wish.get();
         let aim = match self.association {
             Some((_, gains)) => Aim::Follow {
                 gain: gains.gain,
@@ -274,7 +317,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     fn course(&self, now: Instant, target: Option<usize>) -> Course {
         match self.mode {
-            Mode::Standby => Course::Yield { demand: self.ego.map_or(Acceleration::ZERO, |ego| ego.demand) },
+            Mode::Standby => Course::Yield { demand: self.ego.get().map_or(Acceleration::ZERO, |ego| ego.demand) },
             Mode::Cooperative | Mode::Holdover { .. } => {
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {
@@ -328,7 +371,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         facts: &Facts,
         target: Option<usize>,
     ) -> Acceleration {
-        let sample = self.ego.unwrap_or(Sample::UNKNOWN);
+        let sample = self.ego.get().unwrap_or(Sample::UNKNOWN);
         let state = ego.copied().unwrap_or_default();
         let moved = state.position.ahead_of(sample.position.ring());
         let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);

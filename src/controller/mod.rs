@@ -75,6 +75,11 @@ const CRUISE: Seen =
 const SPEED_LIMIT_TIME: i64 = 2;
 
 impl Controller {
+    /// Not started: all zero.
+    pub(crate) const fn idle() -> Self {
+        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: Share::ZERO }
+    }
+
     /// At rest.
     #[must_use]
     pub fn new(period: Duration) -> Self {

@@ -60,6 +60,7 @@ pub const RECOVER: Duration = Duration::from_millis(500);
 /// The mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[repr(u8)] // so that `Standby` is zero in memory, as an idle unit has to be
 pub enum Mode {
     /// Not engaged.
     #[default]

@@ -37,6 +37,8 @@ pub struct Rests {
 impl Rests {
     /// Of a state that is exactly its words.
     pub const NONE: Self = Self { position: Rest::NONE, speed: Rest::NONE };
+    /// Of no state: all zero.
+    pub(super) const UNSET: Self = Self { position: Rest::UNSET, speed: Rest::UNSET };
 }
 
 /// The constants of one step of a given length for one vehicle.

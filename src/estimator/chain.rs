@@ -15,6 +15,9 @@ impl<const PEERS: usize> Chain<PEERS> {
         Self { order: core::array::from_fn(|index| index as u8) }
     }
 
+    /// No order yet.
+    pub const NONE: Self = Self { order: [0; PEERS] };
+
     /// The order of a chain. Stations that claim to follow one another in a circle come last, in the order of their slots:
     /// each is then computed from what is held of the other.
     #[must_use]

@@ -111,7 +111,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
                 speed: Speed::ZERO,
                 acceleration: Acceleration::ZERO,
                 demand: Acceleration::ZERO,
-                rests: Rests::NONE,
+                rests: Rests::UNSET,
             },
             anchor: Anchor {
                 at: Instant::ZERO,

@@ -36,6 +36,7 @@ use chain::Chain;
 use forecast::{Ahead, Forecast};
 
 use crate::config::{Model, Prediction};
+use crate::held::Held;
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
@@ -60,10 +61,10 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     length: usize,
     horizons: [Horizon<STEPS>; PEERS],
     /// The step of each peer, until its intent or its predecessor changes.
-    strides: [Option<Stride>; PEERS],
+    strides: [Held<Stride>; PEERS],
     news: [bool; PEERS],
     /// What another sensor made of a peer's state, until it is used.
-    correction: Option<(usize, Sample)>,
+    correction: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -71,26 +72,40 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
 }
 
 impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
-    /// Nothing known. `length` is the number of steps that a horizon is kept at.
-    #[must_use]
-    pub fn new(prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) -> Self {
+    /// Not started: all zero.
+    pub(crate) const fn idle() -> Self {
         Self {
-            grid: Grid { origin: Instant::ZERO, step: prediction.step },
-            model: prediction.model,
-            length: length.min(STEPS),
-            horizons: core::array::from_fn(|_| Horizon::empty()),
-            strides: [None; PEERS],
+            grid: Grid { origin: Instant::ZERO, step: Duration::ZERO },
+            model: Model::PAPER,
+            length: 0,
+            horizons: [const { Horizon::empty() }; PEERS],
+            strides: [Held::Nothing; PEERS],
             news: [false; PEERS],
-            correction: None,
+            correction: Held::Nothing,
             own: Horizon::empty(),
-            station,
-            own_length,
-            chain: Chain::new(),
+            station: StationHash(0),
+            own_length: Distance::ZERO,
+            chain: Chain::NONE,
         }
     }
 
+    /// Nothing known. `length` is the number of steps that a horizon is kept at.
+    pub fn start(&mut self, prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) {
+        self.grid = Grid { origin: Instant::ZERO, step: prediction.step };
+        self.model = prediction.model;
+        self.length = length.min(STEPS);
+        self.horizons.iter_mut().for_each(Horizon::clear);
+        self.strides = [Held::Nothing; PEERS];
+        self.news = [false; PEERS];
+        self.correction.clear();
+        self.own.clear();
+        self.station = station;
+        self.own_length = own_length;
+        self.chain = Chain::new();
+    }
+
     /// Puts step 0 of the grid at an instant: the first tick, so that ticks lie on steps.
-    pub fn start(&mut self, origin: Instant) {
+    pub fn start_grid(&mut self, origin: Instant) {
         self.grid.origin = origin;
     }
 
@@ -103,12 +118,12 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// Takes note of a peer's state as another sensor corrected it; news of the peer itself in the same tick goes first.
     pub fn note_correction(&mut self, index: usize, sample: Sample) {
-        self.correction = Some((index, sample));
+        self.correction.set((index, sample));
     }
 
     /// Takes note that a peer drives by another law, or behind somebody else.
     pub fn note_change<const SAMPLES: usize>(&mut self, peers: &Peers<PEERS, SAMPLES>) {
-        self.strides = [None; PEERS];
+        self.strides = [Held::Nothing; PEERS];
         self.chain = Chain::of(core::array::from_fn(|index| match self.ahead(peers, index) {
             Some(Ahead::Peer(ahead)) => Some(ahead),
             _ => None,
@@ -120,13 +135,13 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.clear();
         }
-        self.strides = [None; PEERS];
+        self.strides = [Held::Nothing; PEERS];
     }
 
     /// Brings every peer's horizon up to now.
     pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) {
         let present = self.grid.at_or_before(now);
-        let correction = self.correction.take();
+        let correction = core::mem::take(&mut self.correction).get();
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
@@ -162,7 +177,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             _ => Driver::UNKNOWN,
         };
         let Some(cached) = self.strides.get_mut(index) else { return };
-        let stride = *cached.get_or_insert_with(|| driver.over(self.grid.step, length_ahead, &model));
+        let stride = cached.get().unwrap_or_else(|| driver.over(self.grid.step, length_ahead, &model));
+        cached.set(stride);
         // The horizon is taken out of the array's borrow together with the one that it is computed from.
         let (horizon, ahead) = match ahead {
             Some(Ahead::Peer(other)) => match self.horizons.get_disjoint_mut([index, other]) {

@@ -23,10 +23,14 @@ pub struct Peers<const PEERS: usize, const SAMPLES: usize> {
 }
 
 impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
+    /// Not started: all zero.
+    pub(crate) const fn idle() -> Self {
+        Self { tracks: [const { Track::new(Duration::ZERO) }; PEERS] }
+    }
+
     /// All slots free; messages expected with this period until a peer's own is measured.
-    #[must_use]
-    pub fn new(period: Duration) -> Self {
-        Self { tracks: core::array::from_fn(|_| Track::new(period)) }
+    pub fn start(&mut self, period: Duration) {
+        self.tracks.iter_mut().for_each(|track| *track = Track::new(period));
     }
 
     /// The track of a slot.

@@ -8,6 +8,7 @@ use super::sample::Sample;
 use crate::config::Link as Limits;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
+use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::wire::StationHash;
 use crate::wire::horizon::Knots;
@@ -28,7 +29,7 @@ pub enum Admission {
 pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
-    intent: Option<Intent>,
+    intent: Held<Intent>,
     knots: Option<(Instant, Knots)>,
     link: Link,
 }
@@ -37,7 +38,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// A free slot.
     #[must_use]
     pub const fn new(period: Duration) -> Self {
-        Self { samples: Vec::new(), certainty: Certainty::NONE, intent: None, knots: None, link: Link::new(period) }
+        Self {
+            samples: Vec::new(),
+            certainty: Certainty::NONE,
+            intent: Held::Nothing,
+            knots: None,
+            link: Link::new(period),
+        }
     }
 
     /// Whose track it is.
@@ -155,7 +162,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// Takes in what the station says of how it drives; whether that is new.
     pub fn intend(&mut self, intent: Intent) -> bool {
         let is_new = self.intent.as_ref() != Some(&intent);
-        self.intent = Some(intent);
+        self.intent.set(intent);
         is_new
     }
 

@@ -16,7 +16,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Message::Sync(sync) => self.clock.sync(at, *sync),
             Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
             Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
-            Message::EgoIntent(wish) => self.wish = Some(*wish),
+            Message::EgoIntent(wish) => self.wish.set(*wish),
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
             Message::Range(seen) => self.take_range(at, *seen)?,
             // Understood, and of use to later stages only.
@@ -35,9 +35,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if age < Duration::ZERO.minus(self.config.link.future) {
             return Err(Refusal::Future);
         }
-        let near = self.ego.map(|ego| ego.position);
+        let near = self.ego.get().map(|ego| ego.position);
         let sample = Sample::of(motion, instant, at, near);
-        if let Some(held) = &self.ego {
+        if let Some(held) = self.ego.as_ref() {
             if held.stamp == sample.stamp && at.since(held.received) < Duration::from_millis(1000) {
                 return Err(Refusal::Duplicate);
             }
@@ -45,7 +45,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 return Err(Refusal::OutOfOrder);
             }
         }
-        self.ego = Some(sample);
+        self.ego.set(sample);
         Ok(())
     }
 
@@ -54,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         match said {
             Said::Motion(motion) => {
                 let instant = self.instant_of(motion, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
-                let ego = self.ego.map(|ego| ego.position);
+                let ego = self.ego.get().map(|ego| ego.position);
                 let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
                 let station = track.station();

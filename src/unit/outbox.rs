@@ -10,6 +10,7 @@ use crate::controller::Mode;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Reading};
 use crate::health::Refusal;
+use crate::held::Held;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
@@ -32,12 +33,12 @@ pub(super) struct Outbox {
     page: u8,
     due: Option<Instant>,
     until_intent: u8,
-    intent: Option<Intent>,
+    intent: Held<Intent>,
 }
 
 impl Outbox {
     pub(super) const fn new() -> Self {
-        Self { tick: 0, tag: 0, page: 0, due: None, until_intent: 0, intent: None }
+        Self { tick: 0, tag: 0, page: 0, due: None, until_intent: 0, intent: Held::Nothing }
     }
 
     /// The command of this tick.
@@ -68,9 +69,9 @@ impl Outbox {
 
     /// Whether an intent is due: it is another one, or its turn has come.
     fn is_intent_due(&mut self, intent: Intent) -> bool {
-        let is_due = self.intent != Some(intent) || self.until_intent == 0;
+        let is_due = self.intent != Held::Value(intent) || self.until_intent == 0;
         self.until_intent = if is_due { INTENT_EVERY } else { self.until_intent }.saturating_sub(1);
-        self.intent = Some(intent);
+        self.intent.set(intent);
         is_due
     }
 
@@ -94,6 +95,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         target: Option<usize>,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
+        if !self.is_started() {
+            return;
+        }
         self.emit(&Message::Command(*command), frames);
         if let Some(estimate) = estimate {
             self.emit(&Message::Estimate(self.target_estimate(estimate)), frames);
@@ -101,7 +105,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.outbox.is_due(now, self.config.link.period) {
             return;
         }
-        if let Some(ego) = self.ego.filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout) {
+        if let Some(ego) = self.ego.get().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout) {
             self.send_own(now, &ego, last_demand, target, frames);
         }
         let cause = self.outbox.next_page();
@@ -186,11 +190,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Intent {
             length: config.length,
             standstill: law.standstill,
-            predecessor: match self.wish {
+            predecessor: match self.wish.get() {
                 Some(wish) if is_by_law => wish.predecessor,
                 _ => Predecessor::Unknown,
             },
-            target_speed: self.wish.map_or(law.target_speed, |wish| wish.target_speed),
+            target_speed: self.wish.get().map_or(law.target_speed, |wish| wish.target_speed),
             time_gap,
             gain,
             damping,

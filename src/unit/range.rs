@@ -9,6 +9,7 @@ use super::OnboardUnit;
 use crate::estimator::Reading;
 use crate::estimator::bound::{Bound, Doubt};
 use crate::health::Refusal;
+use crate::held::Held;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
@@ -33,13 +34,13 @@ const LEAST_SHARE: i64 = 16;
 /// The range sensor's part of the unit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ranging {
-    sight: Option<Sight>,
+    sight: Held<Sight>,
     contradictions: u8,
 }
 
 impl Ranging {
     pub(super) const fn new() -> Self {
-        Self { sight: None, contradictions: 0 }
+        Self { sight: Held::Nothing, contradictions: 0 }
     }
 
     /// Whether what the sensor sees and what is heard contradict one another beyond what is uncertain of both.
@@ -50,7 +51,7 @@ impl Ranging {
     /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
     /// front one. `None` if it is older than `timeout`.
     pub(super) fn ahead(&self, now: Instant, timeout: Duration) -> Option<Reading> {
-        let sight = self.sight?;
+        let sight = self.sight.get()?;
         let age = now.since(sight.at);
         (age <= timeout)
             .then(|| Reading { position: sight.rear.ahead(sight.speed.over(age.seconds())), speed: sight.speed })
@@ -60,7 +61,7 @@ impl Ranging {
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a view of the vehicle ahead, received at `received`.
     pub(super) fn take_range(&mut self, received: Instant, seen: RangeSample) -> Result<(), Refusal> {
-        let ego = self.ego.ok_or(Refusal::Torn)?;
+        let ego = self.ego.get().ok_or(Refusal::Torn)?;
         let at = received.minus(seen.age);
         let since = at.since(ego.at);
         if since > self.config.link.ego_timeout || since < Duration::ZERO.minus(self.config.link.ego_timeout) {
@@ -70,7 +71,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rear = own.ahead(seen.distance);
         let speed = ego.speed.plus(seen.speed_difference).max(Speed::ZERO);
         let sight = Sight { at, rear, speed, seen };
-        self.ranging.sight = Some(sight);
+        self.ranging.sight.set(sight);
         if let Some(index) = self.target() {
             self.compare(index, &sight, &ego);
         }

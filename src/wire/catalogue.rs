@@ -37,6 +37,8 @@ const _: () = assert!(LIMITS.max_delta_counter_init + 1 < 4, "a tag must not com
 pub struct BaseId(u16);
 
 impl BaseId {
+    /// That of a unit which is not started.
+    pub(crate) const NONE: Self = Self(0);
     /// 0x480 to 0x53F.
     pub const DEFAULT: Self = Self(0x480);
     /// The largest base: above it the block does not fit into 11 bits.

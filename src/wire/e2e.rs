@@ -113,14 +113,14 @@ pub struct Check {
     max_delta: u8,
     no_new_or_repeated: u8,
     sync: u8,
-    waits_for_first: bool,
+    heard_first: bool,
 }
 
 impl Check {
     /// Nothing received yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { last_valid: 0, max_delta: 0, no_new_or_repeated: 0, sync: 0, waits_for_first: true }
+        Self { last_valid: 0, max_delta: 0, no_new_or_repeated: 0, sync: 0, heard_first: false }
     }
 
     /// Judges the frame that arrived.
@@ -149,8 +149,8 @@ impl Check {
             Some(Err(())) => return Status::WrongCrc,
             Some(Ok(counter)) => counter,
         };
-        if self.waits_for_first {
-            self.waits_for_first = false;
+        if !self.heard_first {
+            self.heard_first = true;
             self.accept(limits, counter);
             return Status::Initial;
         }
