@@ -151,6 +151,7 @@ fn the_envelope() {
         braking: Acceleration::from_mm_per_s2(6_000),
         jerk: Jerk::from_mm_per_s3(10_000),
         speed: Speed::from_mm_per_s(30_000),
+        margin: Distance::from_mm(500),
     };
     let set: [fn(&mut Envelope, i32); 4] = [
         |envelope, bits| envelope.acceleration = Acceleration::from_bits(bits),

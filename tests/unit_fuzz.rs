@@ -8,7 +8,7 @@ mod traffic;
 use holdover::config::{Config, Envelope};
 use holdover::controller::Mode;
 use holdover::time::{Duration, Instant};
-use holdover::units::{Acceleration, Jerk, Speed};
+use holdover::units::{Acceleration, Distance, Jerk, Speed};
 use holdover::wire::catalogue::{BLOCK, BaseId};
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::{Frame, Message, Said, Sender};
@@ -132,6 +132,7 @@ const ENVELOPE: Envelope = Envelope {
     braking: Acceleration::from_mm_per_s2(3_000),
     jerk: Jerk::from_mm_per_s3(4_000),
     speed: Speed::from_mm_per_s(30_000),
+    margin: Distance::from_mm(500),
 };
 
 proptest! {

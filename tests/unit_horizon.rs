@@ -29,7 +29,7 @@ fn a_minute_of_silence_never_runs_out_of_horizon() {
     }
     assert!(matches!(unit.mode(), Mode::Fallback { cause: FallbackCause::Silent, .. }), "{:?}", unit.mode());
     traffic.target = true;
-    assert_eq!(traffic.run(&mut unit, 10).mode, Mode::Cooperative);
+    assert_eq!(traffic.run(&mut unit, 40).mode, Mode::Cooperative); // heard for 0.3 s
 }
 
 #[test]

@@ -49,7 +49,7 @@ fn with_the_link_off_it_holds_over_and_falls_back_when_that_has_lasted_too_long(
     let spoke = traffic.offset.plus(Duration::from_millis(2_900));
     let since = spoke.plus(Duration::from_millis(260));
     let lost = spoke.plus(Duration::from_millis(15_010));
-    let fallback = Mode::Fallback { since: lost, cause: FallbackCause::Silent };
+    let fallback = Mode::Fallback { since: lost, cause: FallbackCause::Silent, heard_since: None };
     assert_eq!(modes, [Mode::Cooperative, Mode::Holdover { since }, fallback]);
 }
 
