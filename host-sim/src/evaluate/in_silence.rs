@@ -46,7 +46,7 @@ pub fn evaluate(
     let end_us = timeline.micros(motion.end_s());
     let mut outcome = Outcome { end_s: motion.end_s(), ..Outcome::default() };
     let (mut target, mut ahead) = Publisher::pair(recording, timeline);
-    let mut listener = Listener::new(step_s, &Publisher::words(recording, timeline, end_us))?;
+    let mut listener = Listener::new(step_s, &Publisher::first_words(recording, timeline))?;
     let mut starts = Vec::with_capacity(TOGETHER);
     let mut ticks = timeline.ticks(end_us).peekable();
     for at_us in (0..).map(|n| n * CYCLE_US).take_while(|at_us| *at_us <= end_us) {

@@ -37,7 +37,7 @@ pub fn evaluate(
     let end_us = timeline.micros(motion.end_s().min(rows[rows.len() - 1].t_s));
     let mut outcome = Outcome { end_s: timeline.recorded_s(end_us), ..Outcome::default() };
     let arrivals = arrivals(recording, link, timeline, end_us, &mut outcome);
-    let mut listener = Listener::new(step_s, &Publisher::words(recording, timeline, end_us))?;
+    let mut listener = Listener::new(step_s, &Publisher::first_words(recording, timeline))?;
     let mut pending = arrivals.iter().peekable();
     let mut newest_us: Option<i64> = None;
     let mut told_us = 0;

@@ -2,11 +2,12 @@
 //!
 //! A vehicle whose predecessor is recorded too publishes an intent. Like any vehicle it says whom it follows only while it
 //! drives by its law, and that is decided by what it did: while its acceleration is the law's demand, to within
-//! [`SAME_LAW_MPS2`], it names its predecessor; otherwise it names nobody. A receiver that took a driver's word for a law
-//! that he does not drive by would be metres off.
+//! [`SAME_LAW_MPS2`], it names its predecessor; otherwise it names nobody and promises no limits but those of physics. A
+//! receiver that believed in a law which nobody drives by would be metres off.
 
 use holdover::Config;
-use holdover::wire::intent::Intent;
+use holdover::units::{Acceleration, Jerk};
+use holdover::wire::intent::{Intent, Limits};
 use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
 
@@ -23,6 +24,14 @@ use crate::vehicle::{acceleration, gnss, metres, speed, station};
 const SAME_LAW_MPS2: f64 = 0.5;
 /// A car's acceleration follows the demand with a lag of 0.3 s, and its measurement is the slope over the last 0.5 s.
 const LATE_S: f64 = 0.3 + 0.25;
+
+/// What any car on a dry road keeps to, as far as a message can say it.
+const PHYSICAL: Limits = Limits {
+    acceleration: Acceleration::from_mm_per_s2(6_000),
+    braking: Acceleration::from_mm_per_s2(6_000),
+    jerk: Jerk::from_mm_per_s3(50_000),
+    emergency_braking: Acceleration::from_mm_per_s2(12_000),
+};
 
 /// The vehicle.
 #[derive(Clone, Debug)]
@@ -57,11 +66,11 @@ impl<'a> Publisher<'a> {
         }
     }
 
-    /// A message of each of them, as at that time.
+    /// The first message of each of them.
     #[must_use]
-    pub fn words(recording: &Recording, timeline: Timeline, at_us: i64) -> Vec<V2xMessage> {
+    pub fn first_words(recording: &Recording, timeline: Timeline) -> Vec<V2xMessage> {
         let (target, ahead) = Publisher::pair(recording, timeline);
-        let say = |mut sender: Publisher<'_>| Some(sender.publish(at_us)?.message);
+        let say = |mut sender: Publisher<'_>| Some(sender.publish(timeline.micros(sender.motion.start_s()))?.message);
         ahead.into_iter().chain([target]).filter_map(say).collect()
     }
 
@@ -112,8 +121,7 @@ impl<'a> Publisher<'a> {
         let intent = self.follows.map(|(ahead, intent)| {
             let is_by_law =
                 (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
-            let predecessor = if is_by_law { intent.predecessor } else { Predecessor::Unknown };
-            Intent { predecessor, ..intent }
+            if is_by_law { intent } else { Intent { predecessor: Predecessor::Unknown, limits: PHYSICAL, ..intent } }
         });
         Some(Published { sampled_us, message: V2xMessage { motion, intent, horizon: None } })
     }
