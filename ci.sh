@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test cross package)
+steps=(fmt lint doc test cross c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -18,10 +18,11 @@ usage() {
 usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
 
   fmt       every file is formatted
-  lint      no warning of the compiler or of clippy; unsafe code only in src/board/
+  lint      no warning of the compiler or of clippy; unsafe code only in src/board/ and at the edge of holdover-c
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
   cross     core and firmware for a Cortex-M4F, and what they take of its memory
+  c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
   package   the package that would be published builds by itself and holds what it should
 
 exit code: 0 all passed; 1 a step failed; 2 no such step
@@ -40,10 +41,10 @@ step_fmt() {
 step_lint() {
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -p holdover --lib --features defmt -- -D warnings
-    local outside
-    outside=$(source_files | grep -v '^src/board/' | xargs grep -nE '\bunsafe\s*(\{|fn|impl|extern)' || true)
+    local outside unsafe='^src/board/|^holdover-c/(src/(doors|memory|pointer)\.rs|tests/)'
+    outside=$(source_files | grep -vE "$unsafe" | xargs grep -nE '\bunsafe\s*(\{|fn|impl|extern)' || true)
     [ -z "$outside" ] || {
-        printf 'unsafe code outside src/board/:\n%s\n' "$outside"
+        printf 'unsafe code where there is to be none:\n%s\n' "$outside"
         return 1
     }
 }
@@ -88,6 +89,10 @@ step_cross() {
     cargo clippy --locked --release --target "$target" -- -D warnings
 }
 
+step_c() {
+    holdover-c/check.sh
+}
+
 step_package() {
     local dirty=() contents wanted=0 name
     if [ "${CI:-}" != true ] && [ -n "$(git status --porcelain 2>/dev/null)" ]; then
@@ -99,7 +104,7 @@ step_package() {
         memory.x src/lib.rs src/main.rs src/board/mod.rs; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
-    if grep -E '^(host-sim|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then
+    if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then
         echo "the package holds files that are not part of it (above)"
         wanted=1
     fi
@@ -110,7 +115,7 @@ step_package() {
 
 # Every source file that is ours.
 source_files() {
-    find src host-sim tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
+    find src host-sim holdover-c tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
 }
 
 # A step runs as a process of its own (`--one`), so that its first failing command ends it and nothing of it reaches the next.

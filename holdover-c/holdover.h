@@ -96,7 +96,7 @@ enum holdover_status_t
   HOLDOVER_CONFIG_LINK = -46,
   // The vehicle of eqs 1-3 has no mass or no brakes.
   HOLDOVER_CONFIG_BODY = -47,
-  // A limit of the envelope is zero or negative.
+  // A limit of the envelope is zero.
   HOLDOVER_CONFIG_ENVELOPE = -48,
   // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
   HOLDOVER_REFUSED_LENGTH = -64,
@@ -178,9 +178,9 @@ enum holdover_mode_t
   HOLDOVER_MODE_COOPERATIVE = 1,
   // Driving by the estimate, the link being off.
   HOLDOVER_MODE_HOLDOVER = 2,
-  // No target to drive by: braking that grows slowly.
+  // No target to drive by: behind what is still certain of it or seen of it, else braking that grows slowly.
   HOLDOVER_MODE_FALLBACK = 3,
-  // The own motion is unknown: braking as configured.
+  // The own motion is unknown, or what is heard and what is seen exclude one another: braking as configured.
   HOLDOVER_MODE_FAULT = 4,
 };
 #ifndef __cplusplus
@@ -209,6 +209,8 @@ enum holdover_cause_t
   HOLDOVER_CAUSE_EGO_MISSING = 4,
   // The own motion has stopped coming.
   HOLDOVER_CAUSE_EGO_STALE = 5,
+  // What the range sensor sees and what is heard of the target exclude one another.
+  HOLDOVER_CAUSE_RANGE_DISAGREES = 6,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -306,6 +308,8 @@ typedef struct holdover_link_t {
   uint32_t stale_us;
   // Stamps further in the future are refused; in us.
   uint32_t future_us;
+  // Largest error between a sender's stamp and the own clock while synchronised; in us.
+  uint32_t clock_error_us;
   // A slot may be taken over by another station after this much silence; in us.
   uint32_t slot_reuse_us;
   // Silence up to which a target's estimate is driven by; in us.
@@ -318,18 +322,20 @@ typedef struct holdover_link_t {
   uint32_t assumed_delay_us;
 } holdover_link_t;
 
-// The absolute limits of the last gate.
+// The limits of the last gate.
 typedef struct holdover_envelope_t {
-  // 1: there is this gate; 0: there is none, and the rest is ignored.
+  // 1: the gate is there; 0: it is not, and the rest is ignored.
   uint8_t engaged;
   // Largest acceleration ever commanded in mm/s2.
   uint32_t acceleration_mm_s2;
   // Hardest braking ever commanded in mm/s2.
   uint32_t braking_mm_s2;
-  // Fastest change ever commanded in mm/s3.
+  // Fastest change ever commanded in mm/s3, that of emergency braking.
   uint32_t jerk_mm_s3;
   // No acceleration at or beyond this speed in mm/s.
   uint32_t speed_mm_s;
+  // What is left between the bumpers when both have come to rest, in mm.
+  uint32_t margin_mm;
 } holdover_envelope_t;
 
 // Everything that the unit has to be told. Times that are compared with the clock are in us, as the clock is; all else is
@@ -403,6 +409,16 @@ typedef struct holdover_estimate_t {
   uint8_t valid;
   // 1: the link to the target is on; else 0.
   uint8_t link_on;
+  // 1: the four ends below are certain; 0: there is no bound, and they are 0.
+  uint8_t bounded;
+  // It is not behind this, in mm, rounded down.
+  int64_t lowest_position_mm;
+  // It is not ahead of this, in mm, rounded up.
+  int64_t highest_position_mm;
+  // It is not slower, in mm/s, rounded down.
+  int32_t lowest_speed_mm_s;
+  // It is not faster, in mm/s, rounded up.
+  int32_t highest_speed_mm_s;
 } holdover_estimate_t;
 
 // The answer of one tick.

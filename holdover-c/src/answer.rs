@@ -1,6 +1,7 @@
 //! The answer of one tick: the core's enters, plain numbers for C leave.
 
 use holdover::controller::{FallbackCause, FaultCause};
+use holdover::fixed::{PositionFormat, SpeedFormat, saturate_i32};
 
 use crate::frame::Frame;
 
@@ -19,9 +20,9 @@ pub enum Mode {
     Cooperative = 1,
     /// Driving by the estimate, the link being off.
     Holdover = 2,
-    /// No target to drive by: braking that grows slowly.
+    /// No target to drive by: behind what is still certain of it or seen of it, else braking that grows slowly.
     Fallback = 3,
-    /// The own motion is unknown: braking as configured.
+    /// The own motion is unknown, or what is heard and what is seen exclude one another: braking as configured.
     Fault = 4,
 }
 
@@ -41,6 +42,8 @@ pub enum Cause {
     EgoMissing = 4,
     /// The own motion has stopped coming.
     EgoStale = 5,
+    /// What the range sensor sees and what is heard of the target exclude one another.
+    RangeDisagrees = 6,
 }
 
 /// What brings the acceleration about.
@@ -75,7 +78,7 @@ pub struct Command {
 
 /// Where the target is now, as the unit believes.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Estimate {
     /// Front bumper of the target along the lane in mm, rounded to nearest.
     pub position_mm: i64,
@@ -87,6 +90,16 @@ pub struct Estimate {
     pub valid: u8,
     /// 1: the link to the target is on; else 0.
     pub link_on: u8,
+    /// 1: the four ends below are certain; 0: there is no bound, and they are 0.
+    pub bounded: u8,
+    /// It is not behind this, in mm, rounded down.
+    pub lowest_position_mm: i64,
+    /// It is not ahead of this, in mm, rounded up.
+    pub highest_position_mm: i64,
+    /// It is not slower, in mm/s, rounded down.
+    pub lowest_speed_mm_s: i32,
+    /// It is not faster, in mm/s, rounded up.
+    pub highest_speed_mm_s: i32,
 }
 
 /// The answer of one tick.
@@ -115,7 +128,7 @@ impl Answer {
             effort_value: 0,
             tick: 0,
         },
-        estimate: Estimate { position_mm: 0, age_us: 0, speed_mm_s: 0, valid: 0, link_on: 0 },
+        estimate: Estimate::NONE,
         frame_count: 0,
         frames: [Frame { id: 0, extended: 0, remote: 0, length: 0, data: [0; 8] }; HOLDOVER_MAX_FRAMES],
     };
@@ -140,7 +153,7 @@ impl From<&holdover::Answer> for Answer {
                 effort_value,
                 tick: command.tick,
             },
-            estimate: answer.estimate.as_ref().map_or(Estimate::default(), Estimate::from),
+            estimate: answer.estimate.as_ref().map_or(Estimate::NONE, Estimate::from),
             ..Self::NONE
         };
         for (place, frame) in plain.frames.iter_mut().zip(&answer.frames) {
@@ -151,16 +164,59 @@ impl From<&holdover::Answer> for Answer {
     }
 }
 
+impl Estimate {
+    /// There is none.
+    const NONE: Self = Self {
+        position_mm: 0,
+        age_us: 0,
+        speed_mm_s: 0,
+        valid: 0,
+        link_on: 0,
+        bounded: 0,
+        lowest_position_mm: 0,
+        highest_position_mm: 0,
+        lowest_speed_mm_s: 0,
+        highest_speed_mm_s: 0,
+    };
+}
+
 impl From<&holdover::Estimate> for Estimate {
     fn from(estimate: &holdover::Estimate) -> Self {
-        Self {
+        let plain = Self {
             position_mm: estimate.reading.position.to_mm(),
             age_us: estimate.age.as_micros(),
             speed_mm_s: estimate.reading.speed.to_mm_per_s(),
             valid: 1,
             link_on: u8::from(estimate.link_on),
+            ..Self::NONE
+        };
+        let Some(bound) = &estimate.bound else { return plain };
+        Self {
+            bounded: 1,
+            lowest_position_mm: milli_down(bound.lowest_position().to_bits(), PositionFormat::FRAC_NBITS),
+            highest_position_mm: milli_up(bound.highest_position().to_bits(), PositionFormat::FRAC_NBITS),
+            lowest_speed_mm_s: saturate_i32(milli_down(
+                i64::from(bound.lowest_speed().to_bits()),
+                SpeedFormat::FRAC_NBITS,
+            )),
+            highest_speed_mm_s: saturate_i32(milli_up(
+                i64::from(bound.highest_speed().to_bits()),
+                SpeedFormat::FRAC_NBITS,
+            )),
+            ..plain
         }
     }
+}
+
+/// Thousandths of a number with so many fraction bits, rounded down, saturating.
+const fn milli_down(bits: i64, fraction: u32) -> i64 {
+    let (whole, part) = (bits >> fraction, bits.wrapping_sub((bits >> fraction) << fraction));
+    whole.saturating_mul(1000).saturating_add(part.wrapping_mul(1000) >> fraction) // a part is below 2^23
+}
+
+/// Likewise, rounded up.
+const fn milli_up(bits: i64, fraction: u32) -> i64 {
+    milli_down(bits.saturating_neg(), fraction).saturating_neg()
 }
 
 const fn of_mode(mode: &holdover::controller::Mode) -> (Mode, Cause) {
@@ -174,5 +230,25 @@ const fn of_mode(mode: &holdover::controller::Mode) -> (Mode, Cause) {
         Core::Fallback { cause: FallbackCause::Silent, .. } => (Mode::Fallback, Cause::Silent),
         Core::Fault { cause: FaultCause::EgoMissing, .. } => (Mode::Fault, Cause::EgoMissing),
         Core::Fault { cause: FaultCause::EgoStale, .. } => (Mode::Fault, Cause::EgoStale),
+        Core::Fault { cause: FaultCause::RangeDisagrees, .. } => (Mode::Fault, Cause::RangeDisagrees),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousandths_are_rounded_to_the_side_that_is_asked_for() {
+        let bits = |thousandths: f64| (thousandths / 1000.0 * f64::from(1 << 20)).round() as i64;
+        for (value, down, up) in [(0.0, 0, 0), (1.5, 1, 2), (-1.5, -2, -1), (2_000_000.25, 2_000_000, 2_000_001)] {
+            assert_eq!((milli_down(bits(value), 20), milli_up(bits(value), 20)), (down, up), "{value}");
+        }
+    }
+
+    #[test]
+    fn no_position_overflows() {
+        assert_eq!(milli_down(i64::MIN, 20), -(1 << 43) * 1000);
+        assert!(milli_up(i64::MAX, 20) >= ((1 << 43) - 1) * 1000);
     }
 }

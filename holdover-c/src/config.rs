@@ -131,6 +131,8 @@ pub struct Link {
     pub stale_us: u32,
     /// Stamps further in the future are refused; in us.
     pub future_us: u32,
+    /// Largest error between a sender's stamp and the own clock while synchronised; in us.
+    pub clock_error_us: u32,
     /// A slot may be taken over by another station after this much silence; in us.
     pub slot_reuse_us: u32,
     /// Silence up to which a target's estimate is driven by; in us.
@@ -143,18 +145,20 @@ pub struct Link {
     pub assumed_delay_us: u32,
 }
 
-/// The absolute limits of the last gate.
+/// The limits of the last gate.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Envelope {
-    /// 1: there is this gate; 0: there is none, and the rest is ignored.
+    /// 1: the gate is there; 0: it is not, and the rest is ignored.
     pub engaged: u8,
     /// Largest acceleration ever commanded in mm/s2.
     pub acceleration_mm_s2: u32,
     /// Hardest braking ever commanded in mm/s2.
     pub braking_mm_s2: u32,
-    /// Fastest change ever commanded in mm/s3.
+    /// Fastest change ever commanded in mm/s3, that of emergency braking.
     pub jerk_mm_s3: u32,
     /// No acceleration at or beyond this speed in mm/s.
     pub speed_mm_s: u32,
+    /// What is left between the bumpers when both have come to rest, in mm.
+    pub margin_mm: u32,
 }

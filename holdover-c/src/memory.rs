@@ -13,8 +13,11 @@ use holdover::{Config, OnboardUnit};
 use crate::pointer;
 use crate::status::Status;
 
-/// The unit that the library is built for: 8 peers with a history of 8 samples, horizons of up to 400 steps.
-pub type Unit = OnboardUnit<8, 8, 400>;
+/// Steps of a horizon.
+const STEPS: usize = 400;
+
+/// The unit that the library is built for: 8 peers with a history of 8 samples.
+pub type Unit = OnboardUnit<8, 8, STEPS>;
 
 /// Bytes of memory that a unit needs, on every target.
 pub const HOLDOVER_UNIT_SIZE: usize = 40_960;
@@ -58,11 +61,13 @@ pub unsafe fn occupy(memory: *mut c_void, size: usize, config: &Config) -> Resul
     if unsafe { inspect(held) }.is_ok() {
         return Err(Status::AlreadyInitialised);
     }
-    let unit = Unit::new(config)?;
-    // SAFETY: as above, and nothing that is in use lies there. The head comes last, so that an interrupt in between finds
-    // no unit rather than half of one.
+    config.check(STEPS)?; // before anything is written
+    // SAFETY: as above, and nothing that is in use lies there; `MaybeUninit` may hold anything.
+    let place = unsafe { &mut (*held).unit };
+    // An idle unit is all zero, so it is made where it lies and not on the stack.
+    place.write(const { Unit::idle() }).start(config)?;
+    // SAFETY: as above. The head comes last, so that an interrupt in between finds no unit rather than half of one.
     unsafe {
-        (&raw mut (*held).unit).write(MaybeUninit::new(unit));
         (&raw mut (*held).busy).write(AtomicU32::new(0));
         (&raw mut (*held).tail).write_volatile(TAIL);
         (&raw mut (*held).head).write_volatile(HEAD);

@@ -72,7 +72,7 @@ pub enum Status {
     ConfigLink = -46,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     ConfigBody = -47,
-    /// A limit of the envelope is zero or negative.
+    /// A limit of the envelope is zero.
     ConfigEnvelope = -48,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,

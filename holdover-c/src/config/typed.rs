@@ -114,6 +114,7 @@ impl From<Link> for config::Link {
             tolerance: micros(plain.tolerance_us),
             stale: micros(plain.stale_us),
             future: micros(plain.future_us),
+            clock_error: micros(plain.clock_error_us),
             slot_reuse: micros(plain.slot_reuse_us),
             holdover: micros(plain.holdover_us),
             ego_timeout: micros(plain.ego_timeout_us),
@@ -130,6 +131,7 @@ impl From<Envelope> for config::Envelope {
             braking: Acceleration::from_mm_per_s2(milli(plain.braking_mm_s2)),
             jerk: Jerk::from_mm_per_s3(milli(plain.jerk_mm_s3)),
             speed: Speed::from_mm_per_s(milli(plain.speed_mm_s)),
+            margin: Distance::from_mm(milli(plain.margin_mm)),
         }
     }
 }
@@ -157,7 +159,11 @@ impl From<&config::Config> for Config {
             law: (&typed.law).into(),
             prediction: Prediction { step_us: whole(step), horizon_us: whole(horizon), model: (&model).into() },
             link: (&typed.link).into(),
-            envelope: typed.envelope.as_ref().map_or(Envelope::NONE, Envelope::from),
+            envelope: match &typed.envelope {
+                Some(envelope) => envelope.into(),
+                // What a car would have, so that one switch engages it.
+                None => Envelope { engaged: 0, ..(&config::Envelope::CAR).into() },
+            },
         }
     }
 }
@@ -218,6 +224,7 @@ impl From<&config::Link> for Link {
             tolerance_us: whole(typed.tolerance),
             stale_us: whole(typed.stale),
             future_us: whole(typed.future),
+            clock_error_us: whole(typed.clock_error),
             slot_reuse_us: whole(typed.slot_reuse),
             holdover_us: whole(typed.holdover),
             ego_timeout_us: whole(typed.ego_timeout),
@@ -235,11 +242,7 @@ impl From<&config::Envelope> for Envelope {
             braking_mm_s2: magnitude(typed.braking.to_mm_per_s2()),
             jerk_mm_s3: magnitude(typed.jerk.to_mm_per_s3()),
             speed_mm_s: magnitude(typed.speed.to_mm_per_s()),
+            margin_mm: magnitude(typed.margin.to_mm()),
         }
     }
-}
-
-impl Envelope {
-    /// Disengaged. Its limits are nothing, which is refused if it is engaged without giving them.
-    const NONE: Self = Self { engaged: 0, acceleration_mm_s2: 0, braking_mm_s2: 0, jerk_mm_s3: 0, speed_mm_s: 0 };
 }

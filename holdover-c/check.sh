@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# holdover-c/check.sh: the C example says what the Rust core says, byte for byte, on the host and on a Cortex-M4F in the
+# emulator; the header is one for C99 and for C++; no panic can be reached. `./ci.sh c` runs it.
+# Exit code 77: something that it needs is not there, and cannot be had.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+target=thumbv7em-none-eabihf
+build=${CARGO_TARGET_DIR:-target}/c
+sources=holdover-c/examples
+strict=(-std=c99 -Wall -Wextra -Werror -pedantic -O2 -I holdover-c)
+
+skip() {
+    echo "SKIPPED: $*"
+    exit 77
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
+need() {
+    command -v "$1" >/dev/null && return
+    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
+}
+
+same() {
+    cmp "$1" "$2" || { diff "$1" "$2" | head -n 20; return 1; }
+}
+
+mkdir -p "$build"
+cargo run --locked --release --quiet -p holdover-c --example reference >"$build/reference.txt"
+frames=$(grep -vc '^refused' "$build/reference.txt")
+
+# On the host.
+cargo build --locked --release -p holdover-c
+library=${CARGO_TARGET_DIR:-target}/release/libholdover_c.a
+gcc "${strict[@]}" "$sources"/{replay,board_host}.c "$library" -lpthread -ldl -lm -o "$build/replay"
+"$build/replay" >"$build/host.txt"
+same "$build/reference.txt" "$build/host.txt"
+echo "host: $frames frames, the same as of the Rust core"
+
+need g++ g++
+printf '#include "holdover.h"\nholdover_answer_t answer;\n' >"$build/header.cpp"
+g++ -std=c++11 -Wall -Wextra -Werror -pedantic -I holdover-c -fsyntax-only "$build/header.cpp"
+
+# On the ECU.
+need arm-none-eabi-gcc gcc-arm-none-eabi
+need qemu-system-arm qemu-system-arm
+bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
+PATH=$bin:$PATH cargo build --locked --release --target "$target" -p holdover-c
+library=${CARGO_TARGET_DIR:-target}/$target/release/libholdover_c.a
+image=$build/replay.elf
+arm-none-eabi-gcc "${strict[@]}" -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffreestanding \
+    -nostdlib -T "$sources/netduino.ld" -Wl,--gc-sections -Wl,-z,noexecstack -Wl,-Map="$build/replay.map" \
+    "$sources"/{replay,board_netduino}.c "$library" -o "$image"
+if arm-none-eabi-nm -C "$image" | grep -iE 'panic|unwrap_failed|rust_begin_unwind'; then
+    echo "a panic can be reached from the image (above)"
+    exit 1
+fi
+timeout 60 qemu-system-arm -M netduinoplus2 -display none -serial none -monitor none \
+    -semihosting-config enable=on,target=native -kernel "$image" >"$build/ecu.txt" </dev/null
+same "$build/reference.txt" "$build/ecu.txt"
+arm-none-eabi-size "$image"
+echo "$target: $frames frames, the same as of the Rust core; no panic in the image"
