@@ -81,10 +81,11 @@ pub fn room(envelope: &Envelope, ego: &Ego, stop_before: Position, period: Durat
 pub fn distance_cap(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration) -> Acceleration {
     let braking = micros(envelope.braking);
     let jerk = i64::from(envelope.jerk.to_mm_per_s3()).saturating_mul(1000);
-    let z = speed_micros(ego.speed).saturating_add(speed_micros(ego.acceleration.over(ego.lag)));
+    // At a standstill the acceleration is lost and `z` springs up to 0, so that nothing may be built on its being less.
+    let z = speed_micros(ego.speed).saturating_add(speed_micros(ego.acceleration.over(ego.lag))).max(0);
     let fastest = root(2i64.saturating_mul(braking).saturating_mul(distance_micros(room)));
     let spare = fastest.saturating_sub(z);
-    if spare < 0 {
+    if room < Distance::ZERO || spare < 0 {
         return Acceleration::MIN;
     }
     let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare));

@@ -39,10 +39,16 @@ pub const UNPUBLISHED_POSITION_ACCURACY: Distance = Distance::from_mm(5_000);
 /// Speed accuracy taken where none is published.
 pub const UNPUBLISHED_SPEED_ACCURACY: Speed = Speed::from_mm_per_s(1_500);
 
-/// Half a step of a position on the wire, and of a speed, rounded up.
+/// Accuracy of an acceleration, of which none is ever published: a slope of 10 % alone is as much.
+pub const UNPUBLISHED_ACCELERATION_ACCURACY: Acceleration = Acceleration::from_mm_per_s2(1_000);
+
+/// Half a step of a position on the wire, rounded up.
 pub const POSITION_ROUNDING: Distance = Distance::from_mm(1);
-/// See [`POSITION_ROUNDING`].
-pub const SPEED_ROUNDING: Speed = Speed::from_mm_per_s(1);
+/// Half a step of a speed on the wire, which is a whole mm/s, and what turning decimals into words loses of a speed and of
+/// its accuracy.
+pub const SPEED_ROUNDING: Speed = Speed::from_mm_per_s(1).plus(Speed::from_bits(2));
+/// Half a step of an acceleration on the wire.
+pub const ACCELERATION_ROUNDING: Acceleration = Acceleration::from_mm_per_s2(10);
 
 /// Without time synchronisation a message may have been under way for this long.
 pub const UNKNOWN_DELAY: Duration = Duration::from_millis(2_000);

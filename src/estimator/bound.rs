@@ -55,7 +55,7 @@ pub struct Doubt {
     pub speed: Speed,
     /// How much earlier than the instant taken for it the sample may really be from.
     pub earlier: Duration,
-    /// How much later.
+    /// How much later; negative if it is surely earlier.
     pub later: Duration,
 }
 

@@ -5,7 +5,7 @@
 //! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Refusal::Jump`], or
 //! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). So a speed that does not
 //! fit the positions is found as soon as they have drifted apart by more than the published accuracies. An acceleration
-//! beyond what any road vehicle can do is implausible by itself.
+//! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
 //!
 //! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
 //! track starts anew from them.
@@ -15,8 +15,8 @@ use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::parameters::{
-    POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY, UNPUBLISHED_POSITION_ACCURACY,
-    UNPUBLISHED_SPEED_ACCURACY,
+    POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY, UNPUBLISHED_ACCELERATION_ACCURACY,
+    UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::time::Duration;
 
@@ -71,7 +71,8 @@ impl Certainty {
         doubt: &Doubt,
         reach: &Reach,
     ) -> Result<Belief, Refusal> {
-        if sample.acceleration.magnitude() > Reach::WORST.braking {
+        let hardest = Reach::WORST.braking.max(reach.braking).max(reach.acceleration);
+        if sample.acceleration.magnitude() > hardest.plus(UNPUBLISHED_ACCELERATION_ACCURACY) {
             return Err(Refusal::Implausible);
         }
         let around = Bound::around(sample.at, sample.position, sample.speed, doubt, reach);
@@ -117,7 +118,8 @@ fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, r
 #[must_use]
 pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link) -> Doubt {
     let (earlier, later) = if is_synchronised {
-        (link.clock_error, link.clock_error)
+        // However the clocks are off, it was taken before it was received.
+        (link.clock_error, link.clock_error.min(sample.received.since(sample.at)))
     } else {
         // It was taken for as old as the assumed delay, and may be of any age up to the largest.
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)
