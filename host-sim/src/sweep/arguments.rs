@@ -58,8 +58,8 @@ Figures:
 Cost (\"timing\"):
   After the runs of a step, alone on its thread, the follower's unit is given
   the traffic of the first seed's run (of at most 20 s) again, five times; the
-  cost of a tick is the mean over a pass's ticks, of the fastest pass. All else
-  is the same bytes whatever the number of threads.
+  cost is the mean over all ticks, of each the fastest of the five. All else is
+  the same bytes whatever the number of threads.
 
 Exit codes:
   0  every run passed
