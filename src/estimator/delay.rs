@@ -3,22 +3,22 @@
 //! the model instead.
 //!
 //! With `τ < δt` the speed is taken unchanged (eq. 10); with `τ >= δt` it is `v + τ v̇` (eq. 11; the printed `τ/δt` fits a
-//! `v̇` per step); the position is `r(t+k-τ) + v(t+k) τ` (eq. 12 as printed is only dimensionally right at `τ = δt`).
+//! `v̇` per step) with `v̇` the slope from that step to the next; the position is `r(t+k-τ) + v(t+k) τ` (eq. 12 as printed is only dimensionally right at `τ = δt`).
 
 use super::horizon::Step;
 use crate::time::Duration;
 use crate::units::{RingPosition, Speed};
 
-/// The predecessor's state at `t+k` from its steps at `t+k-τ` and one before that. Delays beyond 4 s saturate.
+/// The predecessor's state at `t+k` from its steps at `t+k-τ` and one after that. Delays beyond 4 s saturate.
 #[must_use]
-pub fn adjusted(earlier: Step, before: Step, delay: Duration, step: Duration) -> (RingPosition, Speed) {
+pub fn adjusted(earlier: Step, next: Step, delay: Duration, step: Duration) -> (RingPosition, Speed) {
     let tau = delay.max(Duration::ZERO);
     let speed = if tau < step {
         earlier.speed
     } else {
-        let steps = tau.as_micros().checked_div(step.as_micros()).unwrap_or(0);
-        let slope = i64::from(earlier.speed.minus(before.speed).to_bits());
-        earlier.speed.plus(Speed::from_bits(crate::fixed::saturate_i32(slope.saturating_mul(steps))))
+        let change = i64::from(next.speed.minus(earlier.speed).to_bits());
+        let gained = change.saturating_mul(tau.as_micros()).checked_div(step.as_micros()).unwrap_or(0);
+        earlier.speed.plus(Speed::from_bits(crate::fixed::saturate_i32(gained)))
     };
     (earlier.position.ahead(speed.over(tau.seconds())), speed)
 }
@@ -32,7 +32,7 @@ mod tests {
 
     fn after(delay: i64) -> (f64, i32) {
         let at = |mm_per_s| Step { position: Position::ZERO.ring(), speed: Speed::from_mm_per_s(mm_per_s) };
-        let (position, speed) = adjusted(at(10_000), at(9_990), Duration::from_millis(delay), STEP);
+        let (position, speed) = adjusted(at(10_000), at(10_010), Duration::from_millis(delay), STEP);
         (position.ahead_of(Position::ZERO.ring()).get().to_num(), speed.to_mm_per_s())
     }
 
@@ -41,6 +41,7 @@ mod tests {
         assert_eq!(after(9).1, 10_000);
         assert_eq!(after(10).1, 10_010);
         assert_eq!(after(40).1, 10_040);
+        assert_eq!(after(45).1, 10_045, "v̇ is per second, not per step");
     }
 
     #[test]

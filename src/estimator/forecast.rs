@@ -54,7 +54,9 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let anchor =
             Anchor { at: sample.at, position: sample.position, speed: sample.speed, acceleration: sample.acceleration };
         horizon.clear();
-        let mut filling = Filling { horizon, present, anchor };
+        // A horizon that ends is kept from its sample on: eqs 10-12 look back into it by the delay.
+        let from = if self.model.endless { present } else { i64::MIN };
+        let mut filling = Filling { horizon, present: from, anchor };
         let next = received
             .and_then(|(knots, intent)| self.resample(&mut filling, knots, intent))
             .or_else(|| self.depart(&mut filling, sample));
@@ -156,9 +158,10 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<(RingPosition, Speed)> {
-        let behind = self.grid.nearest(self.grid.time_of(index).minus(delay));
-        let held = |index: i64| ahead.at(index.clamp(ahead.first(), ahead.last()));
-        Some(adjusted(held(behind)?, held(behind.saturating_sub(1))?, delay, self.grid.step))
+        // Before its first step and after its last one those are held.
+        let behind = self.grid.nearest(self.grid.time_of(index).minus(delay)).clamp(ahead.first(), ahead.last());
+        let after = behind.saturating_add(1).min(ahead.last());
+        Some(adjusted(ahead.at(behind)?, ahead.at(after)?, delay, self.grid.step))
     }
 }
 

@@ -63,3 +63,6 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.iter().position(|track| track.station() == Some(station))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -92,9 +92,12 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// The horizon that it computed from its newest sample, if that came.
     #[must_use]
     pub fn knots(&self) -> Option<&Knots> {
-        let (_, knots) = self.knots.as_ref()?;
+        let (received, knots) = self.knots.as_ref()?;
         let newest = self.newest()?;
-        (knots.tag == newest.tag).then_some(knots)
+        // Tags come round after four messages; what is half a round older, or newer, is of another sample.
+        let (apart, half_a_round) = (newest.received.since(*received), self.link.period().times(2));
+        let is_of_this_round = apart < half_a_round && apart > Duration::ZERO.minus(half_a_round);
+        (knots.tag == newest.tag && is_of_this_round).then_some(knots)
     }
 
     /// The link.
