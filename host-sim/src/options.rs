@@ -72,6 +72,7 @@ impl RunOptions {
             step_s: settings.step,
             leader_motion: settings.leader_motion.clone(),
             channel_trace: settings.channel_trace.clone(),
+            envelope: settings.envelope,
         };
         let arguments = typed(&overrides);
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -105,11 +106,15 @@ fn typed(overrides: &Overrides) -> Vec<String> {
     let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
     let motion = file("--leader-motion", &overrides.leader_motion);
     let trace = file("--channel-trace", &overrides.channel_trace);
-    [step, motion, trace].into_iter().flatten().collect()
+    let envelope = overrides.envelope.then(|| "--envelope".to_owned());
+    [step, motion, trace, envelope].into_iter().flatten().collect()
 }
 
 /// That the report's folder is not a file; missing folders are created when it is written.
-fn can_be_folder(folder: &Path) -> Result<(), Error> {
+///
+/// # Errors
+/// It is a file, or has no name.
+pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
     let cause = if folder.as_os_str().is_empty() {
         "is an empty name".to_owned()
     } else if folder.exists() && !folder.is_dir() {

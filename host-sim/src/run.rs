@@ -4,6 +4,8 @@ mod files;
 mod page;
 mod table;
 
+pub use files::write_report;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -37,7 +39,7 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         files::write_log(&candump.file, &trace)?;
     }
     let report = match &options.report {
-        Some(folder) => Some(files::write_report(folder, &page::report(options, &trace, &summary, &failures))?),
+        Some(folder) => Some(write_report(folder, &page::report(options, &trace, &summary, &failures).render())?),
         None => None,
     };
     if options.json {
