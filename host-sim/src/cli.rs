@@ -71,6 +71,10 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
+    /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead
+    #[arg(long)]
+    pub envelope: bool,
+
     /// Print the results as one JSON value on stdout
     #[arg(long)]
     pub json: bool,
@@ -83,7 +87,7 @@ pub struct RunSettings {
     #[arg(long, conflicts_with = "out")]
     pub no_report: bool,
 
-    /// Write every tick: time, truth, estimate, age, mode, command
+    /// Write every tick: time, truth, estimate and its bound, age, mode, command and whether the envelope changed it
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 

@@ -2,9 +2,14 @@
 
 use serde::Serialize;
 
+use crate::channel::Link;
 use crate::metrics::{ErrorStatistics, SETTLED_FROM_S, collisions, full_stops, lowest_speed, smallest_gap};
 use crate::scenario::Scenario;
-use crate::world::Trace;
+use crate::world::{Tick, Trace};
+
+mod bound;
+
+pub use bound::{BoundFigures, bounds};
 
 /// The position errors of one estimator, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -22,6 +27,15 @@ impl Errors {
         let figures = ErrorStatistics::of(errors);
         Self { max_position_error_m: figures.max, p99_position_error_m: figures.p99, rms_position_error_m: figures.rms }
     }
+}
+
+/// The last gate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnvelopeFigures {
+    /// Whether it was engaged.
+    pub engaged: bool,
+    /// Share of time in which it changed the command of a vehicle whose link to the one ahead is impaired, 0 to 1.
+    pub limited_share: f64,
 }
 
 /// Wall-clock figures; everything else is the same for the same seed.
@@ -49,6 +63,10 @@ pub struct Summary {
     pub collisions: usize,
     /// Wall-clock figures.
     pub timing: Timing,
+    /// What was certain of the targets.
+    pub bound: BoundFigures,
+    /// The last gate.
+    pub envelope: EnvelopeFigures,
 }
 
 /// The errors over time, from when they count on: `(time, error)`.
@@ -84,10 +102,27 @@ pub fn gaps(scenario: &Scenario, trace: &Trace) -> Vec<Vec<(f64, f64)>> {
 /// The speed of each vehicle over time.
 #[must_use]
 pub fn speeds(trace: &Trace) -> Vec<Vec<(f64, f64)>> {
-    let speeds = |ticks: &Vec<crate::world::Tick>| {
+    let speeds = |ticks: &Vec<Tick>| {
         trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.speed_mps)).collect()
     };
     trace.vehicles.iter().map(speeds).collect()
+}
+
+/// The followers whose link to the vehicle ahead is impaired; all, if that is nobody's.
+#[must_use]
+pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
+    let followers = 1..scenario.vehicles.len();
+    let impaired = |index: &usize| scenario.channel.impairs(Link { from: index - 1, to: *index });
+    let found: Vec<usize> = followers.clone().filter(impaired).collect();
+    if found.is_empty() { followers.collect() } else { found }
+}
+
+/// Share of time in which the envelope changed the command of one of these vehicles, 0 to 1.
+#[must_use]
+#[allow(clippy::cast_precision_loss)] // fewer ticks than 2⁵³
+pub fn limited_share(trace: &Trace, vehicles: &[usize]) -> f64 {
+    let ticks = || vehicles.iter().flat_map(|index| &trace.vehicles[*index]);
+    ticks().filter(|tick| tick.limited).count() as f64 / ticks().count().max(1) as f64
 }
 
 /// The figures of a trace.
@@ -104,6 +139,11 @@ pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Su
         full_stops: speeds.iter().skip(driven).map(|speed| full_stops(speed)).sum(),
         collisions: gaps.iter().map(|gap| collisions(gap)).sum(),
         timing: Timing { realtime_factor },
+        bound: BoundFigures::of(scenario, trace),
+        envelope: EnvelopeFigures {
+            engaged: scenario.envelope.engaged,
+            limited_share: limited_share(trace, &impaired_followers(scenario)),
+        },
     }
 }
 
@@ -114,8 +154,12 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     if summary.collisions > 0 {
         failures.push(format!("{} collision(s): a bumper gap fell below 0", summary.collisions));
     }
-    // A recorded leader may stop, and everyone behind it then has to.
-    if summary.full_stops > 0 && scenario.leader.motion.is_none() {
+    if summary.bound.violations > 0 {
+        failures.push(format!("{} tick(s) at which a target was outside its bound", summary.bound.violations));
+    }
+    // A recorded leader may stop, and everyone behind it then has to; and stopping in a silence is what the envelope is
+    // for.
+    if summary.full_stops > 0 && scenario.leader.motion.is_none() && !scenario.envelope.engaged {
         failures.push(format!("{} full stop(s)", summary.full_stops));
     }
     if summary.ours.max_position_error_m.is_none() {

@@ -22,6 +22,7 @@ pub mod replay;
 pub mod report;
 pub mod run;
 pub mod scenario;
+pub mod sensors;
 pub mod streams;
 pub mod sweep;
 pub mod vehicle;

@@ -73,6 +73,7 @@ impl RunOptions {
             step_s: settings.step,
             leader_motion: settings.leader_motion.clone(),
             channel_trace: settings.channel_trace.clone(),
+            envelope: settings.envelope,
         };
         let arguments = typed(&overrides);
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -106,7 +107,8 @@ fn typed(overrides: &Overrides) -> Vec<String> {
     let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
     let motion = file("--leader-motion", &overrides.leader_motion);
     let trace = file("--channel-trace", &overrides.channel_trace);
-    [step, motion, trace].into_iter().flatten().collect()
+    let envelope = overrides.envelope.then(|| "--envelope".to_owned());
+    [step, motion, trace, envelope].into_iter().flatten().collect()
 }
 
 /// That the report's folder is not a file; missing folders are created when it is written.

@@ -4,9 +4,14 @@
 //! explains all of them. What stands in a [`Scenario`] has been checked: whoever uses one need not check again.
 
 mod draw;
+mod envelope;
 mod keys;
+mod sensors;
 mod start;
 mod validate;
+
+pub use envelope::Envelope;
+pub use sensors::{Accuracy, RangeSensor};
 
 use crate::channel::ChannelModel;
 use crate::error::Error;
@@ -38,6 +43,8 @@ pub struct Scenario {
     pub ego: usize,
     /// The V2X channel.
     pub channel: ChannelModel,
+    /// The last gate of every unit.
+    pub envelope: Envelope,
 }
 
 /// What the first vehicle does.
@@ -66,6 +73,10 @@ pub struct Vehicle {
     pub time_gap_s: f64,
     /// Distance that it keeps at standstill, `s_0`; 0 to 10.23 m.
     pub standstill_m: f64,
+    /// How well it knows its own motion, as it publishes it.
+    pub accuracy: Accuracy,
+    /// Its sensor of the vehicle ahead, if it has one.
+    pub range_sensor: Option<RangeSensor>,
 }
 
 /// Where a vehicle starts. No vehicle can start inside the one ahead of it, whatever is drawn.
@@ -106,6 +117,8 @@ pub struct Overrides {
     pub leader_motion: Option<PathBuf>,
     /// `--channel-trace`, relative to the current directory.
     pub channel_trace: Option<PathBuf>,
+    /// `--envelope`.
+    pub envelope: bool,
 }
 
 impl Scenario {

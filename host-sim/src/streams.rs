@@ -22,6 +22,8 @@ pub enum Purpose {
     BusFaults(u32),
     /// When the clock of the unit with that index started.
     ClockOffset(u32),
+    /// Errors of the range sensor of the vehicle with that index.
+    RangeSensor(u32),
 }
 
 /// The generator for that purpose under that seed.
@@ -32,6 +34,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::Link { from, to } => (2, u32::from(from) << 16 | u32::from(to)),
         Purpose::BusFaults(vehicle) => (3, vehicle),
         Purpose::ClockOffset(vehicle) => (4, vehicle),
+        Purpose::RangeSensor(vehicle) => (5, vehicle),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

@@ -16,6 +16,7 @@ use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
 use crate::modem::{PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
+use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
 
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
@@ -72,11 +73,14 @@ pub struct Vehicle {
     pub engaged: bool,
     /// What its unit commanded last.
     pub command_mps2: f64,
+    /// Whether its unit's envelope changed that.
+    pub limited: bool,
     /// What its unit said last of its target.
     pub estimate: Option<TargetEstimate>,
     wish: EgoIntent,
     clock_offset_us: u64,
-    sensors: Sender<0>,
+    sensors: Sensors,
+    sender: Sender<0>,
     relay: Relay,
     listener: Receiver<PEERS>,
     transmitter: Transmitter,
@@ -99,6 +103,7 @@ impl Vehicle {
         length_m: f64,
         wish: EgoIntent,
         clock_offset_us: u64,
+        sensors: Sensors,
     ) -> Result<Self, ConfigError> {
         let bus = MemoryBus::new();
         Ok(Self {
@@ -108,10 +113,12 @@ impl Vehicle {
             unit: Unit::new(config)?,
             engaged: wish.engaged,
             command_mps2: 0.0,
+            limited: false,
             estimate: None,
             wish,
             clock_offset_us,
-            sensors: Sender::new(config.base_id),
+            sensors,
+            sender: Sender::new(config.base_id),
             relay: Relay::new(config.base_id),
             listener: Receiver::new(config.base_id, Role::Modem),
             transmitter: Transmitter::default(),
@@ -148,13 +155,24 @@ impl Vehicle {
         at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
     }
 
-    /// What the vehicle puts on its unit's bus in a period: its motion, and what the driver wants and the time base when
-    /// they are due.
+    /// How the one behind sees it.
+    #[must_use]
+    pub fn seen_from_behind(&self) -> Ahead {
+        Ahead { rear_m: self.plant.position_m - self.length_m, speed_mps: self.plant.speed_mps }
+    }
+
+    /// What the vehicle puts on its unit's bus in a period: its motion, and what it sees `ahead`, what the driver wants and
+    /// the time base when they are due.
     ///
     /// # Errors
     /// The bus's.
-    pub fn speak(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
+    pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
         self.sense(at_s)?;
+        if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
+            && let Some(seen) = self.sensors.look(self.plant.position_m, self.plant.speed_mps, ahead)
+        {
+            self.put(at_s, &Message::Range(seen))?;
+        }
         if is_due(at_s, WISH_EVERY_S, period_s) {
             self.wish(at_s)?;
         }
@@ -186,8 +204,8 @@ impl Vehicle {
             acceleration: acceleration(self.plant.acceleration_mps2),
             demand: acceleration(self.command_mps2),
             stamp: gnss(at_s).stamp(),
-            position_accuracy: Some(Distance::from_mm(50)),
-            speed_accuracy: Some(Speed::from_mm_per_s(20)),
+            position_accuracy: Some(self.sensors.position_accuracy),
+            speed_accuracy: Some(self.sensors.speed_accuracy),
             station: station(self.index),
         };
         self.put(at_s, &Message::Ego(Said::Motion(motion)))
@@ -236,6 +254,7 @@ impl Vehicle {
                 Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
                 Ok(Received::Whole(Message::Command(command))) => {
                     self.command_mps2 = command.acceleration.get().to_num();
+                    self.limited = command.limited;
                 }
                 _ => {}
             }
@@ -247,7 +266,7 @@ impl Vehicle {
         let at = self.instant(at_s);
         let mut result = Ok(());
         let harness = &mut self.harness;
-        let sent = self.sensors.send(message, &mut |frame| {
+        let sent = self.sender.send(message, &mut |frame| {
             if result.is_ok() {
                 result = harness.send(at, (&frame).into());
             }

@@ -10,7 +10,6 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::io;
 
-use holdover::controller::Mode;
 use holdover::health::Refusal;
 use holdover::time::Instant;
 use holdover::wire::BaseId;
@@ -25,39 +24,16 @@ use crate::modem::V2xMessage;
 use crate::observer::Observer;
 use crate::plant::Plant;
 use crate::scenario::Scenario;
+use crate::sensors::Sensors;
 use crate::streams::{Purpose, stream, unit};
 use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
 
+mod tick;
+
+pub use tick::{Bounds, TargetBelief, Tick};
+
 /// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
 const WARM_UP_S: f64 = 1.0;
-
-/// One tick of one vehicle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tick {
-    /// True front bumper.
-    pub position_m: f64,
-    /// True speed.
-    pub speed_mps: f64,
-    /// True acceleration.
-    pub acceleration_mps2: f64,
-    /// What its unit commanded.
-    pub command_mps2: f64,
-    /// Its unit's mode.
-    pub mode: Mode,
-    /// Where its unit believes its target is, as it stands on the bus.
-    pub target: Option<TargetBelief>,
-}
-
-/// What a unit believes of its target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TargetBelief {
-    /// Front bumper.
-    pub position_m: f64,
-    /// Speed.
-    pub speed_mps: f64,
-    /// Age of the newest sample it rests on.
-    pub age_s: f64,
-}
 
 /// The trace of a run.
 pub struct Trace {
@@ -162,7 +138,8 @@ impl<'a> World<'a> {
             };
             let wish = wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
             let clock_offset_us = clock_offset(seed, index);
-            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us)?);
+            let sensors = Sensors::new(described, seed, index);
+            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us, sensors)?);
         }
         let measured = Measured::of(scenario);
         let leader_start_m = vehicles[0].plant.position_m;
@@ -238,7 +215,7 @@ impl<'a> World<'a> {
             for tick in (1..=ticks).rev() {
                 let at_s = -f64::from(tick) * period_s;
                 vehicle.plant.position_m = start_m + vehicle.plant.speed_mps * at_s;
-                vehicle.speak(at_s, period_s)?;
+                vehicle.speak(at_s, period_s, None)?;
                 vehicle.tick(at_s)?;
             }
             vehicle.plant.position_m = start_m;
@@ -251,15 +228,16 @@ impl<'a> World<'a> {
         self.deliver(at_s)?;
         self.place_recorded_leader(at_s);
         self.show_to_paper(at_s)?;
-        let mut broadcasts = Vec::new();
+        let (mut broadcasts, mut ahead) = (Vec::new(), None);
         for vehicle in &mut self.vehicles {
-            vehicle.speak(at_s, self.scenario.period_s)?;
+            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
+            ahead = Some(vehicle.seen_from_behind());
             broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
         }
         trace.times_s.push(at_s);
         trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
         for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
-            ticks.push(record(vehicle));
+            ticks.push(Tick::of(vehicle));
         }
         for (from, message) in broadcasts {
             self.broadcast(at_s, from, message);
@@ -317,23 +295,6 @@ impl<'a> World<'a> {
     }
 }
 
-fn record(vehicle: &Vehicle) -> Tick {
-    let near = metres(vehicle.plant.position_m);
-    Tick {
-        position_m: vehicle.plant.position_m,
-        speed_mps: vehicle.plant.speed_mps,
-        acceleration_mps2: vehicle.plant.acceleration_mps2,
-        command_mps2: vehicle.command_mps2,
-        mode: vehicle.unit.mode(),
-        target: vehicle.estimate.map(|estimate| TargetBelief {
-            position_m: estimate.position.nearest_to(near).get().to_num(),
-            speed_mps: estimate.speed.get().to_num(),
-            #[allow(clippy::cast_precision_loss)]
-            age_s: estimate.age.as_micros() as f64 * 1e-6,
-        }),
-    }
-}
-
 /// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn clock_offset(seed: u64, index: usize) -> u64 {
@@ -355,6 +316,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.link.period = duration(1.0 / scenario.message_rate_hz);
     config.prediction.step = duration(scenario.step_s);
     config.prediction.horizon = horizon(scenario.step_s);
+    config.envelope = scenario.envelope.limits();
     config
 }
 

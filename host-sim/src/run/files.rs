@@ -12,7 +12,8 @@ use crate::scenario::Scenario;
 use crate::vehicle::{EPOCH_US, micros};
 use crate::world::Trace;
 
-/// Writes every tick of the measured vehicle as its follower sees it.
+/// Writes every tick of the measured vehicle as its follower sees it, with the bound as it stands on the bus, and the
+/// follower's command; `limited` is 1 where the envelope changed that.
 pub fn write_trace(file: &Path, scenario: &Scenario, trace: &Trace) -> Result<(), Error> {
     let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
     let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
@@ -23,16 +24,18 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
     writeln!(
         out,
         "t_s,true_position_m,true_speed_mps,true_acceleration_mps2,estimated_position_m,estimated_speed_mps,age_s,mode,\
-         command_mps2,paper_position_m,gap_m"
+         command_mps2,paper_position_m,gap_m,lowest_position_m,highest_position_m,lowest_speed_mps,highest_speed_mps,\
+         limited"
     )?;
     let (measured, by) = (&trace.vehicles[trace.measured.vehicle], &trace.vehicles[trace.measured.by]);
     let length_m = scenario.vehicles[trace.measured.vehicle].length_m;
     for (tick, at_s) in trace.times_s.iter().enumerate() {
         let (truth, seen) = (&measured[tick], &by[tick]);
         let field = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6}"));
+        let bound = seen.target.and_then(|target| target.bound);
         writeln!(
             out,
-            "{at_s:.6},{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{:.6}",
+            "{at_s:.6},{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{:.6},{},{},{},{},{}",
             truth.position_m,
             truth.speed_mps,
             truth.acceleration_mps2,
@@ -43,6 +46,11 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
             seen.command_mps2,
             field(trace.paper[tick]),
             truth.position_m - length_m - seen.position_m,
+            field(bound.map(|bound| bound.lowest_position_m)),
+            field(bound.map(|bound| bound.highest_position_m)),
+            field(bound.map(|bound| bound.lowest_speed_mps)),
+            field(bound.map(|bound| bound.highest_speed_mps)),
+            u8::from(seen.limited),
         )?;
     }
     Ok(())

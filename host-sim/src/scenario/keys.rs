@@ -166,6 +166,13 @@ impl<'a> Section<'a> {
         Ok(Some(Found { value: number, line: self.line_of(value) }))
     }
 
+    /// Yes or no, if given.
+    pub fn flag(&mut self, key: &'static str) -> Result<Option<Found<bool>>, Error> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let flag = value.get_ref().as_bool().ok_or_else(|| self.mismatch(key, value, "true or false"))?;
+        Ok(Some(Found { value: flag, line: self.line_of(value) }))
+    }
+
     /// The path of a file, if given; a relative one starts from the folder of this document.
     pub fn path(&mut self, key: &'static str) -> Result<Option<Found<PathBuf>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };

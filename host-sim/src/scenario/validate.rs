@@ -1,7 +1,7 @@
 //! From the keys of a scenario file to a checked [`Scenario`]: text and command line enter, one of the two leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
-use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, start};
+use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, envelope, sensors, start};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::error::{Error, quoted};
 use crate::recording::{ChannelTrace, Motion};
@@ -52,6 +52,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let channel = top.section("channel")?;
     let ego = index_of_ego(&document, ego, vehicles.len())?;
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
+    let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -72,6 +73,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
         vehicles,
         ego,
         channel,
+        envelope,
     })
 }
 
@@ -152,7 +154,8 @@ fn vehicles(document: &Document, top: &mut Section, motion: Option<&Motion>) -> 
     }
     let mut vehicles = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
-        vehicles.push(vehicle(document, section, index == 0, spread)?);
+        let drives = if index > 0 { Drives::Behind } else { Drives::first(motion.is_some()) };
+        vehicles.push(vehicle(document, section, drives, spread)?);
     }
     start::check(&vehicles).map_err(|start::Misplaced { vehicle, cause, remedy }| {
         document.error_at(lines.get(vehicle).copied().flatten(), cause, remedy)
@@ -163,12 +166,29 @@ fn vehicles(document: &Document, top: &mut Section, motion: Option<&Motion>) -> 
     Ok(vehicles)
 }
 
-fn vehicle(document: &Document, mut section: Section, leads: bool, speeds: Span) -> Result<Vehicle, Error> {
+/// What a vehicle drives by.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Drives {
+    /// It leads, on a free road.
+    Freely,
+    /// It leads, on a recording.
+    Recording,
+    /// It follows another one.
+    Behind,
+}
+
+impl Drives {
+    fn first(is_recorded: bool) -> Self {
+        if is_recorded { Self::Recording } else { Self::Freely }
+    }
+}
+
+fn vehicle(document: &Document, mut section: Section, drives: Drives, speeds: Span) -> Result<Vehicle, Error> {
     let position = section.span(&POSITION)?;
     let gap = section.span(&GAP)?;
     let start = match (position, gap) {
         (Some(position), None) => Start::Position(position.value),
-        (None, Some(gap)) if leads => {
+        (None, Some(gap)) if drives != Drives::Behind => {
             let cause = "the leader (vehicle 0) has a `gap_m`, and nobody is ahead of it";
             return Err(document.error_at(gap.line, cause, "give it `position_m`, or neither"));
         }
@@ -190,6 +210,8 @@ fn vehicle(document: &Document, mut section: Section, leads: bool, speeds: Span)
         plant_lag_s: if plant_lag.line.is_some() { plant_lag.value } else { lag_s },
         time_gap_s: section.number(&TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
+        accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
+        range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind)?,
     };
     section.finish()?;
     Ok(vehicle)

@@ -1,0 +1,100 @@
+//! One tick of one vehicle, for the trace: the vehicle enters; its true motion, its command and what its unit believes of
+//! its target leave. The belief is what stands on the bus.
+
+use holdover::controller::Mode;
+use holdover::units::Speed;
+use holdover::wire::estimate::TargetEstimate;
+
+use crate::vehicle::{Vehicle, metres};
+
+/// One tick of one vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    /// True front bumper.
+    pub position_m: f64,
+    /// True speed.
+    pub speed_mps: f64,
+    /// True acceleration.
+    pub acceleration_mps2: f64,
+    /// What its unit commanded.
+    pub command_mps2: f64,
+    /// Whether the envelope changed that.
+    pub limited: bool,
+    /// Its unit's mode.
+    pub mode: Mode,
+    /// Where its unit believes its target is.
+    pub target: Option<TargetBelief>,
+}
+
+/// What a unit believes of its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TargetBelief {
+    /// Front bumper.
+    pub position_m: f64,
+    /// Speed.
+    pub speed_mps: f64,
+    /// Age of the newest sample it rests on.
+    pub age_s: f64,
+    /// What is certain; `None`: nothing, or more than the message can say.
+    pub bound: Option<Bounds>,
+}
+
+/// Both ends of what is certain of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// As far back as it can be.
+    pub lowest_position_m: f64,
+    /// As far ahead.
+    pub highest_position_m: f64,
+    /// As slow.
+    pub lowest_speed_mps: f64,
+    /// As fast.
+    pub highest_speed_mps: f64,
+}
+
+impl Bounds {
+    /// Whether a vehicle with this motion is inside.
+    #[must_use]
+    pub fn hold(&self, position_m: f64, speed_mps: f64) -> bool {
+        (self.lowest_position_m..=self.highest_position_m).contains(&position_m)
+            && (self.lowest_speed_mps..=self.highest_speed_mps).contains(&speed_mps)
+    }
+
+    /// From the lowest to the highest position.
+    #[must_use]
+    pub fn width_m(&self) -> f64 {
+        self.highest_position_m - self.lowest_position_m
+    }
+}
+
+impl Tick {
+    /// Of a vehicle after its unit's tick.
+    pub(super) fn of(vehicle: &Vehicle) -> Self {
+        Self {
+            position_m: vehicle.plant.position_m,
+            speed_mps: vehicle.plant.speed_mps,
+            acceleration_mps2: vehicle.plant.acceleration_mps2,
+            command_mps2: vehicle.command_mps2,
+            limited: vehicle.limited,
+            mode: vehicle.unit.mode(),
+            target: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
+        }
+    }
+}
+
+impl TargetBelief {
+    fn of(estimate: &TargetEstimate, near_m: f64) -> Self {
+        let mps = |speed: Speed| speed.get().to_num::<f64>();
+        let position_m: f64 = estimate.position.nearest_to(metres(near_m)).get().to_num();
+        let speed_mps = mps(estimate.speed);
+        let bound = estimate.ends.map(|ends| Bounds {
+            lowest_position_m: position_m - ends.behind.get().to_num::<f64>(),
+            highest_position_m: position_m + ends.ahead.get().to_num::<f64>(),
+            lowest_speed_mps: (speed_mps - mps(ends.slower)).max(0.0),
+            highest_speed_mps: speed_mps + mps(ends.faster),
+        });
+        #[allow(clippy::cast_precision_loss)] // seconds
+        let age_s = estimate.age.as_micros() as f64 * 1e-6;
+        Self { position_m, speed_mps, age_s, bound }
+    }
+}
