@@ -128,8 +128,10 @@ impl Controller {
         let length = target.and_then(|(_, length)| length);
         let stride = driver.over(config.period, length, &config.prediction.model);
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
-        let demand = stride.demand(ego, ahead);
-        demand.min(speed_cap(config.law.max_speed, ego.speed))
+        let demand = stride.demand(ego, ahead).min(speed_cap(config.law.max_speed, ego.speed));
+        // The law's own limit on jerk does not hold where the last demand was outside the law's limits: after emergency
+        // braking, or when taking over from the driver.
+        if config.prediction.model.limits { self.slewed(config, demand) } else { demand }
     }
 
     /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.
