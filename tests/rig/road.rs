@@ -104,6 +104,14 @@ impl Road {
         heard
     }
 
+    /// Lets everything be heard for 2 s while both go on at their speeds, and then engages.
+    pub fn power_up(&mut self) {
+        self.engaged = false;
+        self.run(2.0);
+        self.engaged = true;
+        self.commands.clear();
+    }
+
     /// So many seconds; the last answer.
     pub fn run(&mut self, seconds: f64) -> Heard {
         let mut heard = self.step();
