@@ -107,7 +107,7 @@ pub struct Link {
     pub tolerance: Duration,
     /// Older stamps are refused; at most 10 s.
     pub stale: Duration,
-    /// Stamps further in the future are refused.
+    /// Stamps further in the future are refused; at least `clock_error`, below 1 s.
     pub future: Duration,
     /// Between a sender's stamp and the unit's own clock there is no more error than this while the unit is synchronised:
     /// both clocks' errors and the stamp's rounding.
@@ -208,11 +208,12 @@ pub enum ConfigError {
     Speed,
     /// `a_max` of the free road is below 0.1 m/s² or above the limit on acceleration.
     FreeRoad,
-    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps; or the clock may be off by more
+    /// than what is refused as future.
     Link,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     Body,
-    /// A limit of the envelope is zero, or one is negative.
+    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle.
     Envelope,
 }
 
@@ -233,7 +234,7 @@ impl core::fmt::Display for ConfigError {
             Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
-            Self::Envelope => "a limit of the envelope is zero, or its margin is negative",
+            Self::Envelope => "a limit of the envelope is zero, its margin is negative, or its braking is harder than emergency braking",
         })
     }
 }
@@ -371,8 +372,7 @@ impl Config {
                 && link.stale <= parameters::STALE_MAX
                 && link.future >= Duration::ZERO
                 && link.future < millis(1000)
-                && link.clock_error >= Duration::ZERO
-                && link.clock_error < millis(1000)
+                && (Duration::ZERO..=link.future).contains(&link.clock_error)
                 && [link.slot_reuse, link.holdover, link.ego_timeout, link.sync_timeout].into_iter().all(positive)
                 && link.assumed_delay >= Duration::ZERO
                 && link.assumed_delay <= millis(2000),
@@ -383,6 +383,7 @@ impl Config {
             self.envelope.is_none_or(|e| {
                 e.acceleration > Acceleration::ZERO
                     && e.braking > Acceleration::ZERO
+                    && e.braking <= self.limits.emergency_braking
                     && e.jerk > Jerk::ZERO
                     && e.speed > Speed::ZERO
                     && e.margin >= Distance::ZERO

@@ -34,6 +34,8 @@
 use crate::config::Envelope;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
+use crate::wire::command::ACCELERATION_STEPS;
+use crate::wire::quantity::Quantity;
 
 /// The ego as the gate sees it: its own motion at the uncertain end that is the less safe one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,6 +141,16 @@ pub fn gate(
         .min(distance)
         .min(ceiling(envelope, ego.last, period));
     demand.min(cap).max(floor(envelope, ego.last, period))
+}
+
+/// The command as it will be encoded: the next step down, so that no rounding undoes a cap; up from where that is
+/// braking beyond the limit.
+#[must_use]
+pub fn encodable(envelope: &Envelope, command: Acceleration) -> Acceleration {
+    let nearest = command.to_steps(ACCELERATION_STEPS);
+    let step = |steps| Acceleration::from_steps(steps, ACCELERATION_STEPS);
+    let down = if step(nearest) > command { nearest.saturating_sub(1) } else { nearest };
+    if step(down) < envelope.braking.negated() { step(down.saturating_add(1)) } else { step(down) }
 }
 
 /// Where the ego has to be able to stop behind a vehicle on its own path: behind that one's rear, where its near end would

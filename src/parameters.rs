@@ -47,6 +47,8 @@ pub const POSITION_ROUNDING: Distance = Distance::from_mm(1);
 /// Half a step of a speed on the wire, which is a whole mm/s, and what turning decimals into words loses of a speed and of
 /// its accuracy.
 pub const SPEED_ROUNDING: Speed = Speed::from_mm_per_s(1).plus(Speed::from_bits(2));
+/// Half a step of a length on the wire.
+pub const LENGTH_ROUNDING: Distance = Distance::from_mm(5);
 /// Half a step of an acceleration on the wire.
 pub const ACCELERATION_ROUNDING: Acceleration = Acceleration::from_mm_per_s2(10);
 

@@ -5,16 +5,12 @@ use embedded_can::Frame as CanFrame;
 use heapless::Vec;
 
 use crate::clock::Clock;
-use crate::config::{Config, ConfigError, Envelope};
+use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
-use crate::envelope;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Refusal};
 use crate::held::Held;
-use crate::parameters::{
-    DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
-};
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
@@ -22,6 +18,7 @@ use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
 
+mod caution;
 mod inbox;
 mod outbox;
 mod range;
@@ -204,12 +201,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let course = self.course(now, target);
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
         let speed = ego.map_or(Speed::ZERO, |ego| ego.speed);
-        let acceleration = match &self.config.envelope {
-            Some(limits) if self.mode != Mode::Standby => self.gate(limits, demand, last, ego.as_ref(), &facts, target),
-            _ => demand,
+        let (acceleration, limited) = match &self.config.envelope {
+            Some(limits) if self.mode != Mode::Standby => {
+                self.gate(limits, now, demand, last, ego.as_ref(), &facts, target)
+            }
+            _ => (demand, false),
         };
         self.controller.correct(acceleration);
-        let command = self.outbox.command(&self.config, acceleration, speed, self.mode, acceleration != demand);
+        let command = self.outbox.command(&self.config, acceleration, speed, self.mode, limited);
         let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         let mut frames = Vec::new();
         self.send(now, &command, estimate.as_ref(), last, target, &mut frames);
@@ -242,7 +241,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = match self.ego.as_ref() {
             None => Err(FaultCause::EgoMissing),
             Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
-            Some(_) if self.ranging.disagrees() => Err(FaultCause::RangeDisagrees),
+            Some(_) if self.ranging.disagrees(now, RANGE_TIMEOUT) => Err(FaultCause::RangeDisagrees),
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
@@ -339,63 +338,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let age = now.since(track.newest()?.at);
         let link_on = track.link().is_on(now, &self.config.link);
         Some(Estimate { reading, age, link_on, bound: self.bound(index, now) })
-    }
-
-    /// What is certain of a peer at an instant, now or later.
-    #[must_use]
-    pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
-        let track = self.peers.get(index)?;
-        Some(track.certainty().bound()?.after(at, &track.reach()))
-    }
-
-    /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
-    /// or the near end of what is certain. Never a stale sample.
-    fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
-        if let Some(seen) = self.ranging.ahead(now, RANGE_TIMEOUT) {
-            return Some(seen);
-        }
-        let index = target?;
-        let bound = self.bound(index, now)?;
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        let position = bound.lowest_position().ahead(length.negated());
-        Some(Reading { position, speed: bound.lowest_speed() })
-    }
-
-    /// The last gate, with the ego at the less safe end of its accuracies.
-    fn gate(
-        &self,
-        limits: &Envelope,
-        demand: Acceleration,
-        last: Acceleration,
-        ego: Option<&State>,
-        facts: &Facts,
-        target: Option<usize>,
-    ) -> Acceleration {
-        let sample = self.ego.get().unwrap_or(Sample::UNKNOWN);
-        let state = ego.copied().unwrap_or_default();
-        let moved = state.position.ahead_of(sample.position.ring());
-        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);
-        let faster = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
-        let ego = envelope::Ego {
-            position: sample.position.ahead(moved).ahead(off),
-            speed: state.speed.plus(faster),
-            acceleration: state.acceleration,
-            last,
-            lag: self.config.lag,
-        };
-        let situation = envelope::Situation {
-            is_fresh: facts.ego.is_ok(),
-            stop_before: target.and_then(|index| self.stop_behind(index)),
-        };
-        envelope::gate(limits, demand, &ego, &situation, self.config.period)
-    }
-
-    /// The point behind a peer before which the ego has to be able to stop.
-    fn stop_behind(&self, index: usize) -> Option<crate::units::Position> {
-        let track = self.peers.get(index)?;
-        let stop = track.certainty().bound()?.nearest_stop(&track.reach());
-        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        Some(envelope::stop_behind(stop, length))
     }
 
     /// What is refused, by cause.

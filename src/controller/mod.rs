@@ -133,7 +133,14 @@ impl Controller {
         let length = target.and_then(|(_, length)| length);
         let stride = driver.over(config.period, length, &config.prediction.model);
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
-        stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed))
+        let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
+        if !config.prediction.model.limits {
+            return demand;
+        }
+        // The law's own limit on jerk does not hold where the last demand was outside the law's limits: emergency braking is
+        // let off as fast as it is built up, what the driver left is led over as comfort wants it.
+        let jerk = config.envelope.map_or(config.limits.jerk, |envelope| envelope.jerk.max(config.limits.jerk));
+        self.slewed_by(jerk, config, demand)
     }
 
     /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.
@@ -148,7 +155,11 @@ impl Controller {
     }
 
     fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {
-        let slew = config.limits.jerk.over(config.period.fine_seconds());
+        self.slewed_by(config.limits.jerk, config, wish)
+    }
+
+    fn slewed_by(&self, jerk: Jerk, config: &Config, wish: Acceleration) -> Acceleration {
+        let slew = jerk.over(config.period.fine_seconds());
         wish.limited(self.demand.minus(slew), self.demand.plus(slew))
     }
 }

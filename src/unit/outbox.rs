@@ -19,6 +19,7 @@ use crate::wire::estimate::{Ends, TargetEstimate};
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
+use crate::wire::quantity::Quantity;
 use crate::wire::status::Status;
 use crate::wire::{Frame, Message, Predecessor, Said};
 
@@ -169,12 +170,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
+        let Reading { position, speed } = estimate.reading;
+        let wire = WirePosition::from_position(position);
+        // The ends are told from what the receiver will read, not from what it was rounded from.
+        let told = Reading { position: wire.nearest_to(position), speed: rounded(speed) };
         TargetEstimate {
             tag: self.outbox.tick % 4,
-            position: WirePosition::from_position(estimate.reading.position),
-            speed: estimate.reading.speed,
+            position: wire,
+            speed: told.speed,
             age: estimate.age,
-            ends: estimate.bound.as_ref().map(|bound| ends(&estimate.reading, bound)),
+            ends: estimate.bound.as_ref().map(|bound| ends(&told, bound)),
         }
     }
 
@@ -235,14 +240,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 }
 
-/// The bound as distances from the estimate. An estimate outside its bound widens it.
-fn ends(reading: &Reading, bound: &Bound) -> Ends {
+/// The bound as distances from the estimate. An estimate outside its bound widens it. Decimals are words only to the
+/// nearest bit, which two more bits make up for.
+fn ends(told: &Reading, bound: &Bound) -> Ends {
+    let (way, change) = (Distance::from_bits(2), Speed::from_bits(2));
     Ends {
-        behind: reading.position.ahead_of(bound.lowest_position()).max(Distance::ZERO),
-        ahead: bound.highest_position().ahead_of(reading.position).max(Distance::ZERO),
-        slower: reading.speed.minus(bound.lowest_speed()).max(Speed::ZERO),
-        faster: bound.highest_speed().minus(reading.speed).max(Speed::ZERO),
+        behind: told.position.ahead_of(bound.lowest_position()).plus(way).max(Distance::ZERO),
+        ahead: bound.highest_position().ahead_of(told.position).plus(way).max(Distance::ZERO),
+        slower: told.speed.minus(bound.lowest_speed()).plus(change).max(Speed::ZERO),
+        faster: bound.highest_speed().minus(told.speed).plus(change).max(Speed::ZERO),
     }
+}
+
+/// A speed as the wire can say it.
+fn rounded(speed: Speed) -> Speed {
+    Speed::from_steps(speed.to_steps(500).clamp(0, 32_767), 500)
 }
 
 /// A change of speed over a time, saturating.

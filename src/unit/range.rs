@@ -7,9 +7,12 @@
 
 use super::OnboardUnit;
 use crate::estimator::Reading;
-use crate::estimator::bound::{Bound, Doubt};
+use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
+use crate::parameters::{
+    LENGTH_ROUNDING, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
+};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
@@ -22,7 +25,9 @@ pub(super) struct Sight {
     /// Rear bumper of the vehicle ahead.
     rear: Position,
     speed: Speed,
-    seen: RangeSample,
+    doubt: Doubt,
+    /// Whether it went into what is certain of the target.
+    is_target: bool,
 }
 
 /// So many views in a row that contradict what is certain of the target are a disagreement.
@@ -43,18 +48,29 @@ impl Ranging {
         Self { sight: Held::Nothing, contradictions: 0 }
     }
 
-    /// Whether what the sensor sees and what is heard contradict one another beyond what is uncertain of both.
-    pub(super) const fn disagrees(&self) -> bool {
-        self.contradictions >= DISAGREEMENT
+    /// Whether what the sensor sees and what is heard contradict one another beyond what is uncertain of both. What is no
+    /// longer seen contradicts nothing.
+    pub(super) fn disagrees(&self, now: Instant, timeout: Duration) -> bool {
+        self.contradictions >= DISAGREEMENT && self.newest(now, timeout).is_some()
+    }
+
+    /// What is certain of the rear of a vehicle that the sensor sees, and how fast it can change its speed, as long as it is
+    /// not known to be the target.
+    pub(super) fn stranger(&self, now: Instant, timeout: Duration) -> Option<(Bound, Reach)> {
+        let sight = self.newest(now, timeout).filter(|sight| !sight.is_target)?;
+        Some((Bound::around(sight.at, sight.rear, sight.speed, &sight.doubt, &Reach::WORST), Reach::WORST))
+    }
+
+    fn newest(&self, now: Instant, timeout: Duration) -> Option<Sight> {
+        self.sight.get().filter(|sight| now.since(sight.at) <= timeout)
     }
 
     /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
     /// front one. `None` if it is older than `timeout`.
     pub(super) fn ahead(&self, now: Instant, timeout: Duration) -> Option<Reading> {
-        let sight = self.sight.get()?;
-        let age = now.since(sight.at);
-        (age <= timeout)
-            .then(|| Reading { position: sight.rear.ahead(sight.speed.over(age.seconds())), speed: sight.speed })
+        let sight = self.newest(now, timeout)?;
+        let age = now.since(sight.at).seconds();
+        Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
     }
 }
 
@@ -67,41 +83,57 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if since > self.config.link.ego_timeout || since < Duration::ZERO.minus(self.config.link.ego_timeout) {
             return Err(Refusal::Stale);
         }
-        let own = ego.position.ahead(ego.speed.over(since.seconds()));
-        let rear = own.ahead(seen.distance);
-        let speed = ego.speed.plus(seen.speed_difference).max(Speed::ZERO);
-        let sight = Sight { at, rear, speed, seen };
-        self.ranging.sight.set(sight);
+        // The ego's own motion, brought to the sight's instant.
+        let gained = ego.acceleration.over(since.fine_seconds());
+        let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
+        let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
+        let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
+        let doubt = self.doubt_of_sight(&ego, since, &seen);
+        let mut sight = Sight { at, rear, speed, doubt, is_target: false };
         if let Some(index) = self.target() {
-            self.compare(index, &sight, &ego);
+            sight.is_target = self.compare(index, &sight);
         }
+        self.ranging.sight.set(sight);
         Ok(())
     }
 
-    fn compare(&mut self, index: usize, sight: &Sight, ego: &Sample) {
-        let Some(track) = self.peers.get_index_mut(index) else { return };
-        let Some(length) = track.intent().map(|intent| intent.length) else { return };
+    /// What is uncertain of a sight: the sensor's accuracies, the ego's own, and what the ego may have done between its
+    /// own sample and the sight.
+    fn doubt_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Doubt {
+        let apart = Duration::from_micros(since.as_micros().saturating_abs());
+        let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
+        let faster = swing.over(apart.fine_seconds());
+        let own = ego.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
+        let own_speed = ego.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY);
+        let clock_error = self.config.link.clock_error;
+        let late = ego.speed.plus(own_speed).over(clock_error.seconds());
+        let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
+        Doubt {
+            position: seen.distance_accuracy.plus(own).plus(faster.over(apart.seconds())).plus(late).plus(roundings),
+            speed: seen.speed_accuracy.plus(own_speed).plus(faster).plus(SPEED_ROUNDING).plus(SPEED_ROUNDING),
+            earlier: clock_error,
+            // Its age is rounded up to a whole millisecond.
+            later: Duration::from_millis(1).min(seen.age),
+        }
+    }
+
+    /// Whether the sight is the target's, by all that is certain of that; then it narrows it.
+    fn compare(&mut self, index: usize, sight: &Sight) -> bool {
+        let Some(track) = self.peers.get_index_mut(index) else { return false };
+        let Some(length) = track.intent().map(|intent| intent.length) else { return false };
         let front = sight.rear.ahead(length);
-        let own = ego.position_accuracy.unwrap_or(crate::parameters::UNPUBLISHED_POSITION_ACCURACY);
-        let own_speed = ego.speed_accuracy.unwrap_or(crate::parameters::UNPUBLISHED_SPEED_ACCURACY);
-        let doubt = Doubt {
-            position: sight.seen.distance_accuracy.plus(own).plus(crate::parameters::POSITION_ROUNDING),
-            speed: sight.seen.speed_accuracy.plus(own_speed).plus(crate::parameters::SPEED_ROUNDING),
-            earlier: self.config.link.clock_error,
-            later: self.config.link.clock_error,
-        };
         let reach = track.reach();
         let before = track.certainty().bound().map(|bound| bound.after(sight.at, &reach));
-        if !track.narrow(&Bound::around(sight.at, front, sight.speed, &doubt, &reach)) {
+        if !track.narrow(&Bound::around(sight.at, front, sight.speed, &sight.doubt, &reach)) {
             self.ranging.contradictions = self.ranging.contradictions.saturating_add(1);
-            return;
+            return false;
         }
         self.ranging.contradictions = 0;
-        let Some(newest) = track.newest().copied() else { return };
-        let Some(bound) = before else { return };
-        if let Some(sample) = self.corrected(index, sight, front, &doubt, &bound, &newest) {
+        let (Some(newest), Some(bound)) = (track.newest().copied(), before) else { return true };
+        if let Some(sample) = self.corrected(index, sight, front, &bound, &newest) {
             self.estimator.note_correction(index, sample);
         }
+        true
     }
 
     /// The estimate and the sight, each by its weight, as a sample of the target.
@@ -110,16 +142,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         index: usize,
         sight: &Sight,
         front: Position,
-        doubt: &Doubt,
         bound: &Bound,
         newest: &Sample,
     ) -> Option<Sample> {
         let estimate = self.estimator.read(index, sight.at)?;
         let half = |high: Position, low: Position| Distance::from_bits(high.ahead_of(low).to_bits() / 2);
         let width = half(bound.highest_position(), bound.lowest_position());
-        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(doubt.position.to_bits()));
+        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.doubt.position.to_bits()));
         let spread = bound.highest_speed().minus(bound.lowest_speed()).to_bits() / 2;
-        let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(doubt.speed.to_bits()));
+        let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.doubt.speed.to_bits()));
         if share.saturating_mul(LEAST_SHARE) < whole && speed_share.saturating_mul(LEAST_SHARE) < speed_whole {
             return None;
         }

@@ -69,7 +69,10 @@ impl ModeCode {
     }
 }
 
-const ACCELERATION: Field = Field::signed("Acceleration", 12, 14).steps(500, "m/s2");
+/// Steps of the acceleration in 1 m/s².
+pub const ACCELERATION_STEPS: i64 = 500;
+
+const ACCELERATION: Field = Field::signed("Acceleration", 12, 14).steps(ACCELERATION_STEPS, "m/s2");
 const MODE: Field = ModeCode::field(26);
 const LIMITED: Field = Field::unsigned("Limited", 29, 1).named(&[(0, "as computed"), (1, "changed by the envelope")]);
 const TICK: Field = Field::unsigned("Tick", 30, 6);

@@ -11,13 +11,13 @@ use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Spe
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
-    /// Largest acceleration that its controller demands; 0.02 m/s².
+    /// Largest acceleration that its controller demands; 0.02 m/s², rounded up.
     pub acceleration: Acceleration,
     /// Hardest braking that its controller demands in normal driving; 0.02 m/s².
     pub braking: Acceleration,
     /// Fastest change of the demand in normal driving; 0.05 m/s³.
     pub jerk: Jerk,
-    /// Hardest braking that it is capable of; 0.02 m/s².
+    /// Hardest braking that it is capable of; 0.02 m/s², rounded up, because others' safety rests on its not being more.
     pub emergency_braking: Acceleration,
 }
 
@@ -100,10 +100,10 @@ impl Intent {
         let b = GAIN.with(b, self.gain);
         let b = DAMPING.with(b, self.damping);
         let b = LAG.with(b, self.lag);
-        let c = ACCELERATION.with(begin(2), self.limits.acceleration);
+        let c = ACCELERATION.with_up(begin(2), self.limits.acceleration);
         let c = BRAKING.with(c, self.limits.braking);
         let c = JERK.with(c, self.limits.jerk);
-        let c = EMERGENCY.with(c, self.limits.emergency_braking);
+        let c = EMERGENCY.with_up(c, self.limits.emergency_braking);
         let c = HORIZON.with_raw(c, i64::from(self.horizon_tenths));
         [a, b, c]
     }

@@ -5,6 +5,7 @@
 
 pub mod plant;
 pub mod random;
+pub mod road;
 
 use holdover::health::Refusal;
 use holdover::time::{GnssTime, Instant};

@@ -1,0 +1,90 @@
+//! What the unit is careful by: what is certain of its peers and what its range sensor sees enter; what is still known of the
+//! vehicle ahead without its messages, and the command that the last gate lets through, leave.
+
+use super::{OnboardUnit, RANGE_TIMEOUT};
+use crate::config::Envelope;
+use crate::controller::Facts;
+use crate::envelope;
+use crate::estimator::bound::Bound;
+use crate::estimator::{Reading, State};
+use crate::parameters::{
+    ACCELERATION_ROUNDING, DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
+    UNPUBLISHED_SPEED_ACCURACY,
+};
+use crate::peers::Sample;
+use crate::time::Instant;
+use crate::units::{Acceleration, Position};
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// What is certain of a peer at an instant, now or later.
+    #[must_use]
+    pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
+        let track = self.peers.get(index)?;
+        Some(track.certainty().bound()?.after(at, &track.reach()))
+    }
+
+    /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
+    /// or the near end of what is certain. Never a stale sample.
+    pub(super) fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
+        if let Some(seen) = self.ranging.ahead(now, RANGE_TIMEOUT) {
+            return Some(seen);
+        }
+        let index = target?;
+        let bound = self.bound(index, now)?;
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        let position = bound.lowest_position().ahead(length.negated());
+        // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+        let ego = self.ego.get()?.position;
+        let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
+        Some(Reading { position: ego.ahead(gap), speed: bound.lowest_speed() })
+    }
+
+    /// The last gate, with the ego at the less safe end of its accuracies: the command as it is encoded, and whether the
+    /// gate changed the demand.
+    #[allow(clippy::too_many_arguments)] // all of them are of one tick
+    pub(super) fn gate(
+        &self,
+        limits: &Envelope,
+        now: Instant,
+        demand: Acceleration,
+        last: Acceleration,
+        ego: Option<&State>,
+        facts: &Facts,
+        target: Option<usize>,
+    ) -> (Acceleration, bool) {
+        let sample = self.ego.get().unwrap_or(Sample::UNKNOWN);
+        let state = ego.copied().unwrap_or_default();
+        let moved = state.position.ahead_of(sample.position.ring());
+        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);
+        let faster = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
+        let late = sample.speed.plus(faster).over(self.config.link.clock_error.seconds());
+        let ego = envelope::Ego {
+            position: sample.position.ahead(moved).ahead(off).ahead(late),
+            speed: state.speed.plus(faster),
+            acceleration: state.acceleration.plus(ACCELERATION_ROUNDING),
+            last,
+            lag: self.config.lag,
+        };
+        let stop_before = match (target.and_then(|index| self.stop_behind(index)), self.stop_behind_seen(now)) {
+            (Some(heard), Some(seen)) => Some(heard.min(seen)),
+            (heard, seen) => heard.or(seen),
+        };
+        let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
+        let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
+        (envelope::encodable(limits, command), command != demand)
+    }
+
+    /// The point behind a peer before which the ego has to be able to stop.
+    fn stop_behind(&self, index: usize) -> Option<Position> {
+        let track = self.peers.get(index)?;
+        let stop = track.certainty().bound()?.nearest_stop(&track.reach());
+        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        Some(envelope::stop_behind(stop, length))
+    }
+
+    /// The same behind whatever the range sensor sees that is not known to be the target.
+    fn stop_behind_seen(&self, now: Instant) -> Option<Position> {
+        let (rear, reach) = self.ranging.stranger(now, RANGE_TIMEOUT)?;
+        Some(rear.nearest_stop(&reach))
+    }
+}
