@@ -188,7 +188,8 @@ fn is_told(rig: &mut Rig, now: i64, truth: Body, seed: u64) -> bool {
     };
     let from = WirePosition::from_mm((truth.position * 1e3).round() as i64);
     let position = (truth.position * 1e3).round() / 1e3 - f64::from(from.mm_ahead_of(estimate.position)) / 1e3;
-    let decimal = |word: i32, fraction: u32, step: f64| (f64::from(word) / 2f64.powi(fraction as i32) / step).round() * step;
+    let decimal =
+        |word: i32, fraction: u32, step: f64| (f64::from(word) / 2f64.powi(fraction as i32) / step).round() * step;
     let (behind, ahead) = (decimal(ends.behind.to_bits(), 20, 0.02), decimal(ends.ahead.to_bits(), 20, 0.02));
     let (slower, faster) = (decimal(ends.slower.to_bits(), 23, 0.2), decimal(ends.faster.to_bits(), 23, 0.2));
     let speed = decimal(estimate.speed.to_bits(), 23, 0.002);
