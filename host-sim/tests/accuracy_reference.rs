@@ -81,8 +81,9 @@ prop_compose! {
 }
 
 prop_compose! {
+    /// Accelerations up to ±12 m/s²: beyond that nobody is believed.
     fn motion()(
-        speed in steps(0..=30_000, 500), acceleration in steps(-1023..=1023, 50), demand in steps(-1023..=1023, 50),
+        speed in steps(0..=30_000, 500), acceleration in steps(-600..=600, 50), demand in steps(-1023..=1023, 50),
     ) -> Motion {
         Motion {
             tag: 0, position: WirePosition::default(), speed, acceleration, demand, stamp: GnssTime::default().stamp(),

@@ -150,8 +150,8 @@ impl Controller {
         let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill);
         let wish = law.wish(ego, ahead.position.ring(), ahead.speed);
         let limits = config.limits;
-        let inside = wish.limited(limits.braking.negated(), limits.acceleration);
-        self.slewed(config, inside.min(speed_cap(config.law.max_speed, ego.speed)))
+        let capped = wish.min(speed_cap(config.law.max_speed, ego.speed));
+        self.slewed(config, capped.limited(limits.braking.negated(), limits.acceleration))
     }
 
     fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {
@@ -177,3 +177,6 @@ fn speed_cap(limit: Speed, speed: Speed) -> Acceleration {
     let left = i64::from(limit.minus(speed).to_bits());
     Acceleration::from_bits(crate::fixed::saturate_i32(left.saturating_mul(4).saturating_mul(SPEED_LIMIT_TIME)))
 }
+
+#[cfg(test)]
+mod tests;

@@ -259,3 +259,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests;
