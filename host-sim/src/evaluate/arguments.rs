@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The arguments of `evaluate`.
 #[derive(Clone, Debug, Args)]
 pub struct EvaluateArguments {
-    /// Recorded drive: t_s,position_m,speed_mps[,acceleration_mps2]; the errors of several are pooled
+    /// Recorded drive: t_s,position_m,speed_mps and, if known, acceleration_mps2; several are pooled
     #[arg(long, value_name = "FILE.csv", required = true, num_args = 1..)]
     pub motion: Vec<PathBuf>,
 
@@ -69,6 +69,12 @@ In silences (--outage):
   After each of them the unit is cloned, and the clone hears nothing more: its
   error counts at each length of silence after that last message, as long as
   the recording lasts. The overall figures are over all lengths together.
+
+With the vehicle ahead (--predecessor):
+  It is heard over the same link. The target says that it follows it, by the
+  law that units are configured with, while its acceleration is what that law
+  demands (within 0.5 m/s2); while it is not, it says that it follows nobody,
+  as any vehicle does that a driver drives.
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

@@ -74,6 +74,7 @@ pub fn evaluate(
         }
     }
     fall_silent(&mut starts, motion, timeline, lengths_s, end_us, &mut outcome);
+    outcome.refusals = listener.refusals();
     Ok(outcome)
 }
 

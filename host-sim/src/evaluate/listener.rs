@@ -8,6 +8,7 @@
 //! long ago. What was said then is too old to be used.
 
 use holdover::estimator::Reading;
+use holdover::health::Refusal;
 use holdover::time::{Duration, Instant};
 use holdover::units::Position;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -57,8 +58,11 @@ pub struct Listener {
     relay: Relay,
     observer: Observer,
     synced: Option<i64>,
+    driven: Option<i64>,
     sequence: u8,
     tag: u8,
+    /// Refusals of the warm-up, by cause.
+    expected: Vec<u64>,
 }
 
 impl Listener {
@@ -78,12 +82,15 @@ impl Listener {
             relay: Relay::new(config.base_id),
             observer: Observer::new(BaseId::DEFAULT),
             synced: None,
+            driven: None,
             sequence: 0,
             tag: 0,
+            expected: Vec::new(),
         };
         for before_us in [1_500_000, 1_000_000] {
             listener.warm_up(-before_us, senders);
         }
+        listener.expected = listener.counts().collect();
         Ok(listener)
     }
 
@@ -126,6 +133,17 @@ impl Listener {
         self.ears.beliefs(at_us, near)
     }
 
+    /// What the unit refused, by cause, in the order of [`Refusal::ALL`].
+    #[must_use]
+    pub fn refusals(&self) -> Vec<(Refusal, u64)> {
+        let since = self.counts().zip(&self.expected).map(|(count, expected)| count - expected);
+        Refusal::ALL.iter().copied().zip(since).collect()
+    }
+
+    fn counts(&self) -> impl Iterator<Item = u64> + '_ {
+        Refusal::ALL.iter().map(|cause| u64::from(self.ears.unit.health().of(*cause)))
+    }
+
     /// The unit and the baselines as they are now, to go on without news.
     #[must_use]
     pub fn deafened(&self) -> Deaf {
@@ -149,8 +167,11 @@ impl Listener {
         self.say(at_us, &Message::FollowUp(FollowUp { sequence: self.sequence, micros }));
     }
 
-    /// The ego's own motion.
+    /// The ego's own motion; once for messages that come together.
     fn drive(&mut self, at_us: i64, position: Position) {
+        if self.driven.replace(at_us).is_some_and(|driven| at_us - driven < 1_000) {
+            return;
+        }
         self.tag = (self.tag + 1) % 4;
         let motion = Motion {
             tag: self.tag,

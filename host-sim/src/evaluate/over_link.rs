@@ -60,6 +60,7 @@ pub fn evaluate(
             told_us = at_us;
         }
     }
+    outcome.refusals = listener.refusals();
     Ok(outcome)
 }
 

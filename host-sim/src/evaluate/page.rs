@@ -2,7 +2,7 @@
 
 use super::figures::{Figures, Results};
 use super::options::{EvaluateOptions, Impairment, Recording};
-use super::sample::{NAMES, Outcome, Sample};
+use super::sample::{NAMES, Outcome, Sample, refusals};
 use crate::channel::LinkRecord;
 use crate::report::EvaluateReport;
 use crate::report::evaluate::{Classes, Drive, Method};
@@ -43,7 +43,7 @@ pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results
     };
     EvaluateReport {
         title: title(options),
-        facts: facts(options, results),
+        facts: facts(options, outcomes, results),
         command: command(options),
         classes,
         class_names: super::table::heads(&results.ours),
@@ -119,7 +119,7 @@ fn title(options: &EvaluateOptions) -> String {
     }
 }
 
-fn facts(options: &EvaluateOptions, results: &Results) -> Vec<(String, String)> {
+fn facts(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) -> Vec<(String, String)> {
     use crate::report::markup::count;
     let mut facts: Vec<(String, String)> = Vec::new();
     for recording in &options.recordings {
@@ -137,6 +137,7 @@ fn facts(options: &EvaluateOptions, results: &Results) -> Vec<(String, String)> 
     facts.push(("comparisons".into(), count(results.ticks as u64)));
     facts.push(("messages sent".into(), count(results.messages_sent as u64)));
     facts.push(("messages delivered".into(), count(results.messages_delivered as u64)));
+    facts.extend(refusals(outcomes).into_iter().map(|(cause, times)| (format!("refused: {cause}"), count(times))));
     facts
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A vehicle whose predecessor is recorded too publishes an intent. Like any vehicle it says whom it follows only while it
 //! drives by its law, and that is decided by what it did: while its acceleration is the law's demand, to within
-//! [`SAME_LAW_MPS2`], it names its predecessor; otherwise it names nobody and promises no limits but those of physics. A
-//! receiver that believed in a law which nobody drives by would be metres off.
+//! 0.5 m/s², it names its predecessor; otherwise it names nobody and promises no limits but those of physics. A receiver
+//! that believed in a law which nobody drives by would be metres off.
 
 use holdover::Config;
 use holdover::units::{Acceleration, Jerk};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::figures::{Figures, Results, figures};
 use super::options::EvaluateOptions;
-use super::sample::Outcome;
+use super::sample::{Outcome, refusals};
 use crate::report::markup::count;
 
 /// The tables.
@@ -22,6 +22,11 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
         ),
         Some(_) => writeln!(text, "{} comparisons, {} messages", count(ticks as u64), count(sent as u64)),
     };
+    let refusals: Vec<String> =
+        refusals(outcomes).iter().map(|(cause, times)| format!("{cause} {}", count(*times))).collect();
+    if !refusals.is_empty() {
+        let _ = writeln!(text, "refused by the unit: {}", refusals.join(", "));
+    }
     let _ = writeln!(text, "\n{:<23}{:>33}{:>14}", "", "position error, m", "speed, m/s");
     let _ = writeln!(text, "{:<23}{:>11}{:>11}{:>11}{:>14}", "", "rms", "99 %", "maximum", "rms");
     for (name, figures) in results.methods() {

@@ -86,6 +86,19 @@ fn the_table_names_every_method_and_class() {
 }
 
 #[test]
+fn what_the_unit_refused_is_named() {
+    let bench = Bench::new();
+    bench.drive("m.csv", (0..=20).map(|n| (n as f64 / 5.0, 2.0 * n as f64, 10.0)));
+    bench.link("once.csv", (0..=20).map(|n| (n as f64 / 5.0, Some(0.0))));
+    bench.link("twice.csv", (0..=40).map(|n| (n as f64 / 10.0, Some(0.0))));
+    let text = |channel: &str| {
+        String::from_utf8(bench.run(&format!("--motion m.csv --channel {channel} --no-report")).stdout).unwrap()
+    };
+    assert!(!text("once.csv").contains("refused"));
+    assert!(text("twice.csv").contains("refused by the unit: duplicate 20\n"));
+}
+
+#[test]
 fn help_has_examples_and_says_what_counts() {
     let help = String::from_utf8(bench().run("--help").stdout).unwrap();
     for words in ["Examples:", "--outage 0.5,1,2,4", "--predecessor", "Exit codes:"] {

@@ -1,13 +1,17 @@
 //! The figures of an evaluation's report: series enter, figures with their captions leave onto the page.
 
 use super::{Classes, Drive, EvaluateReport, Method, spoken};
+use crate::metrics::max_abs;
 use crate::report::{
     page::Page,
-    plot::{Axis, Bars, Chart, Guide, Interval, Layer, Series, Tone, cumulative},
+    plot::{Axis, Bars, Chart, Figure, Guide, Interval, Layer, Series, Tone, cumulative},
 };
 
 /// An age of 0 has no place on a logarithmic axis.
 const LEAST_AGE_S: f64 = 1e-3;
+
+/// Ours is shown once more, without the methods whose errors are this many times larger.
+const ENLARGED_FROM: f64 = 4.0;
 
 impl EvaluateReport {
     pub(super) fn draw_classes(&self, page: &mut Page) {
@@ -42,12 +46,21 @@ impl EvaluateReport {
             Layer::line(Series { name: spoken(&series.name), ..series.clone() }, self.tone(&series.name))
         };
         errors.layers = drive.errors.iter().rev().map(line).collect();
+        let mut enlarged = chart("The same, enlarged", Axis::linear("enlarged", "m").including(0.0), Vec::new());
+        enlarged.height = 150.0;
+        let small = drive.errors.iter().rev().filter(|series| !dwarfs(series, &drive.errors));
+        enlarged.layers = small.map(line).collect();
         let shades =
             drive.silences.iter().map(|silence| Interval { label: String::new(), ..silence.clone() }).collect();
         let mut speed = chart("True speed", Axis::linear("true speed", "m/s").including(0.0), shades);
         speed.height = 110.0;
         speed.layers = vec![Layer::line(Series { name: String::new(), ..drive.speed.clone() }, Tone::Idle)];
-        page.figure(&title, &caption, &[&errors, &speed]);
+        let panels: &[&dyn Figure] = if enlarged.layers.len() < errors.layers.len() {
+            &[&errors, &enlarged, &speed]
+        } else {
+            &[&errors, &speed]
+        };
+        page.figure(&title, &caption, panels);
     }
 
     pub(super) fn draw_distribution(&self, page: &mut Page) {
@@ -91,6 +104,12 @@ impl EvaluateReport {
         age.layers = vec![Layer::line(Series::new("", ages), Tone::Calm)];
         page.figure(title, &caption, &[&delays, &age]);
     }
+}
+
+/// Whether the first of the series, which is ours, cannot be read on the axis that this one needs.
+fn dwarfs(series: &Series, all: &[Series]) -> bool {
+    let largest = |series: &Series| max_abs(&series.values()).unwrap_or(0.0);
+    all.first().is_some_and(|ours| largest(series) > ENLARGED_FROM * largest(ours))
 }
 
 /// Whole decades around the positive ones of `values`, five of them at the most, ending with the largest.
