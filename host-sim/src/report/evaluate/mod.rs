@@ -149,6 +149,8 @@ impl EvaluateReport {
     fn tone(&self, name: &str) -> Tone {
         match (name, self.methods.iter().position(|method| method.name == name)) {
             ("paper", _) => Tone::Paper,
+            // The fifth of the further colours is a blue, too near to ours.
+            (_, Some(5)) => Tone::Other(6),
             (_, Some(0)) => Tone::Ours,
             (_, Some(index)) => Tone::Other(index - 1),
             (_, None) => Tone::Idle,
