@@ -1,0 +1,92 @@
+//! The truth never leaves a bound that a range sensor narrows, whatever the errors within the accuracies of the sensor and
+//! of the ego's own motion, while both vehicles accelerate and brake; and no such view is taken for a disagreement.
+
+mod rig;
+
+use holdover::controller::{FaultCause, Mode};
+use holdover::time::Duration;
+use holdover::wire::range_sensor::RangeSample;
+use holdover::wire::{Message, Said};
+use rig::plant::Body;
+use rig::random::Random;
+use rig::road::Road;
+use rig::{EGO, TARGET, instant, m_of, metres, mps, mps_of};
+
+/// The ego as it was up to 63 ms ago.
+fn at(past: &[(i64, Body, Body)], at: i64) -> (Body, Body) {
+    let after = past.iter().rposition(|(when, ..)| *when <= at).unwrap();
+    let (when, ego, target) = past[after];
+    let part = (at - when) as f64 / 1e4;
+    let next = past.get(after + 1).copied().unwrap_or(past[after]);
+    let mixed = |a: Body, b: Body| Body {
+        position: a.position + (b.position - a.position) * part,
+        speed: a.speed + (b.speed - a.speed) * part,
+    };
+    (mixed(ego, next.1), mixed(target, next.2))
+}
+
+fn run(seed: u64) -> u64 {
+    let mut random = Random::new(seed);
+    let (near, slow) = (0.05 * random.below(12) as f64, 0.1 * random.below(8) as f64);
+    let (own, own_speed) = (0.05 * random.below(20) as f64, 0.02 * random.below(20) as f64);
+    let mut road = Road::new(&rig::config(), 20.0, 60.0);
+    road.senses = rig::road::Senses { ego: false, ..road.senses };
+    road.engaged = false;
+    let (mut past, mut own_a, mut checked) = (Vec::new(), 0.0, 0);
+    for tick in 0..1_500 {
+        if tick % 60 == 0 {
+            own_a = random.extreme(-7.9, 2.4);
+            road.acceleration = random.extreme(-7.9, 2.4);
+        }
+        road.senses.v2x = tick < 60 || (tick / 300) % 2 == 1;
+        let now = road.now;
+        let ego = Body { position: road.ego.position, speed: road.ego.speed };
+        past.push((now, ego, road.target));
+        let (off, faster) = (random.extreme(-own, own), random.extreme(-own_speed, own_speed));
+        let standing = if ego.speed == 0.0 && own_a < 0.0 { 0.0 } else { own_a };
+        let motion =
+            road.rig.motion(EGO, now, ego.position + off, ego.speed + faster, standing, 0.0, Some((own, own_speed)));
+        let _ = road.rig.put(now, &Message::Ego(Said::Motion(motion)));
+        if tick % 7 == 3 {
+            let age = random.below(64) as i64;
+            // The age is rounded up, and the frame takes up to 300 µs.
+            let taken = now - (age * 1000 - if age > 0 { random.below(1000) as i64 } else { 0 }) - random.below(300) as i64;
+            let (ego, target) = at(&past, taken.max(past[0].0));
+            let (error, drift) = (random.extreme(-near, near), random.extreme(-slow, slow));
+            let sample = RangeSample {
+                distance: metres((target.position - rig::LENGTH - ego.position + error).max(0.0)),
+                speed_difference: mps(target.speed - ego.speed + drift),
+                distance_accuracy: metres(near),
+                speed_accuracy: mps(slow),
+                age: Duration::from_millis(age),
+            };
+            let _ = road.rig.put(now, &Message::Range(sample));
+        }
+        let heard = road.step();
+        let named = matches!(heard.answer.mode, Mode::Fault { cause: FaultCause::RangeDisagrees, .. });
+        assert!(!named, "seed {seed} at {tick}");
+        road.ego = rig::plant::Plant { acceleration: own_a, ..road.ego };
+        let moved = ego.after(own_a, 0.01);
+        (road.ego.position, road.ego.speed) = (moved.position, moved.speed);
+        let Some(bound) = road.rig.unit.bound(2, instant(road.now)) else { continue };
+        let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
+        let truth = road.target;
+        assert!((low..=high).contains(&truth.position), "seed {seed} at {tick}: {} in {low}..{high}", truth.position);
+        let (low, high) = (mps_of(bound.lowest_speed()), mps_of(bound.highest_speed()));
+        assert!((low..=high).contains(&truth.speed), "seed {seed} at {tick}: {} in {low}..{high}", truth.speed);
+        checked += 1;
+        // Never further ahead than the sensor can say, nor behind the ego.
+        if road.gap() < 5.0 || road.gap() > 200.0 {
+            road.target.position = road.ego.position + 60.0 + rig::LENGTH;
+            return checked;
+        }
+    }
+    assert!(road.rig.unit.peers().get(2).unwrap().station() == Some(TARGET));
+    checked
+}
+
+#[test]
+fn the_truth_stays_inside_a_bound_that_a_sensor_narrows() {
+    let checked: u64 = (0..400).map(run).sum();
+    assert!(checked > 100_000, "{checked}");
+}
