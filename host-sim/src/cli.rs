@@ -5,6 +5,7 @@ mod evaluate;
 
 pub use evaluate::EvaluateArguments;
 
+use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -35,6 +36,9 @@ pub enum Command {
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
     #[command(after_help = evaluate::AFTER_HELP)]
     Evaluate(EvaluateArguments),
+    /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
+    #[command(after_help = price::arguments::AFTER_HELP)]
+    Price(PriceArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),
@@ -106,6 +110,7 @@ Examples:
   holdover-sim run city.toml --out city  your scenario, its report in city/
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
+  holdover-sim --envelope                with every unit's last gate engaged
   holdover-sim evaluate --help           measure the estimate on recordings
 
 Output:

@@ -102,9 +102,8 @@ pub fn gaps(scenario: &Scenario, trace: &Trace) -> Vec<Vec<(f64, f64)>> {
 /// The speed of each vehicle over time.
 #[must_use]
 pub fn speeds(trace: &Trace) -> Vec<Vec<(f64, f64)>> {
-    let speeds = |ticks: &Vec<Tick>| {
-        trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.speed_mps)).collect()
-    };
+    let speeds =
+        |ticks: &Vec<Tick>| trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.speed_mps)).collect();
     trace.vehicles.iter().map(speeds).collect()
 }
 

@@ -4,13 +4,14 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{evaluate, output, replay, run};
+use holdover_sim::{evaluate, output, price, replay, run};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let verdict = Options::read(Cli::parse()).and_then(|options| match options {
         Options::Run(options) => run::run(&options),
         Options::Evaluate(options) => evaluate::evaluate(&options),
+        Options::Price(options) => price::price(&options),
         Options::Replay(options) => replay::replay(&options),
     });
     match verdict {

@@ -7,6 +7,7 @@ pub use evaluate::{EvaluateOptions, Impairment, Recording};
 
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
+use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ pub enum Options {
     Run(RunOptions),
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
+    /// Measure what the envelope costs.
+    Price(PriceOptions),
     /// Replay a log.
     Replay(ReplayOptions),
 }
@@ -59,6 +62,7 @@ impl Options {
         match cli.command {
             Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }

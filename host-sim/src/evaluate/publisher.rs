@@ -110,7 +110,8 @@ impl<'a> Publisher<'a> {
             station: self.station,
         };
         let intent = self.follows.map(|(ahead, intent)| {
-            let is_by_law = (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
+            let is_by_law =
+                (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
             let predecessor = if is_by_law { intent.predecessor } else { Predecessor::Unknown };
             Intent { predecessor, ..intent }
         });

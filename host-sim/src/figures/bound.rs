@@ -33,8 +33,7 @@ impl BoundFigures {
     #[must_use]
     pub fn of(scenario: &Scenario, trace: &Trace) -> Self {
         let widths: Vec<f64> = bounds(trace).filter_map(|(_, bound)| Some(bound?.width_m())).collect();
-        let mut figures =
-            Self { violations: 0, median_width_m: percentile_abs(&widths, 50.0), beyond_limits: 0 };
+        let mut figures = Self { violations: 0, median_width_m: percentile_abs(&widths, 50.0), beyond_limits: 0 };
         for target in 0..trace.vehicles.len() - 1 {
             let outside = outside(trace, target);
             let excused = if target == 0 { impossible(scenario, trace, &outside) } else { 0 };

@@ -51,9 +51,7 @@ pub fn range_sensor(document: &Document, section: &mut Section, follows: bool) -
             let cause = "the leader (vehicle 0) has a `range_sensor`, and nobody is ahead of it";
             Err(document.error_at(fitted.line, cause, "remove it"))
         }
-        Some(fitted) if fitted.value => {
-            Ok(Some(RangeSensor { distance_m: distance.value, speed_mps: speed.value }))
-        }
+        Some(fitted) if fitted.value => Ok(Some(RangeSensor { distance_m: distance.value, speed_mps: speed.value })),
         _ => match distance.line.or(speed.line) {
             None => Ok(None),
             line => {
