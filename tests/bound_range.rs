@@ -50,7 +50,8 @@ fn run(seed: u64) -> u64 {
         if tick % 7 == 3 {
             let age = random.below(64) as i64;
             // The age is rounded up, and the frame takes up to 300 µs.
-            let taken = now - (age * 1000 - if age > 0 { random.below(1000) as i64 } else { 0 }) - random.below(300) as i64;
+            let taken =
+                now - (age * 1000 - if age > 0 { random.below(1000) as i64 } else { 0 }) - random.below(300) as i64;
             let (ego, target) = at(&past, taken.max(past[0].0));
             let (error, drift) = (random.extreme(-near, near), random.extreme(-slow, slow));
             let sample = RangeSample {

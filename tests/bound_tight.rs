@@ -38,7 +38,8 @@ fn ratios(seed: u64) -> (Vec<f64>, Vec<f64>) {
         for tenth in 0..10 {
             let at = second * 2_000_000 + tenth * 100_000;
             rig.synchronise(at, 0);
-            let said = (body.position + random.extreme(-error.0, error.0), body.speed + random.extreme(-error.1, error.1));
+            let said =
+                (body.position + random.extreme(-error.0, error.0), body.speed + random.extreme(-error.1, error.1));
             let motion = rig.motion(TARGET, at, said.0, said.1, 0.0, 0.0, Some(error));
             let _ = rig.target(at, Said::Motion(motion));
             if tenth == 9 && second > 0 {

@@ -164,7 +164,10 @@ fn braking_harder_than_it_says_it_can_is_noticed_when_it_has_shown_in_speed() {
     for _ in 0..6 {
         verdicts.push(target.moves(-11.0, 0.1, Lie::default()));
     }
-    assert!(verdicts.iter().any(|verdict| matches!(verdict, Err(Refusal::Implausible | Refusal::Jump))), "{verdicts:?}");
+    assert!(
+        verdicts.iter().any(|verdict| matches!(verdict, Err(Refusal::Implausible | Refusal::Jump))),
+        "{verdicts:?}"
+    );
 }
 
 #[test]

@@ -155,9 +155,12 @@ fn walk(seed: u64, seen: &mut BTreeSet<(&'static str, &'static str)>) {
                 3 => (road.senses.range, road.wrong) = (random.happens(0.7), random.extreme(0.0, 60.0)),
                 _ => {
                     let whom = [TARGET, TARGET, TARGET, StationHash(77)][random.below(4) as usize];
-                    road.predecessor =
-                        [Predecessor::Station(whom), Predecessor::Station(whom), Predecessor::None, Predecessor::Unknown]
-                            [random.below(4) as usize];
+                    road.predecessor = [
+                        Predecessor::Station(whom),
+                        Predecessor::Station(whom),
+                        Predecessor::None,
+                        Predecessor::Unknown,
+                    ][random.below(4) as usize];
                 }
             }
         }
@@ -166,7 +169,8 @@ fn walk(seed: u64, seen: &mut BTreeSet<(&'static str, &'static str)>) {
             let mode = heard.answer.mode;
             let now = name(mode.code(), mode.detail());
             assert_eq!(heard.command.mode, mode.code());
-            let told = heard.all.iter().find_map(|m| if let Message::Status(s) = m { Some((s.mode, s.detail)) } else { None });
+            let told =
+                heard.all.iter().find_map(|m| if let Message::Status(s) = m { Some((s.mode, s.detail)) } else { None });
             assert!(told.is_none_or(|told| told == (mode.code(), mode.detail())), "{told:?} {mode:?}");
             seen.insert((before, now));
             before = now;

@@ -137,7 +137,12 @@ fn in_fallback_the_vehicle_goes_on_behind_what_it_sees() {
     let heard = road.run(30.0);
     assert_eq!(heard.command.mode, ModeCode::Fallback);
     // The time gap of the cruise control, 1.8 s, and the standstill distance.
-    assert!((road.ego.speed - 20.0).abs() < 0.2 && (road.gap() - 38.0).abs() < 1.0, "{} {}", road.ego.speed, road.gap());
+    assert!(
+        (road.ego.speed - 20.0).abs() < 0.2 && (road.gap() - 38.0).abs() < 1.0,
+        "{} {}",
+        road.ego.speed,
+        road.gap()
+    );
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! decided in [`crate::options`].
 
 use crate::evaluate::{self, arguments::EvaluateArguments};
+use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use crate::sweep::{self, arguments::SweepArguments};
 use clap::{Args, Parser, Subcommand};
@@ -36,6 +37,9 @@ pub enum Command {
     /// Run a scenario at several prediction steps with many seeds, on all cores
     #[command(after_help = sweep::arguments::AFTER_HELP)]
     Sweep(SweepArguments),
+    /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
+    #[command(after_help = price::arguments::AFTER_HELP)]
+    Price(PriceArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),
@@ -107,6 +111,7 @@ Examples:
   holdover-sim run city.toml --out city  your scenario, its report in city/
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
+  holdover-sim --envelope                with every unit's last gate engaged
   holdover-sim evaluate --help           measure the estimate on recordings
 
 Output:

@@ -16,6 +16,7 @@ pub mod observer;
 pub mod options;
 pub mod output;
 pub mod plant;
+pub mod price;
 pub mod recording;
 pub mod reference;
 pub mod replay;

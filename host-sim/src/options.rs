@@ -4,6 +4,7 @@
 use crate::cli::{Cli, Command, RunArguments};
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
+use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
 use crate::sweep::options::SweepOptions;
@@ -18,6 +19,8 @@ pub enum Options {
     Evaluate(EvaluateOptions),
     /// Run a scenario at several steps with many seeds.
     Sweep(SweepOptions),
+    /// Measure what the envelope costs.
+    Price(PriceOptions),
     /// Replay a log.
     Replay(ReplayOptions),
 }
@@ -60,6 +63,7 @@ impl Options {
             Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
+            Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }

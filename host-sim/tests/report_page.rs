@@ -106,6 +106,7 @@ fn five_vehicles(seconds: u32) -> RunReport {
         modes: (0..5).map(modes).collect(),
         refusals: vec![("stale stamp".into(), 3), ("wrong CRC".into(), 0), ("duplicate".into(), 1204)],
         notes: vec!["Errors count from 1 s on.".into()],
+        ..RunReport::default()
     }
 }
 

@@ -2,12 +2,13 @@
 
 use crate::channel::{AppliesTo, Impairment, Link};
 use crate::figures::{Summary, errors, gaps, ours, papers, speeds};
+use crate::metrics::SETTLED_FROM_S;
 use crate::options::RunOptions;
 use crate::report::RunReport;
 use crate::report::plot::{Interval, Series};
-use crate::report::run::{Limit, ModeTrack, SummaryRow, Verdict};
+use crate::report::run::{BoundSample, Drive, Limit, ModeTrack, SummaryRow, Verdict};
 use crate::scenario::Scenario;
-use crate::world::Trace;
+use crate::world::{Tick, Trace};
 
 use super::files::mode_name;
 
@@ -33,6 +34,8 @@ pub fn report(options: &RunOptions, trace: &Trace, summary: &Summary, failures: 
         ego: trace.measured.vehicle,
         error_ours: Series::new("holdover", errors(trace, ours(trace))),
         error_paper: Series::new("literal paper", errors(trace, papers(trace))),
+        bound: bound(trace),
+        drive: drive(scenario, trace, &names),
         silences,
         channel: channel(trace),
         speeds: speeds(trace).into_iter().zip(&names).map(|(speed, name)| Series::new(name.clone(), speed)).collect(),
@@ -43,7 +46,7 @@ pub fn report(options: &RunOptions, trace: &Trace, summary: &Summary, failures: 
             .collect(),
         modes: modes(trace, &names),
         refusals: trace.refusals.iter().map(|(cause, count)| (cause.name().to_owned(), *count)).collect(),
-        notes: notes(trace),
+        notes: notes(trace, summary),
     }
 }
 
@@ -100,6 +103,8 @@ fn facts(scenario: &Scenario) -> Vec<(String, String)> {
         }
     };
     facts.push(("impaired".into(), applies_to));
+    let envelope = if scenario.envelope.engaged { "engaged" } else { "not engaged" };
+    facts.push(("envelope".into(), envelope.into()));
     facts
 }
 
@@ -108,7 +113,10 @@ fn reasons(summary: &Summary, failures: &[String]) -> Vec<String> {
         return failures.to_vec();
     }
     let error = summary.ours.max_position_error_m.map_or("-".into(), |error| format!("{error:.3} m"));
-    vec![format!("No collision, and nobody stopped without need; the estimate was never off by more than {error}.")]
+    let stops = if summary.full_stops == 0 { ", and nobody had to stop" } else { "" };
+    vec![format!(
+        "No collision{stops}; the estimate was never off by more than {error}, the truth never outside its bound."
+    )]
 }
 
 fn rows(summary: &Summary) -> Vec<SummaryRow> {
@@ -122,6 +130,7 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
     let (ours, paper) = (summary.ours, summary.paper);
     #[allow(clippy::cast_precision_loss)] // small counts
     let count = |count: usize| Some(count as f64);
+    let limited = summary.envelope.engaged.then_some(100.0 * summary.envelope.limited_share);
     vec![
         row("Largest position error", ours.max_position_error_m, paper.max_position_error_m, "m", None),
         row("99th percentile", ours.p99_position_error_m, paper.p99_position_error_m, "m", None),
@@ -131,6 +140,15 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
         row("Lowest speed", summary.min_speed_mps, None, "m/s", None),
         row("Full stops", count(summary.full_stops), None, "", None),
         row("Collisions", count(summary.collisions), None, "", Some(Limit::AtMost(0.0))),
+        row("Width of the bound, median", summary.bound.median_width_m, None, "m", None),
+        row(
+            "Ticks with a target outside its bound",
+            count(summary.bound.violations),
+            None,
+            "",
+            Some(Limit::AtMost(0.0)),
+        ),
+        row("Time limited by the envelope", limited, None, "%", None),
     ]
 }
 
@@ -164,7 +182,44 @@ fn modes(trace: &Trace, names: &[String]) -> Vec<ModeTrack> {
         .collect()
 }
 
-fn notes(trace: &Trace) -> Vec<String> {
+/// The bound of the measured vehicle as it stands on the bus, seen from the estimate.
+fn bound(trace: &Trace) -> Vec<BoundSample> {
+    let (measured, by) = (&trace.vehicles[trace.measured.vehicle], &trace.vehicles[trace.measured.by]);
+    let ticks = trace.times_s.iter().zip(measured.iter().zip(by));
+    let sample = |(at_s, (truth, seen)): (&f64, (&Tick, &Tick))| {
+        let target = seen.target?;
+        let bound = target.bound?;
+        Some(BoundSample {
+            at_s: *at_s,
+            lowest_m: bound.lowest_position_m - target.position_m,
+            truth_m: truth.position_m - target.position_m,
+            highest_m: bound.highest_position_m - target.position_m,
+        })
+    };
+    ticks.filter_map(sample).filter(|sample| sample.at_s >= SETTLED_FROM_S - 1e-9).collect()
+}
+
+fn drive(scenario: &Scenario, trace: &Trace, names: &[String]) -> Drive {
+    let by = trace.measured.by;
+    let over_time = |value: fn(&Tick) -> f64| {
+        trace.times_s.iter().zip(&trace.vehicles[by]).map(move |(at_s, tick)| (*at_s, value(tick)))
+    };
+    Drive {
+        vehicle: names[by].clone(),
+        engaged: scenario.envelope.engaged,
+        command: Series::new("commanded", over_time(|tick| tick.command_mps2)),
+        reached: Series::new("reached", over_time(|tick| tick.acceleration_mps2)),
+        limited_s: trace
+            .times_s
+            .iter()
+            .zip(&trace.vehicles[by])
+            .filter(|(_, tick)| tick.limited)
+            .map(|(at_s, _)| *at_s)
+            .collect(),
+    }
+}
+
+fn notes(trace: &Trace, summary: &Summary) -> Vec<String> {
     let mut notes = vec![
         "The literal paper keeps no standstill distance, and knows of no lag and no limit on acceleration and jerk; the \
          simulated vehicles have all of these. Part of its error is that."
@@ -173,6 +228,20 @@ fn notes(trace: &Trace) -> Vec<String> {
         "A unit trusts an identifier of its bus from the second good frame on, so the first frame of each is refused."
             .to_owned(),
     ];
+    if summary.bound.beyond_limits > 0 {
+        notes.push(format!(
+            "At {} ticks the recorded leader was outside its bound right after its recording had changed its speed as no \
+             road vehicle can; a bound is of vehicles only, so these do not count.",
+            summary.bound.beyond_limits
+        ));
+    }
+    if summary.envelope.engaged && summary.envelope.limited_share > 0.0 {
+        notes.push(
+            "No vehicle can know that the envelope of another one is limiting it for want of messages: meanwhile the \
+             estimate goes by the law that the other one published, and is wrong by what the envelope does. The bound holds."
+                .to_owned(),
+        );
+    }
     if trace.turned_away > 0 {
         notes.push(format!("{} messages found no free slot in a modem.", trace.turned_away));
     }

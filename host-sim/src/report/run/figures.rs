@@ -33,7 +33,7 @@ impl RunReport {
     }
 
     /// A chart over time with the silences shaded.
-    fn over_time(&self, title: &str, y: Axis, caption: &str) -> Chart {
+    pub(super) fn over_time(&self, title: &str, y: Axis, caption: &str) -> Chart {
         let (description, shades) = (caption.into(), self.silences.clone());
         Chart { description, shades, ..Chart::new(title, self.time(), y) }
     }
@@ -198,7 +198,7 @@ fn decades(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (10f64.powf(first), 10f64.powf(last))
 }
 
-fn unlabelled(intervals: &[Interval]) -> Vec<Interval> {
+pub(super) fn unlabelled(intervals: &[Interval]) -> Vec<Interval> {
     intervals.iter().map(|interval| Interval::new(interval.from, interval.to, "")).collect()
 }
 

@@ -1,5 +1,6 @@
 //! The report of one run: its series and figures of merit enter, an HTML page leaves.
 
+mod certainty;
 mod figures;
 mod prose;
 
@@ -63,6 +64,34 @@ pub struct ModeTrack {
     pub changes: Vec<(f64, String)>,
 }
 
+/// What is certain of the ego's position at one time, in metres from our estimate of it: behind is negative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoundSample {
+    /// When.
+    pub at_s: f64,
+    /// As far back as it can be.
+    pub lowest_m: f64,
+    /// Where it is.
+    pub truth_m: f64,
+    /// As far ahead as it can be.
+    pub highest_m: f64,
+}
+
+/// How the estimating vehicle is driven.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drive {
+    /// Its name, as in the trajectories.
+    pub vehicle: String,
+    /// Whether its envelope is engaged.
+    pub engaged: bool,
+    /// Acceleration commanded over time, in m/s².
+    pub command: Series,
+    /// Acceleration reached over time, in m/s².
+    pub reached: Series,
+    /// The times at which the envelope changed the command.
+    pub limited_s: Vec<f64>,
+}
+
 /// Everything that the page of one run shows. Vehicles are known by name: a series of `gaps` or `speeds` belongs to the
 /// trajectory of the same name. Times are in seconds of the run.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -85,6 +114,10 @@ pub struct RunReport {
     pub error_ours: Series,
     /// The literal paper's, on the same messages.
     pub error_paper: Series,
+    /// What is certain of the ego's position, where anything is.
+    pub bound: Vec<BoundSample>,
+    /// How the vehicle that estimates is driven.
+    pub drive: Drive,
     /// When the ego's link was silent by design.
     pub silences: Vec<Interval>,
     /// Each message sent over the ego's link: when, and its delay in seconds; `None` if it was lost.
@@ -115,8 +148,10 @@ impl RunReport {
         self.draw_trajectories(&mut page);
         self.draw_gaps(&mut page);
         self.draw_speeds(&mut page);
+        self.draw_drive(&mut page);
         page.section("Estimation");
         self.draw_error(&mut page);
+        self.draw_bound(&mut page);
         self.draw_distribution(&mut page);
         page.section("Channel and modes");
         self.draw_channel(&mut page);

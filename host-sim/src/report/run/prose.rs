@@ -9,7 +9,7 @@ use crate::{
     },
 };
 
-const NOTHING: &str = "There is nothing to show: the run has no samples of this kind.";
+pub(super) const NOTHING: &str = "There is nothing to show: the run has no samples of this kind.";
 
 impl RunReport {
     fn ego_name(&self) -> &str {
@@ -17,7 +17,7 @@ impl RunReport {
     }
 
     /// What prose calls the vehicle of this name.
-    fn call(&self, name: &str) -> String {
+    pub(super) fn call(&self, name: &str) -> String {
         match name.chars().next() {
             _ if name == self.ego_name() => "the ego".into(),
             Some(first) if first.is_ascii_digit() => format!("vehicle {name}"),
@@ -26,7 +26,7 @@ impl RunReport {
     }
 
     /// "Shaded: silence, 4–8 s." for the end of a caption; the first few silences by their times, many by their number.
-    fn say_shades(&self) -> String {
+    pub(super) fn say_shades(&self) -> String {
         let times = |s: &super::Interval| format!("{}–{} s", plain(s.from), plain(s.to));
         match self.silences.as_slice() {
             [] => String::new(),
@@ -190,7 +190,7 @@ fn lowest(series: &[Series]) -> Option<(&str, f64, f64)> {
 }
 
 /// A time to hundredths, without zeros that say nothing.
-fn plain(seconds: f64) -> String {
+pub(super) fn plain(seconds: f64) -> String {
     let spelled = format!("{seconds:.2}");
     spelled.trim_end_matches('0').trim_end_matches('.').into()
 }
