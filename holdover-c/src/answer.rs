@@ -20,7 +20,7 @@ pub enum Mode {
     Cooperative = 1,
     /// Driving by the estimate, the link being off.
     Holdover = 2,
-    /// No target to drive by: behind what is still certain of it or seen of it, else braking that grows slowly.
+    /// No target to drive by: behind what is seen or still certain of it, else braking that grows slowly.
     Fallback = 3,
     /// The own motion is unknown, or what is heard and what is seen exclude one another: braking as configured.
     Fault = 4,

@@ -176,3 +176,15 @@ fn a_value_is_taken_at_both_ends_of_its_range_and_refused_beyond() {
         }
     }
 }
+
+#[test]
+fn the_manual_has_the_sizes() {
+    let manual = include_str!("../../docs/INTEGRATION.md");
+    let row = |name: &str, size: usize| {
+        let row = manual.lines().find(|line| line.starts_with(&format!("| {name}"))).unwrap();
+        assert_eq!(row.split('|').nth(2).and_then(|cell| number(cell.split('(').next()?)), Some(size as u64), "{row}");
+    };
+    row("unit: 8 peers", HOLDOVER_UNIT_SIZE);
+    row("`holdover_answer_t`", size_of::<holdover_c::Answer>());
+    row("`holdover_config_t`", size_of::<Config>());
+}
