@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # holdover-c/check.sh: the C example says what the Rust core says, byte for byte, on the host and on a Cortex-M4F in the
-# emulator; the header is one for C99 and for C++; no panic can be reached. `./ci.sh c` runs it.
+# emulator; the header is one for C99 and for C++; the C of the manual compiles; no panic can be reached. `./ci.sh c` runs it.
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -30,6 +30,7 @@ same() {
     cmp "$1" "$2" || { diff "$1" "$2" | head -n 20; return 1; }
 }
 
+rm -rf "$build"
 mkdir -p "$build"
 cargo run --locked --release --quiet -p holdover-c --example reference >"$build/reference.txt"
 frames=$(grep -vc '^refused' "$build/reference.txt")
@@ -37,10 +38,16 @@ frames=$(grep -vc '^refused' "$build/reference.txt")
 # On the host.
 cargo build --locked --release -p holdover-c
 library=${CARGO_TARGET_DIR:-target}/release/libholdover_c.a
-gcc "${strict[@]}" "$sources"/{replay,board_host}.c "$library" -lpthread -ldl -lm -o "$build/replay"
+gcc "${strict[@]}" "$sources"/{replay,calibration,board_host}.c "$library" -lpthread -ldl -lm -o "$build/replay"
 "$build/replay" >"$build/host.txt"
 same "$build/reference.txt" "$build/host.txt"
 echo "host: $frames frames, the same as of the Rust core"
+
+# The manual's pieces of C, each by itself.
+awk -v to="$build/manual" '/^```c$/ { n++; on = 1; next } /^```/ { on = 0 } on { print > (to n ".c") }' docs/INTEGRATION.md
+for piece in "$build"/manual*.c; do
+    gcc "${strict[@]}" -fsyntax-only "$piece"
+done
 
 need g++ g++
 printf '#include "holdover.h"\nholdover_answer_t answer;\n' >"$build/header.cpp"
@@ -55,7 +62,7 @@ library=${CARGO_TARGET_DIR:-target}/$target/release/libholdover_c.a
 image=$build/replay.elf
 arm-none-eabi-gcc "${strict[@]}" -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffreestanding \
     -nostdlib -T "$sources/netduino.ld" -Wl,--gc-sections -Wl,-z,noexecstack -Wl,-Map="$build/replay.map" \
-    "$sources"/{replay,board_netduino}.c "$library" -o "$image"
+    "$sources"/{replay,calibration,board_netduino}.c "$library" -o "$image"
 if arm-none-eabi-nm -C "$image" | grep -iE 'panic|unwrap_failed|rust_begin_unwind'; then
     echo "a panic can be reached from the image (above)"
     exit 1

@@ -92,11 +92,12 @@ enum holdover_status_t
   HOLDOVER_CONFIG_SPEED = -44,
   // `a_max` of the free road is below 0.1 m/s^2 or above the limit on acceleration.
   HOLDOVER_CONFIG_FREE_ROAD = -45,
-  // A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+  // A time of the link is zero where it must not be, or beyond 10 s for stamps; or the clock may be off by more than what
+  // is refused as future.
   HOLDOVER_CONFIG_LINK = -46,
   // The vehicle of eqs 1-3 has no mass or no brakes.
   HOLDOVER_CONFIG_BODY = -47,
-  // A limit of the envelope is zero.
+  // A limit of the envelope is zero, or it brakes harder than emergency braking.
   HOLDOVER_CONFIG_ENVELOPE = -48,
   // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
   HOLDOVER_REFUSED_LENGTH = -64,
@@ -178,7 +179,7 @@ enum holdover_mode_t
   HOLDOVER_MODE_COOPERATIVE = 1,
   // Driving by the estimate, the link being off.
   HOLDOVER_MODE_HOLDOVER = 2,
-  // No target to drive by: behind what is still certain of it or seen of it, else braking that grows slowly.
+  // No target to drive by: behind what is seen or still certain of it, else braking that grows slowly.
   HOLDOVER_MODE_FALLBACK = 3,
   // The own motion is unknown, or what is heard and what is seen exclude one another: braking as configured.
   HOLDOVER_MODE_FAULT = 4,

@@ -30,15 +30,54 @@ static void stop(uint32_t code)
     }
 }
 
+/* The console is the file ":tt"; opened for writing it is standard output, for appending it is standard error. */
+enum { STDOUT = 4, STDERR = 8 };
+
+static intptr_t open_console(uint32_t mode)
+{
+    const uint32_t block[3] = {(uint32_t)(uintptr_t)":tt", mode, 3 /* characters of the name */};
+    return semihosting(SYS_OPEN, block);
+}
+
+static void write_console(intptr_t console, const char *text, size_t length)
+{
+    const uint32_t block[3] = {(uint32_t)console, (uint32_t)(uintptr_t)text, length};
+    semihosting(SYS_WRITE, block);
+}
+
 void board_write(const char *text, size_t length)
 {
     static intptr_t console = -1;
     if (console < 0) {
-        const uint32_t open[3] = {(uint32_t)(uintptr_t)":tt", 4 /* "w": standard output */, 3 /* characters of ":tt" */};
-        console = semihosting(SYS_OPEN, open);
+        console = open_console(STDOUT);
     }
-    const uint32_t write[3] = {(uint32_t)console, (uint32_t)(uintptr_t)text, length};
-    semihosting(SYS_WRITE, write);
+    write_console(console, text, length);
+}
+
+/* What nothing has been written over since the start was never on the stack. */
+static const uint32_t unused = 0xDEADBEEF;
+
+static void paint_stack(void)
+{
+    volatile uint32_t *end = (volatile uint32_t *)__builtin_frame_address(0) - 16; /* what this function itself has there */
+    for (volatile uint32_t *word = &bss_end; word < end; word++) {
+        *word = unused;
+    }
+}
+
+/* Says on standard error how many bytes of stack were in use at the deepest. */
+static void report_stack(void)
+{
+    const volatile uint32_t *deepest = &bss_end;
+    while (*deepest == unused) {
+        deepest++;
+    }
+    char text[] = "stack: 000000 bytes\n";
+    uint32_t bytes = (uint32_t)((uintptr_t)&stack_top - (uintptr_t)deepest);
+    for (char *digit = text + 12; bytes > 0; bytes /= 10) {
+        *digit-- = (char)('0' + bytes % 10);
+    }
+    write_console(open_console(STDERR), text, sizeof text - 1);
 }
 
 void reset(void)
@@ -52,7 +91,10 @@ void reset(void)
     }
     *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* access to the FPU, whose registers hard-float code may save */
     __asm__ volatile("dsb\n\tisb");
-    stop((uint32_t)main());
+    paint_stack();
+    uint32_t code = (uint32_t)main();
+    report_stack();
+    stop(code);
 }
 
 static void failed(void)

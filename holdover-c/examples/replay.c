@@ -3,6 +3,7 @@
  * holdover.h at work. On a real bus the frames come from a driver, and the times from a clock.
  */
 #include "board.h"
+#include "calibration.h"
 #include "holdover.h"
 
 static const struct {
@@ -75,21 +76,15 @@ static void print_refusals(void)
 
 int main(void)
 {
-    holdover_config_t config;
+    const holdover_config_t config = calibration;
     holdover_answer_t answer;
     size_t next = 0;
 
     if (holdover_version() != HOLDOVER_VERSION) {
         return 1; /* the header is not that of the library */
     }
-    if (holdover_default_config(&config) != HOLDOVER_OK) {
-        return 2;
-    }
-    config.station = 2;
-    config.link.holdover_us = 1000000;
-    config.envelope.engaged = 1;
     if (holdover_init(unit, sizeof unit, &config) != HOLDOVER_OK) {
-        return 3;
+        return 2;
     }
     for (uint64_t now_us = 0; now_us <= end_us; now_us += tick_us) {
         for (; next < sizeof drive / sizeof drive[0] && drive[next].at_us < now_us; next++) {
@@ -97,7 +92,7 @@ int main(void)
             (void)holdover_receive(unit, drive[next].at_us, &drive[next].frame);
         }
         if (holdover_tick(unit, now_us, &answer) != HOLDOVER_OK) {
-            return 4;
+            return 3;
         }
         for (uint32_t frame = 0; frame < answer.frame_count; frame++) {
             print_frame(now_us, &answer.frames[frame]);

@@ -20,7 +20,7 @@ pub enum Mode {
     Cooperative = 1,
     /// Driving by the estimate, the link being off.
     Holdover = 2,
-    /// No target to drive by: behind what is still certain of it or seen of it, else braking that grows slowly.
+    /// No target to drive by: behind what is seen or still certain of it, else braking that grows slowly.
     Fallback = 3,
     /// The own motion is unknown, or what is heard and what is seen exclude one another: braking as configured.
     Fault = 4,
@@ -134,8 +134,9 @@ impl Answer {
     };
 }
 
-impl From<&holdover::Answer> for Answer {
-    fn from(answer: &holdover::Answer) -> Self {
+impl Answer {
+    /// Fills in what the core answered, where it lies: an answer is too large to be passed over the stack.
+    pub fn fill(&mut self, answer: &holdover::Answer) {
         use holdover::wire::command::Effort as Core;
         let (mode, cause) = of_mode(&answer.mode);
         let command = &answer.command;
@@ -143,24 +144,21 @@ impl From<&holdover::Answer> for Answer {
             Core::Force(newtons) => (Effort::Force, newtons),
             Core::BrakeTorque(newton_metres) => (Effort::BrakeTorque, newton_metres),
         };
-        let mut plain = Self {
-            command: Command {
-                acceleration_mm_s2: command.acceleration.to_mm_per_s2(),
-                effort,
-                mode,
-                cause,
-                limited: u8::from(command.limited),
-                effort_value,
-                tick: command.tick,
-            },
-            estimate: answer.estimate.as_ref().map_or(Estimate::NONE, Estimate::from),
-            ..Self::NONE
+        self.command = Command {
+            acceleration_mm_s2: command.acceleration.to_mm_per_s2(),
+            effort,
+            mode,
+            cause,
+            limited: u8::from(command.limited),
+            effort_value,
+            tick: command.tick,
         };
-        for (place, frame) in plain.frames.iter_mut().zip(&answer.frames) {
+        self.estimate = answer.estimate.as_ref().map_or(Estimate::NONE, Estimate::from);
+        self.frame_count = 0;
+        for (place, frame) in self.frames.iter_mut().zip(&answer.frames) {
             *place = Frame::from(frame);
-            plain.frame_count = plain.frame_count.saturating_add(1);
+            self.frame_count = self.frame_count.saturating_add(1);
         }
-        plain
     }
 }
 

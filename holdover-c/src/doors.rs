@@ -111,17 +111,10 @@ pub unsafe extern "C" fn holdover_tick(unit: *mut c_void, now_us: u64, answer: *
         Ok(place) => place,
         Err(cause) => return cause,
     };
+    let place = place.write(Answer::NONE);
     // SAFETY: checked there, and the caller vouches for the rest.
-    match unsafe { memory::enter(unit, |unit| unit.tick(Instant::from_micros(now_us))) } {
-        Ok(answer) => {
-            place.write(Answer::from(&answer));
-            Status::Ok
-        }
-        Err(cause) => {
-            place.write(Answer::NONE);
-            cause
-        }
-    }
+    let ticked = unsafe { memory::enter(unit, |unit| place.fill(&unit.tick(Instant::from_micros(now_us)))) };
+    ticked.map_or_else(|cause| cause, |()| Status::Ok)
 }
 
 /// How often frames were refused for a cause since the unit was made; `cause` is one of `HOLDOVER_REFUSED_...`. 0 if

@@ -41,3 +41,8 @@ pub use doors::*;
 pub use frame::Frame;
 pub use memory::{HOLDOVER_UNIT_ALIGN, HOLDOVER_UNIT_SIZE};
 pub use status::Status;
+
+/// The Rust of the manual, which the tests of the documentation compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/INTEGRATION.md")]
+pub struct Manual;

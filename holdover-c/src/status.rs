@@ -68,11 +68,12 @@ pub enum Status {
     ConfigSpeed = -44,
     /// `a_max` of the free road is below 0.1 m/s^2 or above the limit on acceleration.
     ConfigFreeRoad = -45,
-    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps.
+    /// A time of the link is zero where it must not be, or beyond 10 s for stamps; or the clock may be off by more than what
+    /// is refused as future.
     ConfigLink = -46,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     ConfigBody = -47,
-    /// A limit of the envelope is zero.
+    /// A limit of the envelope is zero, or it brakes harder than emergency braking.
     ConfigEnvelope = -48,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,

@@ -24,7 +24,7 @@ pub const TICK_US: u64 = 10_000;
 /// When the last tick is.
 pub const END_US: u64 = 6_500_000;
 
-/// What differs from the default: as the C example has it.
+/// What differs from the default: as `examples/calibration.c` has it.
 pub fn config() -> Config {
     let mut config = std::mem::MaybeUninit::uninit();
     // SAFETY: the place is there, and the call fills it in.
