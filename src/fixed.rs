@@ -175,3 +175,41 @@ const fn divide_rounding(dividend: i64, divisor: i64) -> i64 {
     let half = divisor.saturating_abs() / 2;
     if dividend >= 0 { dividend.saturating_add(half) / divisor } else { dividend.saturating_sub(half) / divisor }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_product_is_rounded_to_nearest_and_saturates_near_the_ends(a: i32, b: i32) {
+            let exact = i128::from(a) * i128::from(b);
+            let nearest = |bits: u32| (exact + (1 << (31 - bits))) >> (32 - bits);
+            let near = |got: i32, bits: u32| {
+                let saturated = nearest(bits).clamp(i32::MIN.into(), i32::MAX.into());
+                (i128::from(got) - saturated).abs() < if saturated == nearest(bits) { 1 } else { 1 << bits }
+            };
+            prop_assert!(near(mul_shl::<2>(a, b), 2) && near(mul_shl::<8>(a, b), 8));
+            prop_assert_eq!(i128::from(mul_hi(a, b)), (exact + (1 << 31)) >> 32);
+        }
+
+        #[test]
+        fn a_sum_of_products_is_rounded_once(start in -1_000_000i32..1_000_000, factors: [(i16, i32); 32]) {
+            let (mut word, mut rest, mut exact) = (start, Rest::NONE, i128::from(start) << 32);
+            for (a, b) in factors {
+                (word, rest) = sum(word, rest, product(a.into(), b));
+                exact += i128::from(a) * i128::from(b);
+            }
+            prop_assert_eq!(i128::from(word), (exact + (1 << 31)) >> 32);
+        }
+    }
+
+    #[test]
+    fn a_sum_saturates_and_one_that_goes_around_does_not() {
+        let most = product(i32::MIN, i32::MIN);
+        assert_eq!(sum(i32::MAX, Rest::NONE, most).0, i32::MAX);
+        assert_eq!(sum(i32::MIN, Rest::NONE, -most).0, i32::MIN);
+        assert_eq!(sum_around(i32::MAX, Rest::NONE, 1 << 32).0, i32::MIN);
+    }
+}

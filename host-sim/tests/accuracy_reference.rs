@@ -234,7 +234,7 @@ fn sensitivity(chain: &[Vehicle]) -> f64 {
     let mut worst = 0.0f64;
     for signs in 0..8 {
         let sign = |bit: i32| if signs >> bit & 1 == 0 { 1e-6 } else { -1e-6 };
-        let alternate = |place: usize| if place % 2 == 0 { 1e6 * sign(2) } else { 1.0 };
+        let alternate = |place: usize| if place.is_multiple_of(2) { 1e6 * sign(2) } else { 1.0 };
         let disturbed = reference(chain, |place| (sign(0) * alternate(place), sign(1) * alternate(place)));
         for (a, b) in undisturbed.iter().flatten().zip(disturbed.iter().flatten()) {
             worst = worst.max((a.position_m - b.position_m).abs()).max((a.speed_mps - b.speed_mps).abs());
