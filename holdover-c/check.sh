@@ -33,7 +33,7 @@ same() {
 rm -rf "$build"
 mkdir -p "$build"
 cargo run --locked --release --quiet -p holdover-c --example reference >"$build/reference.txt"
-frames=$(grep -vc '^refused' "$build/reference.txt")
+frames=$(grep -vc '^-' "$build/reference.txt")
 
 # On the host.
 cargo build --locked --release -p holdover-c

@@ -28,6 +28,6 @@ fn main() {
         }
     }
     for cause in Refusal::ALL {
-        println!("refused: {} {}", cause.name(), unit.health().of(cause));
+        println!("{} {}", -64 - cause as i32, unit.health().of(cause));
     }
 }

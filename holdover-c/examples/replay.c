@@ -48,29 +48,19 @@ static void print_frame(uint64_t now_us, const holdover_frame_t *frame)
     board_write(line, (size_t)(end - line));
 }
 
-static size_t length_of(const char *text)
-{
-    size_t length = 0;
-    while (text[length] != '\0') {
-        length++;
-    }
-    return length;
-}
-
-/* How often what was refused, cause after cause. */
+/* How often what was refused, code after code. */
 static void print_refusals(void)
 {
-    for (int32_t cause = HOLDOVER_REFUSED_LENGTH; cause >= HOLDOVER_REFUSED_CLOCK_BACKWARDS; cause--) {
-        const char *name = holdover_status_name(cause);
-        uint32_t count;
-        char digits[24];
-        char *end = digits;
-        (void)holdover_count(unit, cause, &count); /* writes 0 if there is no such cause */
+    uint32_t count;
+    for (int32_t cause = HOLDOVER_REFUSED_LENGTH; holdover_count(unit, cause, &count) == HOLDOVER_OK; cause--) {
+        char line[32];
+        char *end = line;
+        *end++ = '-';
+        end = put_number(end, (uint64_t)-cause, 10, 1);
         *end++ = ' ';
         end = put_number(end, count, 10, 1);
         *end++ = '\n';
-        board_write(name, length_of(name));
-        board_write(digits, (size_t)(end - digits));
+        board_write(line, (size_t)(end - line));
     }
 }
 
