@@ -58,6 +58,8 @@ pub const UNKNOWN_DELAY: Duration = Duration::from_millis(2_000);
 /// So many implausible samples in a row that are plausible among themselves are believed: then it was the bound that was
 /// wrong (a restart of the sender, a corrected position).
 pub const RECOVERY_SAMPLES: u8 = 5;
+/// So many believed samples in a row, 10 s at 10 Hz, make up for one recovery.
+pub const FORGIVEN_AFTER: u8 = 100;
 
 /// Default gains: overdamped (poles of `s² + k(t_g+γ)s + k` at -1 and -0.5 for `t_g` = 1 s) and string stable at
 /// `t_g` = 1 s, since `k (1 + 2γ/t_g) t_g² = 2.5 >= 2`.

@@ -117,6 +117,51 @@ fn one_constant_speed_while_the_position_moves_four_times_as_fast_is_never_belie
 }
 
 #[test]
+fn the_same_is_found_of_one_that_publishes_no_accuracies_and_no_limits() {
+    for speed in [3.5, 8.0, 15.0] {
+        let mut rig = Rig::new(&rig::config());
+        rig.power_up(true, 0);
+        let mut taken = 0;
+        for n in 0..161 {
+            let at = n * 100_000;
+            rig.synchronise(at, 0);
+            let motion = rig.motion(TARGET, at, 4.0 * speed * at as f64 * 1e-6, speed, 0.0, 0.0, None);
+            taken += i32::from(rig.target(at, Said::Motion(motion)).is_ok());
+        }
+        // Ten until the positions have drifted out of ±5 m, and after each of two recoveries, which take 5 and 10.
+        assert!(taken <= 33, "{speed}: {taken}");
+    }
+}
+
+#[test]
+fn each_recovery_takes_twice_as_many_samples_as_the_last_until_it_is_forgiven() {
+    let mut target = Target::believed();
+    let correct = |target: &mut Target| {
+        // Too far to be in reach when the bound has grown for as long as it takes.
+        target.body.position += 600.0;
+        (1..).find(|_| target.says(Lie::default()).is_ok()).unwrap()
+    };
+    for expected in [5, 10, 20, 40, 80, 160, 160] {
+        assert_eq!(correct(&mut target), expected);
+    }
+    // The strikes stop at five; 99 samples do not forgive one, 100 do.
+    for _ in 0..99 {
+        assert_eq!(target.says(Lie::default()), Ok(()));
+    }
+    assert_eq!(correct(&mut target), 160);
+    for expected in [80, 80, 80] {
+        for _ in 0..100 {
+            assert_eq!(target.says(Lie::default()), Ok(()));
+        }
+        assert_eq!(correct(&mut target), expected);
+    }
+    for _ in 0..600 {
+        assert_eq!(target.says(Lie::default()), Ok(()));
+    }
+    assert_eq!(correct(&mut target), 5);
+}
+
+#[test]
 fn a_speed_that_does_not_fit_the_positions_is_implausible() {
     let mut target = Target::believed();
     assert_eq!(target.says(Lie { speed: 5.0, ..Lie::default() }), Err(Refusal::Implausible));

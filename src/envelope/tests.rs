@@ -76,6 +76,74 @@ fn the_gate_only_ever_makes_a_demand_more_careful() {
 }
 
 #[test]
+fn the_highest_and_the_lowest_command_are_a_tick_of_jerk_away_from_the_last_one() {
+    for last in around(2000).chain(around(-6000)).chain(around(-5900)).filter(|last| last.abs() < 20_000) {
+        let mm_per_s2 = Acceleration::from_mm_per_s2;
+        assert_eq!(ceiling(&LIMITS, mm_per_s2(last), PERIOD).to_mm_per_s2(), last + 100);
+        assert_eq!(floor(&LIMITS, mm_per_s2(last), PERIOD).to_mm_per_s2(), (last - 100).max(-6000), "{last}");
+    }
+}
+
+#[test]
+fn a_command_is_encoded_a_step_down_and_never_beyond_the_hardest_braking() {
+    for braking in [6_000, 5_999] {
+        let limits = Envelope { braking: Acceleration::from_mm_per_s2(braking), ..LIMITS };
+        for bits in (-braking..2000).step_by(97).chain(-braking..-braking + 9).chain(-4..5).flat_map(|mm| {
+            let word = Acceleration::from_mm_per_s2(mm).to_bits();
+            [word - 1, word, word + 1]
+        }) {
+            let command = Acceleration::from_bits(bits).max(limits.braking.negated());
+            let told = encodable(&limits, command);
+            let steps = told.to_steps(ACCELERATION_STEPS);
+            assert_eq!(Acceleration::from_steps(steps, ACCELERATION_STEPS), told);
+            let is_next_down = told <= command && command < Acceleration::from_steps(steps + 1, ACCELERATION_STEPS);
+            let is_bottom = Acceleration::from_steps(steps - 1, ACCELERATION_STEPS) < limits.braking.negated();
+            assert!(is_next_down || is_bottom, "{braking} {command:?} {told:?}");
+            assert!(told >= limits.braking.negated(), "{braking} {command:?} {told:?}");
+        }
+    }
+}
+
+#[test]
+fn the_room_is_what_is_left_of_the_way_less_margin_lag_and_a_tick() {
+    for point in around(40_000) {
+        for speed in [0, 1, 13_400, 39_999] {
+            let found = room(&LIMITS, &ego(speed, 700, 0), Position::from_mm(point.into()), PERIOD);
+            let exact = f64::from(point) / 1e3 - 0.5 - 0.31 * f64::from(speed) / 1e3;
+            let found = f64::from(found.to_bits()) / f64::from(1 << 20);
+            assert!((found - exact).abs() < 4e-6 && found <= exact + 1e-6, "{point} {speed}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn it_is_safe_as_long_as_emergency_braking_stops_in_time() {
+    for (speed, last) in [(0, 0), (3_000, 0), (3_000, -5_950), (20_000, 1_000), (40_000, -6_000)] {
+        let ego = ego(speed, last, last);
+        let lowest = floor(&LIMITS, ego.last, PERIOD);
+        for room in (0..150_000).step_by(61).map(Distance::from_mm) {
+            // The theory's V <= S, in float64.
+            let (b, j, h) = (6.0, 10.0, 0.01);
+            let (z, u): (f64, f64) = (f64::from(speed) / 1e3 + 0.3 * f64::from(last) / 1e3, lowest.get().to_num());
+            let v = (z.max(0.0) + 0.5 * j * ((u + b) / j + h).powi(2)).powi(2) / (2.0 * b);
+            let s = f64::from(room.to_bits()) / f64::from(1 << 20);
+            if (v - s).abs() > 1e-3 {
+                assert_eq!(is_safe(&LIMITS, &ego, room, PERIOD), v <= s, "{speed} {last} {s} {v}");
+            }
+        }
+        assert!(!is_safe(&LIMITS, &ego, Distance::from_bits(-1), PERIOD));
+    }
+}
+
+#[test]
+fn one_stops_behind_the_rear_of_the_vehicle_ahead() {
+    for (stop, length) in [(0, 0), (50_000, 4_800), (-7, 18_750)] {
+        let found = stop_behind(Position::from_mm(stop), Distance::from_mm(length));
+        assert_eq!(found.to_mm(), stop - i64::from(length));
+    }
+}
+
+#[test]
 fn a_crossing_vehicle_is_waited_for_until_its_rear_has_left() {
     let (area, length, ends) = (Position::from_mm(50_000), Distance::from_mm(4_800), Position::from_mm(20_000));
     for front in 24_790..=24_810 {

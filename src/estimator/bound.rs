@@ -225,3 +225,6 @@ fn floor(dividend: i64, divisor: i64) -> i64 {
 fn ceil(dividend: i64, divisor: i64) -> i64 {
     floor(dividend.saturating_neg(), divisor).saturating_neg()
 }
+
+#[cfg(test)]
+mod tests;

@@ -8,15 +8,17 @@
 //! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
 //!
 //! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
-//! track starts anew from them.
+//! track starts anew from them. A liar whose lie takes longer than that to show would be believed again and again, so each
+//! recovery doubles the number that the next one takes, up to 2⁵ times; [`FORGIVEN_AFTER`] samples in a row that agree
+//! halve it again.
 
 use super::Sample;
 use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::parameters::{
-    POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY, UNPUBLISHED_ACCELERATION_ACCURACY,
-    UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
+    FORGIVEN_AFTER, POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY,
+    UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::time::Duration;
 
@@ -26,7 +28,14 @@ use crate::time::Duration;
 pub struct Certainty {
     bound: Option<Bound>,
     suspects: Option<(Bound, u8)>,
+    /// Recoveries that are not forgiven.
+    strikes: u8,
+    /// Samples in a row that agreed.
+    agreed: u8,
 }
+
+/// Beyond so many recoveries no further one counts: then it takes 160 samples.
+const MOST_STRIKES: u8 = 5;
 
 /// How a believed sample is believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +49,7 @@ pub enum Belief {
 
 impl Certainty {
     /// Nothing is certain.
-    pub const NONE: Self = Self { bound: None, suspects: None };
+    pub const NONE: Self = Self { bound: None, suspects: None, strikes: 0, agreed: 0 };
 
     /// The bound, if there is one.
     #[must_use]
@@ -81,9 +90,10 @@ impl Certainty {
             return Ok(Belief::Agrees);
         };
         if let Some(both) = bound.and(&around, reach) {
-            *self = Self { bound: Some(both), suspects: None };
+            self.agree(both);
             return Ok(Belief::Agrees);
         }
+        self.agreed = 0;
         let refusal = name(bound, &around, sample, last, reach);
         let (suspect, count) = match &self.suspects {
             Some((suspect, count)) => match suspect.and(&around, reach) {
@@ -92,14 +102,26 @@ impl Certainty {
             },
             None => (around, 1),
         };
-        if count >= RECOVERY_SAMPLES {
-            *self = Self { bound: Some(suspect), suspects: None };
+        if count >= RECOVERY_SAMPLES.wrapping_shl(self.strikes.into()) {
+            let strikes = self.strikes.saturating_add(1).min(MOST_STRIKES);
+            *self = Self { bound: Some(suspect), strikes, ..Self::NONE };
             return Ok(Belief::Recovered);
         }
         self.suspects = Some((suspect, count));
         Err(refusal)
     }
+
+    fn agree(&mut self, both: Bound) {
+        (self.bound, self.suspects) = (Some(both), None);
+        self.agreed = self.agreed.saturating_add(1);
+        if self.agreed >= FORGIVEN_AFTER {
+            (self.strikes, self.agreed) = (self.strikes.saturating_sub(1), 0);
+        }
+    }
 }
+
+// 160 is a count.
+const _: () = assert!((RECOVERY_SAMPLES as u32) << MOST_STRIKES <= u8::MAX as u32);
 
 /// What contradicts what.
 fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, reach: &Reach) -> Refusal {

@@ -89,7 +89,11 @@ impl Rig {
             _ => self.sensors.send(message, &mut |frame| frames.push(frame)),
         };
         sent.unwrap();
-        frames.iter().map(|frame| self.unit.receive(instant(at), frame).map(|_| ())).fold(Ok(()), |_, last| last)
+        let mut verdict = Ok(());
+        for frame in &frames {
+            verdict = self.unit.receive(instant(at), frame).map(|_| ());
+        }
+        verdict
     }
 
     /// One time synchronisation by a clock that is off by so many microseconds.
