@@ -14,6 +14,9 @@ fn main() {
     fs::copy("memory.x", out.join("memory.x")).expect("memory.x lies beside build.rs and OUT_DIR can be written");
     println!("cargo::rustc-link-search={}", out.display());
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
+    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+        println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
+    }
     // Sections need not be aligned to the pages of a system that has none.
     println!("cargo::rustc-link-arg-bins=--nmagic");
 }

@@ -1,4 +1,5 @@
-//! What the unit refuses, counted by cause: a refusal enters, a saturating count per cause leaves.
+//! What the unit refuses, and what the platform around it lost, counted by cause: a refusal or an incident enters, a
+//! saturating count per cause leaves.
 
 /// Why a frame or a message was refused. A refusal changes nothing but its count, the end-to-end state of that
 /// identifier, and the evidence of misbehaviour.
@@ -46,11 +47,52 @@ pub enum Refusal {
     Stuck = 18,
     /// A time before one that the unit was given already.
     ClockBackwards = 19,
+    /// Frames that the platform's receive queue had no room for ([`Incident::ReceiveOverflow`]).
+    ReceiveOverflow = 20,
+    /// Frames that the bus controller lost before the platform took them ([`Incident::Overrun`]).
+    Overrun = 21,
+    /// Frames of the unit that the platform's transmit queue had no room for ([`Incident::TransmitOverflow`]).
+    TransmitOverflow = 22,
+    /// The bus controller left the bus after too many errors ([`Incident::BusOff`]).
+    BusOff = 23,
+    /// The unit was restarted by its watchdog ([`Incident::Restart`]).
+    Restart = 24,
+}
+
+/// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
+/// that `Health` counts it beside the unit's own refusals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Incident {
+    /// The receive queue was full.
+    ReceiveOverflow,
+    /// The bus controller lost a frame.
+    Overrun,
+    /// The transmit queue was full.
+    TransmitOverflow,
+    /// The bus controller left the bus.
+    BusOff,
+    /// The watchdog restarted the unit.
+    Restart,
+}
+
+impl Incident {
+    /// The cause that it is counted under.
+    #[must_use]
+    pub const fn cause(self) -> Refusal {
+        match self {
+            Self::ReceiveOverflow => Refusal::ReceiveOverflow,
+            Self::Overrun => Refusal::Overrun,
+            Self::TransmitOverflow => Refusal::TransmitOverflow,
+            Self::BusOff => Refusal::BusOff,
+            Self::Restart => Refusal::Restart,
+        }
+    }
 }
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 25] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -71,6 +113,11 @@ impl Refusal {
         Self::Implausible,
         Self::Stuck,
         Self::ClockBackwards,
+        Self::ReceiveOverflow,
+        Self::Overrun,
+        Self::TransmitOverflow,
+        Self::BusOff,
+        Self::Restart,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -97,6 +144,11 @@ impl Refusal {
             Self::Implausible => "implausible",
             Self::Stuck => "stuck",
             Self::ClockBackwards => "clock_backwards",
+            Self::ReceiveOverflow => "receive_overflow",
+            Self::Overrun => "overrun",
+            Self::TransmitOverflow => "transmit_overflow",
+            Self::BusOff => "bus_off",
+            Self::Restart => "restart",
         }
     }
 }
@@ -116,8 +168,13 @@ impl Health {
 
     /// Counts one refusal.
     pub fn count(&mut self, cause: Refusal) {
+        self.add(cause, 1);
+    }
+
+    /// Counts so many at once.
+    pub fn add(&mut self, cause: Refusal, times: u32) {
         if let Some(count) = self.counts.get_mut(cause as usize) {
-            *count = count.saturating_add(1);
+            *count = count.saturating_add(times);
         }
     }
 

@@ -9,7 +9,9 @@ mod board;
 /// The shell around the unit. It holds no logic of its own: receive, tick, transmit.
 #[cfg(target_os = "none")]
 mod firmware {
-    use crate::board::{self, Board};
+    use crate::board::{self, Arrivals, Board};
+    use embedded_hal::digital::OutputPin;
+    use holdover::health::Incident;
     use holdover::wire::StationHash;
     use holdover::{Config, OnboardUnit};
 
@@ -20,26 +22,75 @@ mod firmware {
 
     #[cortex_m_rt::entry]
     fn start() -> ! {
-        // The entry attribute hands this static out as `&'static mut`, once. `ci.sh` finds it by its name, and the size
-        // of the unit with it.
+        // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
         static mut UNIT: Unit = Unit::idle();
+        static mut ARRIVALS: Arrivals = Arrivals::new();
         let unit = UNIT;
-        if unit.start(&CONFIG).is_err() {
-            board::stop();
-        }
-        let mut board = Board::start();
+        let (Ok(()), Some(mut board)) = (unit.start(&CONFIG), Board::start(ARRIVALS)) else { board::stop() };
+        unit.note(Incident::Restart, board.restarts);
+        let mut log = crate::log::Log::new();
         loop {
-            while let Some((at, frame)) = board.receive() {
+            while let Some((at, frame)) = board.inbox.next() {
                 // A refusal is counted in the unit, and its Health message tells.
-                let _ = unit.receive(at, &frame);
+                log.received(unit.receive(at, &frame));
             }
             if let Some(now) = board.tick() {
-                for frame in &unit.tick(now).frames {
-                    board.transmit(frame);
+                for (incident, times) in board.outbox.incidents() {
+                    unit.note(incident, times);
                 }
+                let Ok(()) = board.busy.set_high();
+                let answer = unit.tick(now);
+                let Ok(()) = board.busy.set_low();
+                log.ticked(answer.mode);
+                for frame in &answer.frames {
+                    board.outbox.push(frame);
+                }
+                board.watchdog.feed();
             }
+            board.idle();
         }
     }
+}
+
+/// What goes into the log: refusals, and changes of the mode. Without the feature `log` nothing does, and nothing is left of
+/// this in the image.
+#[cfg(target_os = "none")]
+mod log {
+    use holdover::Reception;
+    use holdover::controller::Mode;
+    use holdover::health::Refusal;
+
+    pub struct Log {
+        mode: Mode,
+    }
+
+    impl Log {
+        pub const fn new() -> Self {
+            Self { mode: Mode::Standby }
+        }
+
+        pub fn received(&mut self, result: Result<Reception, Refusal>) {
+            #[cfg(feature = "log")]
+            if let Err(cause) = result {
+                defmt::warn!("refused: {}", cause);
+            }
+            #[cfg(not(feature = "log"))]
+            let _ = result;
+        }
+
+        pub fn ticked(&mut self, mode: Mode) {
+            #[cfg(feature = "log")]
+            if mode.code() != self.mode.code() {
+                defmt::info!("mode: {}", mode);
+            }
+            self.mode = mode;
+        }
+    }
+
+    #[cfg(feature = "log")]
+    use defmt_semihosting as _;
+    #[cfg(feature = "log")]
+    defmt::timestamp!("{=u64:us}", crate::board::now().as_micros());
 }
 
 #[cfg(not(target_os = "none"))]

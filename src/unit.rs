@@ -9,7 +9,7 @@ use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
-use crate::health::{Health, Refusal};
+use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
@@ -175,6 +175,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.health.count(cause);
         }
         result
+    }
+
+    /// Takes note of what the platform around the unit met with, so many times since it last said so.
+    pub fn note(&mut self, incident: Incident, times: u32) {
+        self.health.add(incident.cause(), times);
     }
 
     /// The task of one period: always answers, and takes bounded time. A `now` before the last one is counted and taken as

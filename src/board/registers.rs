@@ -1,24 +1,39 @@
 //! The registers of the chip that the board uses, by name: words enter, words leave. Addresses and bits are those of
 //! ST's reference manual RM0090.
+#![allow(dead_code)] // each port has registers that the other does not use
 
 /// A 32-bit register.
 #[derive(Clone, Copy)]
 pub struct Register(usize);
 
-/// Enables of the buses' peripherals.
+/// Oscillators and the PLL; clock of the buses; enables of the buses' peripherals; why the chip was reset.
+pub const RCC_CR: Register = Register(0x4002_3800);
+pub const RCC_PLLCFGR: Register = Register(0x4002_3804);
+pub const RCC_CFGR: Register = Register(0x4002_3808);
 pub const RCC_AHB1ENR: Register = Register(0x4002_3830);
+pub const RCC_APB1ENR: Register = Register(0x4002_3840);
 pub const RCC_APB2ENR: Register = Register(0x4002_3844);
-/// Port A: mode of each pin, and the alternate function of pins 8 to 15.
+pub const RCC_CSR: Register = Register(0x4002_3874);
+/// Wait states of the flash.
+pub const FLASH_ACR: Register = Register(0x4002_3c00);
+/// Port A: mode of each pin, alternate function of pins 8 to 15, and the word that sets and resets outputs.
 pub const GPIOA_MODER: Register = Register(0x4002_0000);
+pub const GPIOA_BSRR: Register = Register(0x4002_0018);
 pub const GPIOA_AFRH: Register = Register(0x4002_0024);
 /// The serial line.
 pub const USART1_SR: Register = Register(0x4001_1000);
 pub const USART1_DR: Register = Register(0x4001_1004);
 pub const USART1_BRR: Register = Register(0x4001_1008);
 pub const USART1_CR1: Register = Register(0x4001_100c);
-
-const RCC_CR: Register = Register(0x4002_3800);
-const HSI_READY: u32 = 1 << 1;
+/// The independent watchdog.
+pub const IWDG_KR: Register = Register(0x4000_3000);
+pub const IWDG_PR: Register = Register(0x4000_3004);
+pub const IWDG_RLR: Register = Register(0x4000_3008);
+/// The CAN controller, as far as its driver does not know it, and its pins on port B.
+pub const CAN1_MCR: Register = Register(0x4000_6400);
+pub const GPIOB_MODER: Register = Register(0x4002_0400);
+pub const GPIOB_AFRH: Register = Register(0x4002_0424);
+pub const CAN1_ESR: Register = Register(0x4000_6418);
 
 impl Register {
     pub fn read(self) -> u32 {
@@ -35,11 +50,10 @@ impl Register {
     pub fn set(self, mask: u32, bits: u32) {
         self.write(self.read() & !mask | bits);
     }
-}
 
-/// How fast the core runs. After reset that is the internal 16 MHz oscillator, which says that it is ready, or no
-/// instruction would be executed. A chip that denies it has no clock tree: it is the emulator's model, whose timer
-/// counts at 168 MHz.
-pub fn core_hz() -> u32 {
-    if RCC_CR.read() & HSI_READY != 0 { 16_000_000 } else { 168_000_000 }
+    /// Waits until all of these bits are set, but not for ever; whether they are.
+    pub fn wait_for(self, bits: u32) -> bool {
+        // A crystal takes 2 ms at most, which is 32,000 cycles of the 16 MHz that the chip starts with.
+        (0..32_000).any(|_| self.read() & bits == bits)
+    }
 }

@@ -1,35 +1,117 @@
-//! The line protocol of serial CAN adapters: bytes enter and frames leave ([`Line`]), and the other way round
-//! ([`encode`]).
+//! The line protocol of serial CAN adapters: bytes of the serial line enter and frames leave, and the other way round.
 //!
 //! A frame is one line that ends with a carriage return: `t` and three hexadecimal digits of a standard identifier or
 //! `T` and eight of an extended one, a digit for the length, and two digits for each data byte; `r` and `R` are the
 //! same for remote frames, without data. Everything else (set-up commands, acknowledgements) is not for the unit.
 
-use super::CanFrame;
-use embedded_can::{ExtendedId, Frame, Id, StandardId};
+use super::clocks::Clocks;
+use super::frame::CanFrame;
+use super::port::Port;
+use super::serial::{self, Overrun, Serial};
+use embedded_can::nb::Can;
+use embedded_can::{Error, ErrorKind, ExtendedId, Frame, Id, StandardId};
 use heapless::Vec;
 
 /// The longest line that says anything: an extended frame with 8 bytes of data.
 const LONGEST: usize = 1 + 8 + 1 + 2 * 8;
 
+/// A line with its end.
+type Text = Vec<u8, { LONGEST + 1 }>;
+
+/// A serial CAN adapter as a CAN port.
+pub struct Slcan {
+    serial: Serial,
+    line: Line,
+    /// The line that is being sent, last byte first.
+    outgoing: Text,
+}
+
+impl Error for Overrun {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Overrun
+    }
+}
+
+impl Can for Slcan {
+    type Frame = CanFrame;
+    type Error = Overrun;
+
+    /// Begins to send a frame, if the one before it has gone.
+    fn transmit(&mut self, frame: &CanFrame) -> nb::Result<Option<CanFrame>, Overrun> {
+        if self.pump() {
+            return Err(nb::Error::WouldBlock);
+        }
+        self.outgoing = encode(frame);
+        self.outgoing.reverse();
+        self.pump();
+        Ok(None)
+    }
+
+    fn receive(&mut self) -> nb::Result<CanFrame, Overrun> {
+        loop {
+            match self.serial.read() {
+                Ok(None) => return Err(nb::Error::WouldBlock),
+                Ok(Some(byte)) => {
+                    if let Some(frame) = self.line.take(byte) {
+                        return Ok(frame);
+                    }
+                }
+                Err(overrun) => {
+                    self.line.spoil();
+                    return Err(nb::Error::Other(overrun));
+                }
+            }
+        }
+    }
+}
+
+impl Port for Slcan {
+    const INTERRUPT: i16 = serial::INTERRUPT;
+
+    fn start(clocks: &Clocks) -> Self {
+        Self { serial: Serial::start(clocks), line: Line::new(), outgoing: Text::new() }
+    }
+
+    fn pump(&mut self) -> bool {
+        while let Some(&byte) = self.outgoing.last() {
+            if !self.serial.write(byte) {
+                return true;
+            }
+            self.outgoing.pop();
+        }
+        false
+    }
+
+    /// The adapter keeps the state of its bus to itself.
+    fn is_bus_off(&self) -> bool {
+        false
+    }
+}
+
 /// The line that is being received. What follows the longest line, up to its end, is dropped with it.
-pub struct Line {
+struct Line {
     text: Vec<u8, LONGEST>,
-    too_long: bool,
+    /// Whether it is longer than any that says something, or a byte of it is lost.
+    spoilt: bool,
 }
 
 impl Line {
-    pub fn new() -> Self {
-        Self { text: Vec::new(), too_long: false }
+    const fn new() -> Self {
+        Self { text: Vec::new(), spoilt: false }
+    }
+
+    /// A byte of it is lost.
+    fn spoil(&mut self) {
+        self.spoilt = true;
     }
 
     /// The frame that this byte completes.
-    pub fn take(&mut self, byte: u8) -> Option<CanFrame> {
+    fn take(&mut self, byte: u8) -> Option<CanFrame> {
         if byte != b'\r' {
-            self.too_long |= self.text.push(byte).is_err();
+            self.spoilt |= self.text.push(byte).is_err();
             return None;
         }
-        let frame = if self.too_long { None } else { decode(&self.text) };
+        let frame = if self.spoilt { None } else { decode(&self.text) };
         *self = Self::new();
         frame
     }
@@ -66,8 +148,8 @@ fn hexadecimal(digits: &[u8]) -> Option<u32> {
 }
 
 /// The line of a frame, with its end.
-pub fn encode(frame: &impl Frame) -> Vec<u8, { LONGEST + 1 }> {
-    let mut line = Vec::new();
+fn encode(frame: &impl Frame) -> Text {
+    let mut line = Text::new();
     let (kind, id, digits) = match frame.id() {
         Id::Standard(id) => (b't', u32::from(id.as_raw()), 3),
         Id::Extended(id) => (b'T', id.as_raw(), 8),
@@ -84,7 +166,7 @@ pub fn encode(frame: &impl Frame) -> Vec<u8, { LONGEST + 1 }> {
     line
 }
 
-fn push_hexadecimal(line: &mut Vec<u8, { LONGEST + 1 }>, value: u32, digits: u32) {
+fn push_hexadecimal(line: &mut Text, value: u32, digits: u32) {
     for place in (0..digits).rev() {
         let digit = char::from_digit(value >> (4 * place) & 0xf, 16).map_or(b'0', |digit| digit as u8);
         let _ = line.push(digit.to_ascii_uppercase());

@@ -159,7 +159,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
 
     fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<(RingPosition, Speed)> {
         // Before its first step and after its last one those are held.
-        let behind = self.grid.nearest(self.grid.time_of(index).minus(delay)).clamp(ahead.first(), ahead.last());
+        let behind = self.grid.nearest(self.grid.time_of(index).minus(delay)).min(ahead.last()).max(ahead.first());
         let after = behind.saturating_add(1).min(ahead.last());
         Some(adjusted(ahead.at(behind)?, ahead.at(after)?, delay, self.grid.step))
     }

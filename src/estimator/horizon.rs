@@ -248,7 +248,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
 
     /// The step nearest to an index among those there are.
     fn held(&self, index: i64) -> Option<Reading> {
-        let index = index.clamp(self.first, self.last().max(self.first));
+        let index = index.min(self.last()).max(self.first);
         self.at(index).map(|step| self.reading(step))
     }
 

@@ -150,14 +150,16 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     fn insert(&mut self, sample: Sample) -> Result<Admission, Refusal> {
         let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
         let is_news = older == self.samples.len();
+        // The others make room one by one, so that nothing here can be out of bounds.
+        let mut moved = sample;
         if self.samples.is_full() {
             if older == 0 {
                 return Err(Refusal::OutOfOrder);
             }
-            self.samples.remove(0);
-            let _ = self.samples.insert(older.saturating_sub(1), sample); // there is room for one
+            self.samples.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
         } else {
-            let _ = self.samples.insert(older, sample);
+            self.samples.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
+            let _ = self.samples.push(moved); // it is not full
         }
         Ok(if is_news { Admission::News } else { Admission::History })
     }

@@ -1,0 +1,49 @@
+//! The independent watchdog: finished ticks enter; if five in a row are missing, a reset leaves. And how often that has
+//! happened since power came on.
+
+use super::registers::{IWDG_KR, IWDG_PR, IWDG_RLR, RCC_CSR};
+use core::mem::MaybeUninit;
+
+/// By the watchdog's own oscillator, which is 47 % slow or 60 % fast at worst: 30 to 95 ms.
+const TIMEOUT_MS: u32 = 50;
+/// After so many restarts the unit stays down: a reset loop would look alive.
+const MOST_RESTARTS: u32 = 3;
+
+const RESET_BY_WATCHDOG: u32 = 1 << 29;
+const CLEAR_CAUSES: u32 = 1 << 24;
+
+/// The count and its complement. The start-up code leaves this section alone, so that it outlives a reset.
+#[unsafe(link_section = ".uninit.RESTARTS")]
+static mut RESTARTS: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
+
+/// How often the watchdog has restarted the unit since power came on; `None` if that was too often. To be called once.
+pub fn restarts() -> Option<u32> {
+    let by_watchdog = RCC_CSR.read() & RESET_BY_WATCHDOG != 0;
+    RCC_CSR.set(0, CLEAR_CAUSES);
+    let place = (&raw mut RESTARTS).cast::<[u32; 2]>();
+    // SAFETY: only this function accesses the static, and it runs once, before any interrupt is enabled. The read is
+    // volatile, so the memory holds some words, whatever they are: any are valid, and chance ones are told by the complement.
+    let [count, complement] = unsafe { place.read_volatile() };
+    let count = if by_watchdog && count == !complement { count.wrapping_add(1) } else { u32::from(by_watchdog) };
+    // SAFETY: as above.
+    unsafe { place.write_volatile([count, !count]) };
+    (count <= MOST_RESTARTS).then_some(count)
+}
+
+/// The watchdog, running: nothing stops it any more.
+pub struct Watchdog(());
+
+impl Watchdog {
+    pub fn start() -> Self {
+        IWDG_KR.write(0x5555); // unlocks the two
+        IWDG_PR.write(3); // 32 kHz / 32
+        IWDG_RLR.write(TIMEOUT_MS);
+        IWDG_KR.write(0xcccc);
+        Self(())
+    }
+
+    /// A tick is finished.
+    pub fn feed(&mut self) {
+        IWDG_KR.write(0xaaaa);
+    }
+}

@@ -1,0 +1,165 @@
+//! What the core costs on the ECU: nothing enters, a line per measurement leaves (`name peers steps count`).
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
+use cortex_m_semihosting::hprintln;
+use holdover::time::{Duration, Instant};
+use holdover::{Config, OnboardUnit};
+use holdover_image::counter::Counter;
+use holdover_image::road::{EGO, Road};
+use holdover_image::stack;
+
+const CAPACITY: usize = 400;
+const PERIOD: u64 = 10_000;
+/// How old the peers' samples are when they arrive, unless something else is measured.
+const AGE: Duration = Duration::from_millis(40);
+
+#[panic_handler]
+fn panicked(info: &core::panic::PanicInfo) -> ! {
+    hprintln!("{}", info);
+    debug::exit(EXIT_FAILURE);
+    loop {}
+}
+
+/// What a second of ticks is to show.
+#[derive(Clone, Copy, PartialEq)]
+enum Second {
+    /// All peers talk, in ticks in which the unit does not.
+    Usual,
+    /// The last peer talks by itself.
+    One,
+    /// All peers talk and have changed their minds, in the tick in which the unit sends.
+    All,
+    /// As before, and send their horizons.
+    Horizons,
+    /// As `All`, with samples of 2 s ago.
+    Late,
+}
+
+/// The most that each door took.
+#[derive(Default)]
+struct Worst {
+    quiet: u32,
+    send: u32,
+    one: u32,
+    all: u32,
+    horizons: u32,
+    late: u32,
+    receive: u32,
+    frames: u32,
+    received: u32,
+}
+
+struct Bench<'a, const PEERS: usize> {
+    unit: &'a mut OnboardUnit<PEERS, 8, CAPACITY>,
+    counter: &'a Counter,
+    road: Road,
+    worst: Worst,
+}
+
+impl<const PEERS: usize> Bench<'_, PEERS> {
+    fn second(&mut self, number: u64, second: Second) {
+        let Self { unit, counter, road, worst } = self;
+        for tick in 0..100 {
+            let at = Instant::from_micros(1_000_000 * number + PERIOD * tick);
+            let mut hear = |frame: &_| {
+                let (_, count) = counter.count(|| unit.receive(at, frame));
+                worst.receive = worst.receive.max(count);
+                worst.received += count;
+                worst.frames += 1;
+            };
+            if tick % 50 == 0 {
+                road.synchronise(at, &mut hear);
+            }
+            road.ego(at, &mut hear);
+            let phase = tick % 10;
+            let age = if second == Second::Late { Duration::from_millis(2_000) } else { AGE };
+            for peer in 0..PEERS as u8 {
+                let is_last = usize::from(peer) == PEERS - 1;
+                let due = match second {
+                    Second::Usual => 5,
+                    Second::One if is_last => 5,
+                    Second::One => 7,
+                    Second::All | Second::Horizons | Second::Late => 0,
+                };
+                if phase != due {
+                    continue;
+                }
+                if second != Second::One {
+                    road.intent_of(peer, second != Second::Usual && tick % 20 == 0, &mut hear);
+                }
+                road.motion_of(peer, at, age, &mut hear);
+                if second == Second::Horizons {
+                    road.horizon_of(peer, &mut hear);
+                }
+            }
+            let (answer, count) = counter.count(|| unit.tick(at));
+            let place = match (second, phase) {
+                (Second::Usual, 0) => &mut worst.send,
+                (Second::Usual, 1..=4 | 6..=9) => &mut worst.quiet,
+                (Second::One, 5) => &mut worst.one,
+                (Second::All, 0) => &mut worst.all,
+                (Second::Horizons, 0) => &mut worst.horizons,
+                (Second::Late, 0) => &mut worst.late,
+                _ => continue,
+            };
+            *place = (*place).max(count);
+            let is_followed = answer.estimate.is_some_and(|estimate| estimate.link_on);
+            assert!(number < 2 || is_followed, "{number} {tick} {:?} {:?}", answer.estimate, unit.health());
+        }
+    }
+}
+
+/// All measurements with so many peers.
+#[inline(never)]
+fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, counter: &Counter) {
+    for steps in [50, 100, 400] {
+        let mut config = Config::car(EGO);
+        config.prediction.horizon = Duration::from_millis(10 * (steps - 2));
+        let from = stack::paint();
+        let (started, count) = counter.count(|| unit.start(&config));
+        assert!(started.is_ok());
+        hprintln!("start {} {} {}", PEERS, steps, count);
+        let mut bench = Bench { unit, counter, road: Road::new(PEERS as u8), worst: Worst::default() };
+        let seconds = [Second::Usual, Second::Usual, Second::One, Second::All, Second::Horizons];
+        // Before the samples of 2 s ago it is quiet for that long: they are to be the newest.
+        for (number, second) in (0..).zip(seconds).chain([(8, Second::Late)]) {
+            if number == 1 {
+                bench.worst = Worst::default();
+            }
+            bench.second(number, second);
+        }
+        let worst = bench.worst;
+        for (name, count) in [
+            ("quiet", worst.quiet),
+            ("send", worst.send),
+            ("one", worst.one),
+            ("all", worst.all),
+            ("horizons", worst.horizons),
+            ("late", worst.late),
+            ("receive", worst.receive),
+            ("receive-mean", worst.received / worst.frames),
+            ("stack", stack::depth(from) as u32),
+        ] {
+            hprintln!("{} {} {} {}", name, PEERS, steps, count);
+        }
+        hprintln!("refused {} {} {}", PEERS, steps, unit.health().total());
+    }
+}
+
+#[entry]
+fn main() -> ! {
+    static mut EIGHT: OnboardUnit<8, 8, CAPACITY> = OnboardUnit::idle();
+    static mut FOUR: OnboardUnit<4, 8, CAPACITY> = OnboardUnit::idle();
+    static mut ONE: OnboardUnit<1, 8, CAPACITY> = OnboardUnit::idle();
+    if let Some(counter) = Counter::start() {
+        measure(ONE, &counter);
+        measure(FOUR, &counter);
+        measure(EIGHT, &counter);
+        debug::exit(EXIT_SUCCESS);
+    }
+    debug::exit(EXIT_FAILURE);
+    loop {}
+}

@@ -1,0 +1,113 @@
+//! A road on which the peers drive one behind the other, and the ego behind the last of them: a time enters, the frames
+//! that the ego's bus carries then leave.
+
+use holdover::parameters::{DAMPING, GAIN};
+use holdover::time::{Duration, GnssTime, Instant};
+use holdover::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
+use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
+use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
+
+/// The ego's station; a peer's is the number of its slot.
+pub const EGO: StationHash = StationHash(100);
+/// GNSS time when the unit's clock started.
+const EPOCH: u64 = 1_465_000_123_000_000;
+const SPEED: i32 = 11_000;
+/// Front bumper to front bumper, for a gap that the law is content with.
+const SPACING: i64 = 18_000;
+
+/// The road.
+pub struct Road {
+    peers: u8,
+    sender: Sender<8>,
+    tag: u8,
+    sequence: u8,
+}
+
+impl Road {
+    /// With so many peers, up to 8.
+    pub fn new(peers: u8) -> Self {
+        Self { peers, sender: Sender::new(BaseId::DEFAULT), tag: 0, sequence: 0 }
+    }
+
+    fn say(&mut self, message: &Message, hear: &mut impl FnMut(&Frame)) {
+        let _ = self.sender.send(message, &mut |frame| hear(&frame));
+    }
+
+    /// The time base.
+    pub fn synchronise(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
+        self.sequence = (self.sequence + 1) % 16;
+        let (sequence, time) = (self.sequence, EPOCH + at.as_micros());
+        self.say(&Message::Sync(Sync { sequence, seconds: (time / 1_000_000) as u32 }), hear);
+        self.say(&Message::FollowUp(FollowUp { sequence, micros: (time % 1_000_000) as u32 }), hear);
+    }
+
+    /// The ego's own motion and the driver's wish.
+    pub fn ego(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
+        let predecessor = Predecessor::Station(StationHash(self.peers - 1));
+        let wish =
+            EgoIntent { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
+        self.say(&Message::EgoIntent(wish), hear);
+        let motion = self.motion(at, self.peers, EGO);
+        self.say(&Message::Ego(Said::Motion(motion)), hear);
+    }
+
+    /// A peer's motion, sampled `age` ago.
+    pub fn motion_of(&mut self, peer: u8, at: Instant, age: Duration, hear: &mut impl FnMut(&Frame)) {
+        let motion = self.motion(at.minus(age), peer, StationHash(peer));
+        self.say(&Message::Peer(Slot(peer), Said::Motion(motion)), hear);
+    }
+
+    /// How a peer drives; with another time gap if `other`.
+    pub fn intent_of(&mut self, peer: u8, other: bool, hear: &mut impl FnMut(&Frame)) {
+        let intent = Intent {
+            length: Distance::from_mm(4_800),
+            standstill: Distance::from_mm(2_000),
+            predecessor: peer.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
+            target_speed: Speed::from_mm_per_s(13_400),
+            time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
+            gain: GAIN,
+            damping: DAMPING,
+            lag: FineSeconds::from_millis(300),
+            limits: Limits {
+                acceleration: Acceleration::from_mm_per_s2(2_500),
+                braking: Acceleration::from_mm_per_s2(4_000),
+                jerk: Jerk::from_mm_per_s3(5_000),
+                emergency_braking: Acceleration::from_mm_per_s2(8_000),
+            },
+            horizon_tenths: 39,
+        };
+        self.say(&Message::Peer(Slot(peer), Said::Intent(intent)), hear);
+    }
+
+    /// The horizon that a peer computed from the motion that it sent last: on at its speed.
+    pub fn horizon_of(&mut self, peer: u8, hear: &mut impl FnMut(&Frame)) {
+        let knots = SHARES_PER_MILLE.map(|share| Knot {
+            displacement: Distance::from_mm((i64::from(SPEED) * 39 * i64::from(share) / 10_000) as i32),
+            speed: Speed::from_mm_per_s(SPEED),
+            acceleration: Acceleration::ZERO,
+            bow: Distance::ZERO,
+        });
+        self.say(&Message::Peer(Slot(peer), Said::Horizon(Knots { tag: self.tag, knots })), hear);
+    }
+
+    fn motion(&mut self, at: Instant, place: u8, station: StationHash) -> Motion {
+        self.tag = (self.tag + 1) % 4;
+        let ahead = SPACING * (i64::from(self.peers) - i64::from(place));
+        let way = i64::from(SPEED) * at.as_micros() as i64 / 1_000_000;
+        Motion {
+            tag: self.tag,
+            position: WirePosition::from_position(Position::from_mm(100_000 + ahead + way)),
+            speed: Speed::from_mm_per_s(SPEED),
+            acceleration: Acceleration::ZERO,
+            demand: Acceleration::ZERO,
+            stamp: GnssTime::from_micros(EPOCH + at.as_micros()).stamp(),
+            position_accuracy: Some(Distance::from_mm(500)),
+            speed_accuracy: Some(Speed::from_mm_per_s(200)),
+            station,
+        }
+    }
+}
