@@ -133,10 +133,12 @@ fn the_link() {
     for set in at_least_one {
         range(ConfigError::Link, [1, i64::MAX / 2], |config, micros| set(config, Duration::from_micros(micros)));
     }
-    let bounded: [(Set, [i64; 2]); 4] = [
+    let bounded: [(Set, [i64; 2]); 5] = [
         (|config, time| config.link.tolerance = time, [0, i64::MAX / 2]),
         (|config, time| config.link.stale = time, [1, 10_000 * MS]),
-        (|config, time| config.link.future = time, [0, 1_000 * MS - 1]),
+        // A stamp may be as far in the future as the clocks' error, which is 0.5 ms here.
+        (|config, time| config.link.future = time, [500, 1_000 * MS - 1]),
+        (|config, time| config.link.clock_error = time, [0, 5 * MS]),
         (|config, time| config.link.assumed_delay = time, [0, 2_000 * MS]),
     ];
     for (set, ends) in bounded {
@@ -159,13 +161,17 @@ fn the_envelope() {
         |envelope, bits| envelope.jerk = Jerk::from_bits(bits),
         |envelope, bits| envelope.speed = Speed::from_bits(bits),
     ];
-    for set in set {
-        for value in [i64::from(i32::MIN), -2, -1, 0, 1, 2, i64::from(i32::MAX)] {
+    let capable = Config::car(StationHash(1)).limits.emergency_braking.to_bits();
+    for (place, set) in set.into_iter().enumerate() {
+        let largest = if place == 1 { capable } else { i32::MAX };
+        let around = [largest.saturating_sub(1), largest, largest.saturating_add(1)].map(i64::from);
+        for value in [i64::from(i32::MIN), -2, -1, 0, 1, 2].into_iter().chain(around) {
             let mut envelope = SOUND;
             set(&mut envelope, int(value));
             let config = Config { envelope: Some(envelope), ..Config::car(StationHash(1)) };
-            let expected = if value > 0 { Ok(()) } else { Err(ConfigError::Envelope) };
-            assert_eq!(config.check(CAPACITY), expected, "{value}");
+            let is_sound = value > 0 && value <= i64::from(largest);
+            let expected = if is_sound { Ok(()) } else { Err(ConfigError::Envelope) };
+            assert_eq!(config.check(CAPACITY), expected, "{place} {value}");
         }
     }
 }

@@ -78,7 +78,9 @@ impl Bounds {
     fn check(&mut self, mode: Mode, command: Acceleration) -> Result<(), TestCaseError> {
         if let Some(last) = self.last.filter(|last| mode != Mode::Standby && self.range.contains(last)) {
             prop_assert!(self.range.contains(&command), "{command:?} after {last:?} in {mode:?}");
-            prop_assert!(command.minus(last).magnitude() <= self.change, "{command:?} after {last:?} in {mode:?}");
+            // Both commands are rounded to the format from the wire's steps.
+            let change = self.change.plus(Acceleration::from_bits(2));
+            prop_assert!(command.minus(last).magnitude() <= change, "{command:?} after {last:?} in {mode:?}");
         }
         self.last = Some(command);
         Ok(())
