@@ -6,6 +6,8 @@ use std::{env, fs, path::PathBuf};
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=memory.x");
+    // Set by the check that a panic is found.
+    println!("cargo::rustc-check-cfg=cfg(seeded_panic)");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
         return;
     }

@@ -40,6 +40,8 @@ mod firmware {
                 }
                 let Ok(()) = board.busy.set_high();
                 let answer = unit.tick(now);
+                #[cfg(seeded_panic)] // a panic that the check of `no-panic` has to find
+                assert!(answer.frames.len() < 16);
                 let Ok(()) = board.busy.set_low();
                 log.ticked(answer.mode);
                 for frame in &answer.frames {

@@ -63,7 +63,7 @@ fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration
     let sum = i64::from(damping.to_bits().max(0)) + i64::from(time_gap.to_bits().max(0));
     // κ < 4 and the sum < 8, both in 29 bits: their product stays below 2⁶³.
     let divisor = ONE + ((kappa * sum) >> 29);
-    Gain::from_bits(crate::fixed::saturate_i32(((k << 29) + divisor / 2) / divisor))
+    Gain::from_bits(crate::fixed::saturate_i32(((k << 29) + divisor / 2).checked_div(divisor).unwrap_or(0)))
 }
 
 /// Whether the semi-implicit step is stable: `k δt² < 4 + 2 k δt (t_g + γ)`.
