@@ -139,6 +139,16 @@ enum holdover_status_t
   HOLDOVER_REFUSED_STUCK = -82,
   // A time before one that the unit was given already.
   HOLDOVER_REFUSED_CLOCK_BACKWARDS = -83,
+  // Not a refusal, but counted like one: the platform's receive queue was full.
+  HOLDOVER_REFUSED_RECEIVE_OVERFLOW = -84,
+  // Likewise: the bus controller lost a frame.
+  HOLDOVER_REFUSED_OVERRUN = -85,
+  // Likewise: the platform's transmit queue was full.
+  HOLDOVER_REFUSED_TRANSMIT_OVERFLOW = -86,
+  // Likewise: the bus controller left the bus.
+  HOLDOVER_REFUSED_BUS_OFF = -87,
+  // Likewise: the watchdog restarted the unit.
+  HOLDOVER_REFUSED_RESTART = -88,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -2,6 +2,10 @@
 //!
 //! It is immutable afterwards, `Copy`, holds no pointer, and can therefore lie in a calibration section.
 
+mod check;
+
+pub use check::ConfigError;
+
 use crate::dynamics::Body;
 use crate::parameters;
 use crate::time::Duration;
@@ -179,71 +183,6 @@ pub struct Config {
     pub envelope: Option<Envelope>,
 }
 
-/// Why a configuration was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum ConfigError {
-    /// `period` is outside 1 to 100 ms.
-    Period,
-    /// `step` is outside 1 ms to 1 s.
-    Step,
-    /// `horizon` is shorter than two steps, longer than 25.5 s, or needs more steps than the capacity.
-    Horizon,
-    /// `length` is outside 0 to 40.95 m.
-    Length,
-    /// `lag` is outside 0 to 1.998 s.
-    Lag,
-    /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s² or than emergency
-    /// braking.
-    Limits,
-    /// `time_gap` is outside 0.1 to 3.995 s.
-    TimeGap,
-    /// `standstill` is outside 0 to 10.23 m.
-    Standstill,
-    /// A gain is out of range.
-    Gain,
-    /// The semi-implicit step is unstable: `k δt² >= 4 + 2 k δt (t_g + γ)`.
-    Unstable,
-    /// A speed is outside 0 to 65.534 m/s.
-    Speed,
-    /// `a_max` of the free road is below 0.1 m/s² or above the limit on acceleration.
-    FreeRoad,
-    /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps; or the clock may be off by more
-    /// than what is refused as future.
-    Link,
-    /// The vehicle of eqs 1-3 has no mass or no brakes.
-    Body,
-    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle.
-    Envelope,
-}
-
-impl core::fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::Period => "period is outside 1 to 100 ms",
-            Self::Step => "step is outside 1 ms to 1 s",
-            Self::Horizon => "horizon is shorter than two steps, longer than 25.5 s, or needs more steps than there is room for",
-            Self::Length => "length is outside 0 to 40.95 m",
-            Self::Lag => "lag is outside 0 to 1.998 s",
-            Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³)",
-            Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
-            Self::Standstill => "standstill is outside 0 to 10.23 m",
-            Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
-            Self::Unstable => "the prediction is unstable with this gain at this step; lower the gain or the step",
-            Self::Speed => "a speed is outside 0 to 65.534 m/s",
-            Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
-            Self::Link => "a time of the link is out of range",
-            Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
-            Self::Envelope => "a limit of the envelope is zero, its margin is negative, or its braking is harder than emergency braking",
-        })
-    }
-}
-
-impl core::error::Error for ConfigError {}
-
-const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
-const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
-
 impl Config {
     /// Of a unit that is not started: all zero, and refused by every check.
     pub(crate) const NONE: Self = Self {
@@ -343,84 +282,5 @@ impl Config {
         {
             (self.prediction.horizon.as_micros() / step) as usize + 2
         }
-    }
-
-    /// Checks everything against its documented range.
-    ///
-    /// # Errors
-    /// The first value that is out of its range, by name.
-    pub fn check(&self, capacity: usize) -> Result<(), ConfigError> {
-        let positive = |d: Duration| d > Duration::ZERO;
-        let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
-        let millis = Duration::from_millis;
-        ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
-        let Prediction { step, horizon, .. } = self.prediction;
-        ensure((millis(1)..=millis(1000)).contains(&step), ConfigError::Step)?;
-        ensure(
-            horizon >= step.times(2) && horizon <= millis(25_500) && self.steps() <= capacity,
-            ConfigError::Horizon,
-        )?;
-        ensure((Distance::ZERO..=Distance::from_mm(40_950)).contains(&self.length), ConfigError::Length)?;
-        ensure((FineSeconds::ZERO..=FineSeconds::from_millis(1998)).contains(&self.lag), ConfigError::Lag)?;
-        self.check_limits()?;
-        self.check_law()?;
-        let link = &self.link;
-        ensure(
-            positive(link.period)
-                && link.tolerance >= Duration::ZERO
-                && positive(link.stale)
-                && link.stale <= parameters::STALE_MAX
-                && link.future >= Duration::ZERO
-                && link.future < millis(1000)
-                && (Duration::ZERO..=link.future).contains(&link.clock_error)
-                && [link.slot_reuse, link.holdover, link.ego_timeout, link.sync_timeout].into_iter().all(positive)
-                && link.assumed_delay >= Duration::ZERO
-                && link.assumed_delay <= millis(2000),
-            ConfigError::Link,
-        )?;
-        ensure(self.body.is_sane(), ConfigError::Body)?;
-        ensure(
-            self.envelope.is_none_or(|e| {
-                e.acceleration > Acceleration::ZERO
-                    && e.braking > Acceleration::ZERO
-                    && e.braking <= self.limits.emergency_braking
-                    && e.jerk > Jerk::ZERO
-                    && e.speed > Speed::ZERO
-                    && e.margin >= Distance::ZERO
-            }),
-            ConfigError::Envelope,
-        )
-    }
-
-    fn check_limits(&self) -> Result<(), ConfigError> {
-        let Limits { acceleration, braking, jerk, emergency_braking } = self.limits;
-        let holds = acceleration > Acceleration::ZERO
-            && acceleration <= WIRE_ACCELERATION_MAX
-            && braking > Acceleration::ZERO
-            && braking <= parameters::BRAKING_MAX
-            && braking <= emergency_braking
-            && emergency_braking <= WIRE_ACCELERATION_MAX
-            && jerk > Jerk::ZERO
-            && jerk <= Jerk::from_mm_per_s3(51_150);
-        if holds { Ok(()) } else { Err(ConfigError::Limits) }
-    }
-
-    fn check_law(&self) -> Result<(), ConfigError> {
-        let law = &self.law;
-        let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
-        let gaps = Seconds::from_millis(100)..=Seconds::from_millis(3995);
-        ensure(gaps.contains(&law.time_gap), ConfigError::TimeGap)?;
-        ensure((Distance::ZERO..=Distance::from_mm(10_230)).contains(&law.standstill), ConfigError::Standstill)?;
-        let gains = Gain::from_milli(10)..=Gain::from_milli(3999);
-        let dampings = Seconds::ZERO..=Seconds::from_millis(3999);
-        ensure(gains.contains(&law.gain) && dampings.contains(&law.damping), ConfigError::Gain)?;
-        let speeds = Speed::ZERO..=WIRE_SPEED_MAX;
-        ensure(speeds.contains(&law.target_speed) && speeds.contains(&law.max_speed), ConfigError::Speed)?;
-        let free = parameters::FREE_ROAD_ACCELERATION_MIN..=self.limits.acceleration;
-        ensure(free.contains(&law.free_road_acceleration), ConfigError::FreeRoad)?;
-        ensure(
-            crate::estimator::follower::is_stable(law.gain, law.damping, law.time_gap, self.prediction.step),
-            ConfigError::Unstable,
-        )
     }
 }

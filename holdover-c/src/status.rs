@@ -115,6 +115,16 @@ pub enum Status {
     RefusedStuck = -82,
     /// A time before one that the unit was given already.
     RefusedClockBackwards = -83,
+    /// Not a refusal, but counted like one: the platform's receive queue was full.
+    RefusedReceiveOverflow = -84,
+    /// Likewise: the bus controller lost a frame.
+    RefusedOverrun = -85,
+    /// Likewise: the platform's transmit queue was full.
+    RefusedTransmitOverflow = -86,
+    /// Likewise: the bus controller left the bus.
+    RefusedBusOff = -87,
+    /// Likewise: the watchdog restarted the unit.
+    RefusedRestart = -88,
 }
 
 impl From<ConfigError> for Status {
@@ -162,6 +172,11 @@ impl From<Refusal> for Status {
             Refusal::Implausible => Self::RefusedImplausible,
             Refusal::Stuck => Self::RefusedStuck,
             Refusal::ClockBackwards => Self::RefusedClockBackwards,
+            Refusal::ReceiveOverflow => Self::RefusedReceiveOverflow,
+            Refusal::Overrun => Self::RefusedOverrun,
+            Refusal::TransmitOverflow => Self::RefusedTransmitOverflow,
+            Refusal::BusOff => Self::RefusedBusOff,
+            Refusal::Restart => Self::RefusedRestart,
         }
     }
 }
@@ -218,6 +233,11 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedImplausible, c"refused: implausible"),
     (Status::RefusedStuck, c"refused: stuck"),
     (Status::RefusedClockBackwards, c"refused: clock_backwards"),
+    (Status::RefusedReceiveOverflow, c"refused: receive_overflow"),
+    (Status::RefusedOverrun, c"refused: overrun"),
+    (Status::RefusedTransmitOverflow, c"refused: transmit_overflow"),
+    (Status::RefusedBusOff, c"refused: bus_off"),
+    (Status::RefusedRestart, c"refused: restart"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

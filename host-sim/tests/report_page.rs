@@ -159,8 +159,8 @@ fn a_run_of_five_vehicles_makes_one_small_well_formed_page() {
     assert!(html.len() < 2_000_000, "{} bytes", html.len());
     // Left where a browser can open it: target/tmp/report.html.
     std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/report.html"), &html).unwrap();
-    assert_eq!(html.matches("<figure ").count(), 7);
-    assert_eq!(html.matches("<svg ").count(), 2 * 8, "seven figures, one with two panels, at two widths");
+    assert_eq!(html.matches("<figure ").count(), 9);
+    assert_eq!(html.matches("<svg ").count(), 2 * 10, "nine figures, one with two panels, at two widths");
 }
 
 #[test]
@@ -235,7 +235,7 @@ fn text_from_outside_stays_text() {
 fn an_empty_report_is_a_page_that_says_so() {
     let html = RunReport::default().render();
     check(&html);
-    assert_eq!(html.matches("no data</text>").count(), 2 * 7);
+    assert_eq!(html.matches("no data</text>").count(), 2 * 9);
     assert!(html.contains("There is nothing to show") && html.contains("No frame was refused."));
     let one_point = RunReport { error_ours: Series::new("ours", [(0.0, 0.0)]), ..Default::default() };
     check(&one_point.render());
