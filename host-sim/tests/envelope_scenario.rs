@@ -82,10 +82,7 @@ fn keys_that_cannot_be_are_refused_with_file_line_cause_and_remedy() {
             "[[vehicle]]\nrange_sensor = true\n[[vehicle]]",
             "s.toml:2: the leader (vehicle 0) has a `range_sensor`, and nobody is ahead of it; remove it",
         ),
-        (
-            "[[vehicle]]\n[[vehicle]]\nrange_sensor = \"yes\"",
-            "s.toml:3: `range_sensor` is \"yes\"; give true or false",
-        ),
+        ("[[vehicle]]\n[[vehicle]]\nrange_sensor = \"yes\"", "s.toml:3: `range_sensor` is \"yes\"; give true or false"),
         (
             "[[vehicle]]\n[[vehicle]]\nrange_sensor = true\nrange_accuracy_m = 1.6",
             "s.toml:4: `range_accuracy_m` is 1.6; give metres from 0 to 1.55",
