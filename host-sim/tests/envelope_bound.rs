@@ -1,4 +1,4 @@
-//! Nothing is ever outside what is certain of it: the paper's scenario over a hundred seeds, with models that are right and
+//! Nothing is ever outside what is certain of it: the paper's scenario over many seeds, with models that are right and
 //! wrong, with and without the envelope and the range sensor.
 
 use holdover_sim::figures::Summary;
@@ -7,7 +7,10 @@ use holdover_sim::scenario::{Overrides, Scenario};
 use rayon::prelude::*;
 use std::path::Path;
 
-const SEEDS: u64 = 100;
+/// What is promised of a hundred runs.
+const MANY: u64 = 100;
+/// Where much else differs from run to run, fewer do.
+const SOME: u64 = 25;
 
 /// The paper's scenario with these keys in every vehicle but, for what needs one ahead, the leader.
 fn paper(of_all: &str, of_followers: &str, rest: &str) -> Scenario {
@@ -20,13 +23,13 @@ fn paper(of_all: &str, of_followers: &str, rest: &str) -> Scenario {
 }
 
 /// The figures of every seed's run.
-fn runs(scenario: &Scenario) -> Vec<Summary> {
+fn runs(scenario: &Scenario, seeds: u64) -> Vec<Summary> {
     let run = |seed| simulate(scenario, seed, None, |_| {}).unwrap().1;
-    (1..=SEEDS).into_par_iter().map(run).collect()
+    (1..=seeds).into_par_iter().map(run).collect()
 }
 
-fn hold(scenario: &Scenario) -> Vec<Summary> {
-    let runs = runs(scenario);
+fn hold(scenario: &Scenario, seeds: u64) -> Vec<Summary> {
+    let runs = runs(scenario, seeds);
     for (seed, run) in (1..).zip(&runs) {
         assert_eq!((run.bound.violations, run.bound.beyond_limits, run.collisions), (0, 0, 0), "seed {seed}");
         assert!(run.bound.median_width_m.is_some_and(|width_m| width_m < 0.5), "seed {seed}: {:?}", run.bound);
@@ -36,24 +39,24 @@ fn hold(scenario: &Scenario) -> Vec<Summary> {
 
 #[test]
 fn the_truth_is_inside_its_bound_in_a_hundred_runs() {
-    hold(&paper("", "", ""));
+    hold(&paper("", "", ""), MANY);
 }
 
 #[test]
 fn the_truth_is_inside_its_bound_when_the_actuators_lag_half_as_long_again_as_published() {
-    hold(&paper("plant_lag_s = 0.45", "", ""));
+    hold(&paper("plant_lag_s = 0.45", "", ""), MANY);
 }
 
 #[test]
 fn the_truth_is_inside_its_bound_while_the_envelope_brakes_and_nobody_collides() {
-    let runs = hold(&paper("", "", "[envelope]\nengaged = true\n"));
+    let runs = hold(&paper("", "", "[envelope]\nengaged = true\n"), SOME);
     assert!(runs.iter().all(|run| run.envelope.limited_share > 0.01), "a silence of 4 s without the envelope's doing");
     assert!(runs.iter().all(|run| run.min_gap_m.is_some_and(|gap_m| gap_m > 0.5)), "less than the margin is left");
 }
 
 #[test]
-fn the_truth_is_inside_its_bound_when_a_range_sensor_with_errors_narrows_it_and_the_envelope_has_nothing_to_do() {
+fn the_truth_is_inside_its_bound_when_a_range_sensor_with_errors_narrows_it_and_nobody_has_to_stop() {
     let sensor = "range_sensor = true\nrange_accuracy_m = 0.5\nrange_speed_accuracy_mps = 0.3";
-    let runs = hold(&paper("", sensor, "[envelope]\nengaged = true\n"));
+    let runs = hold(&paper("", sensor, "[envelope]\nengaged = true\n"), SOME);
     assert!(runs.iter().all(|run| run.full_stops == 0 && run.min_gap_m > Some(8.0)));
 }

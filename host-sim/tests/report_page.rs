@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use holdover_sim::report::{
     RunReport,
     plot::{Interval, Series},
-    run::{Limit, ModeTrack, SummaryRow, Verdict},
+    run::{BoundSample, Drive, Limit, ModeTrack, SummaryRow, Verdict},
 };
 use roxmltree::{Document, ParsingOptions};
 
@@ -41,6 +41,12 @@ fn five_vehicles(seconds: u32) -> RunReport {
         let lost = silent(t) || noise(u64::from(k) + 77) > 0.8;
         (t, (!lost).then(|| (0.04 + 0.04 * noise(u64::from(k) + 5)).max(0.0)))
     });
+    let bound = |t: f64| {
+        let age_s = if silent(t) { t - 4.0 } else { 0.1 };
+        let reach_m = |limit: f64| 0.1 + 0.5 * limit * age_s * age_s;
+        BoundSample { at_s: t, lowest_m: -reach_m(8.0), truth_m: -ours(t), highest_m: reach_m(2.5) }
+    };
+    let command = |t: f64| if (5.0..7.0).contains(&t) { -6.5 } else { 0.4 * (0.7 * t).sin() };
     let modes = |n: usize| ModeTrack {
         vehicle: name(n),
         changes: ticks()
@@ -106,7 +112,14 @@ fn five_vehicles(seconds: u32) -> RunReport {
         modes: (0..5).map(modes).collect(),
         refusals: vec![("stale stamp".into(), 3), ("wrong CRC".into(), 0), ("duplicate".into(), 1204)],
         notes: vec!["Errors count from 1 s on.".into()],
-        ..RunReport::default()
+        bound: ticks().map(bound).collect(),
+        drive: Drive {
+            vehicle: name(3),
+            engaged: true,
+            command: Series::new("commanded", ticks().map(|t| (t, command(t)))),
+            reached: Series::new("reached", ticks().map(|t| (t, command(t - 0.3)))),
+            limited_s: ticks().filter(|t| (5.0..7.0).contains(t)).collect(),
+        },
     }
 }
 
@@ -160,7 +173,7 @@ fn a_run_of_five_vehicles_makes_one_small_well_formed_page() {
     // Left where a browser can open it: target/tmp/report.html.
     std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/report.html"), &html).unwrap();
     assert_eq!(html.matches("<figure ").count(), 9);
-    assert_eq!(html.matches("<svg ").count(), 2 * 10, "nine figures, one with two panels, at two widths");
+    assert_eq!(html.matches("<svg ").count(), 2 * 11, "nine figures, two with two panels, at two widths");
 }
 
 #[test]
@@ -183,12 +196,33 @@ fn captions_say_what_the_series_hold() {
     assert!(error.contains("The lower panel shows ours alone") && error.contains("silent, 4–8 s"), "{error}");
     let channel = caption(&html, "The ego’s link");
     assert!(channel.contains("Of 200 messages"), "{channel}");
+    let bound = caption(&html, "What is certain of the position");
+    assert!(bound.contains("Its width is 0.253\u{a0}m in the median and 83.8\u{a0}m at the most"), "{bound}");
+    assert!(
+        bound.contains("inside at every one of 2,001 ticks") && bound.contains("cut off at 1.00\u{a0}m"),
+        "{bound}"
+    );
+    let drive = caption(&html, "Command and acceleration");
+    assert!(drive.contains("brakes with 6.50\u{a0}m/s² (at 5 s)"), "{drive}");
+    assert!(drive.contains("The envelope limits that for 10.0\u{a0}% of the time"), "{drive}");
     let modes = caption(&html, "Modes");
     assert!(
         modes
             .contains("In this run the ego spends 0.300\u{a0}s in standby, 19.7\u{a0}s in cooperative, changing once."),
         "{modes}"
     );
+}
+
+#[test]
+fn a_truth_outside_its_bound_is_counted_and_a_gap_in_the_bound_is_no_band() {
+    let mut report = five_vehicles(20);
+    report.bound[500].truth_m = report.bound[500].highest_m + 0.001;
+    report.bound.drain(1000..1100);
+    let html = report.render();
+    check(&html);
+    let bound = caption(&html, "What is certain of the position");
+    assert!(bound.contains("is outside at 1 of 1,901 ticks"), "{bound}");
+    assert_eq!(html.matches("class=\"band ours\" d=").count(), 2 * 2 * 2, "two bands, two panels, two widths");
 }
 
 #[test]
@@ -220,6 +254,7 @@ fn text_from_outside_stays_text() {
     }
     report.error_ours.name = nasty.into();
     report.silences[0].label = nasty.into();
+    report.drive.vehicle = nasty.into();
     report.modes[0].vehicle = nasty.into();
     report.modes[0].changes[0].1 = nasty.into();
     report.refusals[0].0 = nasty.into();

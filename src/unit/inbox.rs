@@ -74,9 +74,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 }
             }
             Said::Intent(intent) => {
-                if self.peers.get_mut(slot)?.intend(*intent) {
+                let track = self.peers.get_mut(slot)?;
+                // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
+                let is_young = track.newest().is_some_and(|newest| at.since(newest.at) <= self.config.link.stale);
+                if track.intend(*intent) {
                     self.estimator.note_change(&self.peers);
-                    self.estimator.note_news(index);
+                    if is_young {
+                        self.estimator.note_news(index);
+                    }
                 }
             }
             Said::Horizon(knots) => {
