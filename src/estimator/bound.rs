@@ -10,7 +10,7 @@
 //!
 //! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the truth.
 //! Products stay below 2⁶³: speeds are at most 65.534e6, the times for which they change at most 6.6e8 (0.1 m/s² up to
-//! that speed), all times are cut at [`LONGEST`].
+//! that speed), all times are cut at an hour.
 
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
