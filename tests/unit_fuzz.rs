@@ -71,9 +71,7 @@ impl Bounds {
             None => (limits.braking.negated()..=limits.acceleration, limits.jerk),
             Some(envelope) => (envelope.braking.negated()..=envelope.acceleration, envelope.jerk),
         };
-        // Behind the envelope a command is one that can be encoded: at most one step of 2 mm/s² further down.
-        let step = Acceleration::from_mm_per_s2(if config.envelope.is_some() { 2 } else { 0 });
-        Self { range, change: jerk.over(config.period.fine_seconds()).plus(step), last: None }
+        Self { range, change: jerk.over(config.period.fine_seconds()), last: None }
     }
 
     /// In standby somebody else drives, and what they demand is what the unit starts from.
