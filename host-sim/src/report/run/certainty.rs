@@ -18,6 +18,9 @@ use crate::{
 /// The panel that shows the usual width is cut off at this many times the usual distance from the estimate to an end.
 const CUT_AT: f64 = 4.0;
 
+/// The panel goes on a little beyond that, so that the outermost ticks keep clear of the axis's title.
+const BEYOND: f64 = 1.15;
+
 /// Samples further apart than this many times the usual time between two are not joined: nothing was certain between.
 const JOINED_WITHIN: f64 = 1.5;
 
@@ -32,7 +35,7 @@ impl RunReport {
             page.figure(title, &caption, &[&whole]);
             return;
         };
-        let axis = Axis::linear("enlarged", "m").over(-cut_m, cut_m);
+        let axis = Axis::linear("enlarged", "m").over(-BEYOND * cut_m, BEYOND * cut_m);
         let mut enlarged = self.over_time("What is certain of the position, enlarged", axis, &caption);
         enlarged.height = 160.0;
         enlarged.layers = self.bound_layers("", "");
@@ -82,8 +85,8 @@ impl RunReport {
             quantity(width(widest), "m"),
             plain(widest.at_s),
         );
-        if let Some(cut_m) = self.cut_m() {
-            text.push_str(&format!(" The lower panel is cut off at {}.", quantity(cut_m, "m")));
+        if self.cut_m().is_some() {
+            text.push_str(" The lower panel is enlarged and cut off.");
         }
         text + &self.say_shades()
     }
@@ -127,7 +130,7 @@ impl RunReport {
     }
 }
 
-/// The next of 1, 2, 5, 10, … times a power of ten, so that the axis has ticks at its ends.
+/// The next of 1, 2, 5, 10, … times a power of ten, so that the axis has a tick there.
 fn round_above(value: f64) -> f64 {
     let decade = 10f64.powf(value.log10().floor());
     let round = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
@@ -139,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_ends_at_a_round_number() {
+    fn the_panel_is_cut_at_a_round_number() {
         for (value, above) in [(0.4, 0.5), (0.21, 0.5), (0.12, 0.2), (1.0, 1.0), (7.0, 10.0), (33.0, 50.0)] {
             assert!((round_above(value) - above).abs() < 1e-12, "{value}");
         }
