@@ -89,6 +89,11 @@ impl Actuator {
     #[inline(always)]
     #[must_use]
     pub fn drive(&self, state: State, demand: Acceleration) -> State {
+        if self.path.is_trapezoid() { self.go::<true>(state, demand) } else { self.go::<false>(state, demand) }
+    }
+
+    #[inline(always)]
+    fn go<const TRAPEZOID: bool>(&self, state: State, demand: Acceleration) -> State {
         let behind = state.acceleration.minus(demand);
         // Between the demand and the acceleration, so the sum cannot overflow.
         let left = mul_hi(behind.to_bits(), self.keep).wrapping_mul(2);
@@ -101,12 +106,18 @@ impl Actuator {
         if word < 0 {
             (speed, rest, acceleration) = (Speed::ZERO, Rest::NONE, at_rest(acceleration));
         }
-        let (position, rest_of_position) = self.path.follow(state.position, state.rests.position, state.speed, speed);
+        let (position, rest_of_position) =
+            self.path.follow::<TRAPEZOID>(state.position, state.rests.position, state.speed, speed);
         State { position, speed, acceleration, demand, rests: Rests { position: rest_of_position, speed: rest } }
     }
 }
 
 impl Actuator {
+    /// Whether [`run`](Self::run) and [`coast`](Self::coast) do what [`drive`](Self::drive) does.
+    pub(super) const fn can_run(&self) -> bool {
+        self.path.is_trapezoid()
+    }
+
     /// Steps by a law: each writes where it ends, and may see what is beside it. The state at the last of them.
     #[inline(always)]
     pub(super) fn run<'a, A>(
@@ -116,7 +127,7 @@ impl Actuator {
         wish: impl Fn(&State, A) -> Acceleration,
     ) -> State {
         for (out, beside) in steps {
-            state = self.drive(state, self.limit(wish(&state, beside), state.demand));
+            state = self.go::<true>(state, self.limit(wish(&state, beside), state.demand));
             *out = Step { position: state.position, speed: state.speed };
         }
         state
@@ -126,7 +137,7 @@ impl Actuator {
     #[inline(always)]
     pub(super) fn coast<'a>(&self, mut state: State, steps: impl Iterator<Item = &'a mut Step>) -> State {
         for out in steps {
-            state = self.drive(state, Acceleration::ZERO);
+            state = self.go::<true>(state, Acceleration::ZERO);
             *out = Step { position: state.position, speed: state.speed };
         }
         state

@@ -145,7 +145,13 @@ impl Stride {
 
     /// As many steps as there is room for, behind a predecessor at these of its own steps; the state at the last of them, and
     /// how many they were. What kind of course it is, is asked once for all of them, not in each.
+    ///
+    /// None are taken if positions are not by the trapezoid: that is for reproducing the paper, and no ECU need be quick at
+    /// it.
     pub fn run(&self, state: State, ahead: &[Step], out: &mut [Step]) -> (State, usize) {
+        if !self.actuator.can_run() {
+            return (state, 0);
+        }
         match &self.course {
             Course::Follow(follower) => {
                 let steps = out.iter_mut().zip(ahead);
@@ -160,8 +166,11 @@ impl Stride {
         }
     }
 
-    /// As many steps as there is room for, without a predecessor.
+    /// As many steps as there is room for, without a predecessor; none likewise.
     pub fn run_alone(&self, state: State, out: &mut [Step]) -> (State, usize) {
+        if !self.actuator.can_run() {
+            return (state, 0);
+        }
         let done = out.len();
         let steps = out.iter_mut().map(|out| (out, ()));
         let state = match &self.course {

@@ -1,49 +1,62 @@
 //! Algorithm 3: the speeds at both ends of a step enter, the position at its end leaves.
 //!
 //! Eq. 9 as printed is `r(t+k) = r(t+k-1) + v(t+k-1) δt` (forward Euler), which costs metres at δt = 1 s. The default is
-//! the trapezoid `½ (v(t+k-1) + v(t+k)) δt`. Both are `v(t+k-1) w₀ + v(t+k) w₁`, so one piece of code serves both.
+//! the trapezoid `½ (v(t+k-1) + v(t+k)) δt`.
 
 use crate::fixed::Rest;
 use crate::time::Duration;
 use crate::units::{RingPosition, Seconds, Speed};
 
-/// The two weights of a step.
+/// How a step adds to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Path {
-    /// Words of [`Seconds`], not negative.
-    before: u32,
-    after: u32,
+    /// The step as a word of [`Seconds`], not negative.
+    step: u32,
+    trapezoid: bool,
 }
 
 impl Path {
     /// For steps of this length: the trapezoid, or eq. 9 as printed.
     #[must_use]
     pub fn over(step: Duration, trapezoid: bool) -> Self {
-        let whole = step.seconds().max(Seconds::ZERO).to_bits().unsigned_abs();
-        let after = if trapezoid { whole / 2 } else { 0 };
-        Self { before: whole.saturating_sub(after), after } // the two are the step, to the last bit
+        Self { step: step.seconds().max(Seconds::ZERO).to_bits().unsigned_abs(), trapezoid }
     }
 
-    /// The position at the end of the step, with its rest; speeds are not negative.
+    /// Whether it is the trapezoid.
+    #[must_use]
+    pub const fn is_trapezoid(&self) -> bool {
+        self.trapezoid
+    }
+
+    /// The position at the end of the step, with its rest; speeds are not negative. `TRAPEZOID` is what
+    /// [`is_trapezoid`](Self::is_trapezoid) says, so that a loop of steps need not ask.
     #[inline(always)]
     #[must_use]
-    pub const fn follow(
+    #[allow(clippy::arithmetic_side_effects)] // each speed is below 2³¹
+    pub const fn follow<const TRAPEZOID: bool>(
         &self,
         position: RingPosition,
         rest: Rest,
         before: Speed,
         after: Speed,
     ) -> (RingPosition, Rest) {
-        // One after the other, so that each is a multiplication that adds to the sum (`UMLAL`). Modulo the ring, as it is
-        // meant to be.
-        let (position, rest) = position.along(rest, times(before, self.before));
-        position.along(rest, times(after, self.after))
+        // Half a bit of a speed is 0.06 µm/s.
+        let speed = if TRAPEZOID { (word(before) + word(after)) / 2 } else { word(before) };
+        self.advance(position, rest, speed)
+    }
+
+    #[inline(always)]
+    #[allow(clippy::arithmetic_side_effects)] // 32 by 32 bits
+    const fn advance(&self, position: RingPosition, rest: Rest, speed: u32) -> (RingPosition, Rest) {
+        // At most 4 s at 256 m/s, which is 2⁶²; and modulo the ring, as it is meant to be (`UMLAL`).
+        position.along(rest, (speed as u64 * self.step as u64).cast_signed())
     }
 }
 
+/// A speed that is not negative.
 #[inline(always)]
-#[allow(clippy::arithmetic_side_effects, clippy::cast_sign_loss)] // 32 by 32 bits; a speed is not negative
-const fn times(speed: Speed, seconds: u32) -> i64 {
-    (speed.to_bits() as u32 as u64 * seconds as u64).cast_signed()
+#[allow(clippy::cast_sign_loss)] // as said
+const fn word(speed: Speed) -> u32 {
+    speed.to_bits() as u32
 }
