@@ -61,15 +61,21 @@ pub const fn mul_hi(a: i32, b: i32) -> i32 {
 #[must_use]
 #[allow(clippy::arithmetic_side_effects)] // the clamp keeps the shifted value inside 32 bits
 pub const fn shl_saturating<const BITS: u32>(x: i32) -> i32 {
+    limited::<BITS>(x) << BITS
+}
+
+/// The nearest of the words that can be shifted by so many bits: `SSAT`.
+#[inline(always)]
+#[allow(clippy::arithmetic_side_effects)] // constants
+const fn limited<const BITS: u32>(x: i32) -> i32 {
     let limit = 1i32 << (31 - BITS);
-    let x = if x < -limit {
+    if x < -limit {
         -limit
     } else if x > limit - 1 {
         limit - 1
     } else {
         x
-    };
-    x << BITS
+    }
 }
 
 /// `numerator / denominator` as a word with `fraction` bits, rounded to nearest (ties away from zero), saturating to
@@ -101,8 +107,19 @@ pub const fn unratio(word: i64, denominator: i64, fraction: u32) -> i64 {
 // as in `mul_hi`; the two halves are meant
 pub const fn mul_shl<const BITS: u32>(a: i32, b: i32) -> i32 {
     let product = a as i64 * b as i64 + (1 << (31 - BITS));
-    let below = (product as u32) >> (32 - BITS);
-    shl_saturating::<BITS>((product >> 32) as i32) | below as i32
+    let above = limited::<BITS>((product >> 32) as i32);
+    ((((above as u32 as u64) << 32) | product as u32 as u64) >> (32 - BITS)) as i32
+}
+
+/// `a·b / 2^(32-BITS)`, rounded down, saturating to within `2^BITS` of the ends: two instructions less than [`mul_shl`], for
+/// where the last bit of a finer format does not count.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // as above
+pub const fn mul_shl_down<const BITS: u32>(a: i32, b: i32) -> i32 {
+    let product = a as i64 * b as i64;
+    let above = limited::<BITS>((product >> 32) as i32);
+    ((((above as u32 as u64) << 32) | product as u32 as u64) >> (32 - BITS)) as i32
 }
 
 /// The exact product of two words.
@@ -132,11 +149,13 @@ impl Default for Rest {
     }
 }
 
-/// A word and its rest with products added, saturating.
+/// A word and its rest with products added; the word saturates. The products are at most 2⁶² in magnitude.
 #[inline(always)]
 #[must_use]
+#[allow(clippy::arithmetic_side_effects)] // a rest is below 2³²
 pub const fn sum(word: i32, rest: Rest, products: i64) -> (i32, Rest) {
-    apart(together(word, rest).saturating_add(products))
+    let (gain, rest) = apart(rest.0 as i64 + products);
+    (word.saturating_add(gain), rest)
 }
 
 /// The same modulo the range of the word.

@@ -5,7 +5,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, Rest, SecondsFormat,
-    ShareFormat, SpeedFormat, mul_hi, mul_shl, ratio, saturate_i32, sum_around, unratio,
+    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -188,7 +188,7 @@ impl Distance {
     #[inline(always)]
     #[must_use]
     pub const fn times(self, gain: Gain) -> Acceleration {
-        Acceleration::from_bits(mul_shl::<8>(self.to_bits(), gain.to_bits()))
+        Acceleration::from_bits(mul_shl_down::<8>(self.to_bits(), gain.to_bits()))
     }
 }
 

@@ -3,11 +3,12 @@
 //! because the model must be the controller.
 
 use super::exponential::Decay;
+use super::horizon::Step;
 use super::position::Path;
 use crate::config::Model;
-use crate::fixed::{Rest, product, sum};
+use crate::fixed::{Rest, mul_hi, product, sum};
 use crate::time::Duration;
-use crate::units::{Acceleration, FineSeconds, Jerk, RingPosition, Share, Speed};
+use crate::units::{Acceleration, FineSeconds, Jerk, RingPosition, Speed};
 use crate::wire::intent::Limits;
 
 /// A vehicle's state at one step of a horizon.
@@ -47,7 +48,8 @@ impl Rests {
 pub struct Actuator {
     path: Path,
     step: FineSeconds,
-    keep: Share,
+    /// `e^(-δt/T)` in 31 fraction bits, so that its product needs no more than a doubling.
+    keep: i32,
     slip: FineSeconds,
     floor: Acceleration,
     ceiling: Acceleration,
@@ -64,7 +66,7 @@ impl Actuator {
         Self {
             path: Path::over(step, model.trapezoid),
             step: step.fine_seconds(),
-            keep,
+            keep: keep.to_bits().saturating_mul(2).max(0),
             slip,
             floor: if unlimited { Acceleration::MIN } else { limits.braking.negated() },
             ceiling: if unlimited { Acceleration::MAX } else { limits.acceleration },
@@ -87,20 +89,67 @@ impl Actuator {
     #[inline(always)]
     #[must_use]
     pub fn drive(&self, state: State, demand: Acceleration) -> State {
+        if self.path.is_trapezoid() { self.go::<true>(state, demand) } else { self.go::<false>(state, demand) }
+    }
+
+    #[inline(always)]
+    fn go<const TRAPEZOID: bool>(&self, state: State, demand: Acceleration) -> State {
         let behind = state.acceleration.minus(demand);
-        let mut acceleration = demand.plus(behind.share(self.keep));
+        // Between the demand and the acceleration, so the sum cannot overflow.
+        let left = mul_hi(behind.to_bits(), self.keep).wrapping_mul(2);
+        let mut acceleration = Acceleration::from_bits(demand.to_bits().wrapping_add(left));
         // Less than 2⁶¹ each: 64 m/s² in 25 bits, for 1 s in 30 bits.
         let gained =
             product(demand.to_bits(), self.step.to_bits()).wrapping_add(product(behind.to_bits(), self.slip.to_bits()));
         let (word, mut rest) = sum(state.speed.to_bits(), state.rests.speed, gained);
         let mut speed = Speed::from_bits(word);
-        if speed < Speed::ZERO {
-            (speed, rest) = (Speed::ZERO, Rest::NONE);
-            acceleration = acceleration.max(Acceleration::ZERO);
+        if word < 0 {
+            (speed, rest, acceleration) = (Speed::ZERO, Rest::NONE, at_rest(acceleration));
         }
-        let (position, rest_of_position) = self.path.follow(state.position, state.rests.position, state.speed, speed);
+        let (position, rest_of_position) =
+            self.path.follow::<TRAPEZOID>(state.position, state.rests.position, state.speed, speed);
         State { position, speed, acceleration, demand, rests: Rests { position: rest_of_position, speed: rest } }
     }
+}
+
+impl Actuator {
+    /// Whether [`run`](Self::run) and [`coast`](Self::coast) do what [`drive`](Self::drive) does.
+    pub(super) const fn can_run(&self) -> bool {
+        self.path.is_trapezoid()
+    }
+
+    /// Steps by a law: each writes where it ends, and may see what is beside it. The state at the last of them.
+    #[inline(always)]
+    pub(super) fn run<'a, A>(
+        &self,
+        mut state: State,
+        steps: impl Iterator<Item = (&'a mut Step, A)>,
+        wish: impl Fn(&State, A) -> Acceleration,
+    ) -> State {
+        for (out, beside) in steps {
+            state = self.go::<true>(state, self.limit(wish(&state, beside), state.demand));
+            *out = Step { position: state.position, speed: state.speed };
+        }
+        state
+    }
+
+    /// Steps without any demand.
+    #[inline(always)]
+    pub(super) fn coast<'a>(&self, mut state: State, steps: impl Iterator<Item = &'a mut Step>) -> State {
+        for out in steps {
+            state = self.go::<true>(state, Acceleration::ZERO);
+            *out = Step { position: state.position, speed: state.speed };
+        }
+        state
+    }
+}
+
+/// What is left of an acceleration when a vehicle comes to rest. Apart, because it is rare: the step then has a branch
+/// that is not taken instead of computing this in vain.
+#[cold]
+#[inline(never)]
+fn at_rest(acceleration: Acceleration) -> Acceleration {
+    acceleration.max(Acceleration::ZERO)
 }
 
 /// How far the jerk limit lets the demand move in a step of up to 1 s.

@@ -3,6 +3,7 @@
 
 use super::actuator::{Actuator, State};
 use super::follower::Follower;
+use super::horizon::Step;
 use super::leader::Leader;
 use crate::config::{Config, Model};
 use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
@@ -140,6 +141,43 @@ impl Stride {
             (Course::Follow(_), None) | (Course::Fade, _) => return Acceleration::ZERO,
         };
         self.actuator.limit(wish.min(cap), state.demand)
+    }
+
+    /// As many steps as there is room for, behind a predecessor at these of its own steps; the state at the last of them, and
+    /// how many they were. What kind of course it is, is asked once for all of them, not in each.
+    ///
+    /// None are taken if positions are not by the trapezoid: that is for reproducing the paper, and no ECU need be quick at
+    /// it.
+    pub fn run(&self, state: State, ahead: &[Step], out: &mut [Step]) -> (State, usize) {
+        if !self.actuator.can_run() {
+            return (state, 0);
+        }
+        match &self.course {
+            Course::Follow(follower) => {
+                let steps = out.iter_mut().zip(ahead);
+                let done = steps.len();
+                let wish = |state: &State, ahead: &Step| follower.wish(state, ahead.position, ahead.speed);
+                (self.actuator.run(state, steps, wish), done)
+            }
+            Course::Lead(_) | Course::Fade => {
+                let done = out.len().min(ahead.len());
+                self.run_alone(state, out.get_mut(..done).unwrap_or_default())
+            }
+        }
+    }
+
+    /// As many steps as there is room for, without a predecessor; none likewise.
+    pub fn run_alone(&self, state: State, out: &mut [Step]) -> (State, usize) {
+        if !self.actuator.can_run() {
+            return (state, 0);
+        }
+        let done = out.len();
+        let steps = out.iter_mut().map(|out| (out, ()));
+        let state = match &self.course {
+            Course::Lead(leader) => self.actuator.run(state, steps, |state, ()| leader.wish(state.speed)),
+            Course::Follow(_) | Course::Fade => self.actuator.coast(state, steps.map(|(out, ())| out)),
+        };
+        (state, done)
     }
 
     /// The state at the end of the step.

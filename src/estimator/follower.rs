@@ -17,6 +17,7 @@
 //! so that no division is left in the step. Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
 
 use super::actuator::State;
+use crate::fixed::saturate_i32;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
 
@@ -24,9 +25,10 @@ use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Follower {
+    /// `-K`.
     gain: Gain,
-    step: Seconds,
-    time_gap: Seconds,
+    /// Half of `t_g + δt`: the whole of it may be beyond the format's 4 s.
+    half_gap: Seconds,
     damping: Seconds,
     spacing: Distance,
 }
@@ -36,21 +38,27 @@ impl Follower {
     /// distance), over steps of this length.
     #[must_use]
     pub fn over(step: Duration, gain: Gain, damping: Seconds, time_gap: Seconds, spacing: Distance) -> Self {
-        Self { gain: semi_implicit(gain, damping, time_gap, step), step: step.seconds(), time_gap, damping, spacing }
+        let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
+        Self {
+            gain: semi_implicit(gain, damping, time_gap, step).negated(),
+            half_gap: Seconds::from_bits(saturate_i32(gap >> 1)),
+            damping,
+            spacing,
+        }
     }
 
     /// Eq. 13 as an acceleration, before the limits.
     #[inline(always)]
     #[must_use]
     pub fn wish(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
+        let half = state.speed.over(self.half_gap);
         let error = state
             .position
             .ahead_of(ahead)
             .plus(self.spacing)
-            .plus(state.speed.over(self.step)) // apart from t_g: their sum may be beyond the format's 4 s
-            .plus(state.speed.over(self.time_gap))
+            .plus(half.plus(half)) // `QDADD`
             .plus(state.speed.minus(ahead_speed).over(self.damping));
-        error.times(self.gain).negated()
+        error.times(self.gain)
     }
 }
 
@@ -63,7 +71,7 @@ fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration
     let sum = i64::from(damping.to_bits().max(0)) + i64::from(time_gap.to_bits().max(0));
     // κ < 4 and the sum < 8, both in 29 bits: their product stays below 2⁶³.
     let divisor = ONE + ((kappa * sum) >> 29);
-    Gain::from_bits(crate::fixed::saturate_i32(((k << 29) + divisor / 2).checked_div(divisor).unwrap_or(0)))
+    Gain::from_bits(saturate_i32(((k << 29) + divisor / 2).checked_div(divisor).unwrap_or(0)))
 }
 
 /// Whether the semi-implicit step is stable: `k δt² < 4 + 2 k δt (t_g + γ)`.

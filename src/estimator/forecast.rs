@@ -133,13 +133,34 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         last
     }
 
-    /// Steps from an index to the end of the horizon.
+    /// Steps from an index to the end of the horizon: one by one until the horizon has begun and its predecessor's has,
+    /// and from there on all in one go.
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
         while index < end {
-            index = index.saturating_add(1);
-            state = self.stride.take(state, self.ahead_at(index));
-            filling.put(index, state);
+            let next = index.saturating_add(1);
+            let left = usize::try_from(end.saturating_sub(index)).unwrap_or(0);
+            let run = match (self.ahead, self.delay) {
+                (None, _) => Some(filling.horizon.run(left, |tip, out| self.stride.run_alone(tip, out))),
+                (Some(ahead), None) => ahead.from(next).map(|(near, far)| {
+                    filling.horizon.run(left, |tip, out| {
+                        let (tip, done) = self.stride.run(tip, near, out);
+                        let (tip, more) = self.stride.run(tip, far, out.get_mut(done..).unwrap_or_default());
+                        (tip, done.saturating_add(more))
+                    })
+                }),
+                (Some(_), Some(_)) => None,
+            };
+            match run {
+                Some(done) if done > 0 => index = index.saturating_add(steps(done)),
+                _ => {
+                    index = next;
+                    state = self.stride.take(state, self.ahead_at(index));
+                    filling.put(index, state);
+                    continue;
+                }
+            }
+            state = filling.horizon.tip();
         }
     }
 

@@ -187,6 +187,34 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.tip = state;
     }
 
+    /// Lets `take` add steps after the last one, up to so many and as far as the ring is not full and does not turn: from the
+    /// state at the last step to the one at its own last step, and how many it took. How many those were; none of an empty
+    /// horizon.
+    pub(super) fn run(&mut self, most: usize, take: impl FnOnce(State, &mut [Step]) -> (State, usize)) -> usize {
+        if self.is_empty() {
+            return 0;
+        }
+        let from = self.place(self.len);
+        let room = most.min(STEPS.saturating_sub(self.len)).min(STEPS.saturating_sub(from));
+        let Some(out) = self.steps.get_mut(from..from.saturating_add(room)) else { return 0 };
+        let (tip, done) = take(self.tip, out);
+        self.tip = tip;
+        self.len = self.len.saturating_add(done);
+        done
+    }
+
+    /// The steps from this index on, in two runs; `None` if it does not hold that step.
+    pub(super) fn from(&self, index: i64) -> Option<(&[Step], &[Step])> {
+        let offset = usize::try_from(index.wrapping_sub(self.first)).ok().filter(|offset| *offset < self.len)?;
+        let (turned, straight) = self.steps.split_at_checked(self.head)?;
+        let straight = straight.get(..self.len.min(straight.len()))?;
+        let turned = turned.get(..self.len.saturating_sub(straight.len()))?;
+        Some(match straight.get(offset..) {
+            Some(near) => (near, turned),
+            None => (turned.get(offset.saturating_sub(straight.len())..)?, &[]),
+        })
+    }
+
     /// Drops the first step, unless it is the only one.
     pub fn drop_first(&mut self) {
         let (Some(old), Some(new)) = (self.nth(0), self.nth(1)) else { return };

@@ -4,7 +4,7 @@
 //! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle see to it that it decelerates no harder
 //! than comfortable. A target speed below 0.1 m/s is a wish to stop, as hard as the vehicle's own limit on braking allows.
 
-use crate::fixed::{mul_hi, mul_shl, ratio, saturate_i32};
+use crate::fixed::{mul_hi, mul_shl_down, ratio, saturate_i32};
 use crate::parameters::{FREE_ROAD_RATIO_MILLI, STOP_SPEED};
 use crate::units::{Acceleration, Speed};
 
@@ -43,10 +43,10 @@ impl Leader {
             return STOP;
         }
         // 23 and 26 bits to 28: saturates at 8, and the cut is at 2.8.
-        let ratio = mul_shl::<11>(speed.to_bits(), self.inverse).min(RATIO_MAX);
-        let square = mul_shl::<4>(ratio, ratio); // 28 bits: at most 7.84
+        let ratio = mul_shl_down::<11>(speed.to_bits(), self.inverse).min(RATIO_MAX);
+        let square = mul_shl_down::<4>(ratio, ratio); // 28 bits: at most 7.84
         let fourth = mul_hi(square, square); // 24 bits: at most 61.5
-        let resistance = Acceleration::from_bits(mul_shl::<8>(self.largest.to_bits(), fourth)); // 25 and 24 bits to 25
+        let resistance = Acceleration::from_bits(mul_shl_down::<8>(self.largest.to_bits(), fourth)); // 25 and 24 bits to 25
         self.largest.minus(resistance)
     }
 }

@@ -1,46 +1,62 @@
 //! Algorithm 3: the speeds at both ends of a step enter, the position at its end leaves.
 //!
 //! Eq. 9 as printed is `r(t+k) = r(t+k-1) + v(t+k-1) δt` (forward Euler), which costs metres at δt = 1 s. The default is
-//! the trapezoid `½ (v(t+k-1) + v(t+k)) δt`. Both are `v(t+k-1) w₀ + v(t+k) w₁`, so one piece of code serves both.
+//! the trapezoid `½ (v(t+k-1) + v(t+k)) δt`.
 
-use crate::fixed::{Rest, product};
+use crate::fixed::Rest;
 use crate::time::Duration;
 use crate::units::{RingPosition, Seconds, Speed};
 
-/// The two weights of a step.
+/// How a step adds to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Path {
-    before: Seconds,
-    after: Seconds,
+    /// The step as a word of [`Seconds`], not negative.
+    step: u32,
+    trapezoid: bool,
 }
 
 impl Path {
     /// For steps of this length: the trapezoid, or eq. 9 as printed.
     #[must_use]
     pub fn over(step: Duration, trapezoid: bool) -> Self {
-        let whole = step.seconds();
-        if trapezoid {
-            let half = Seconds::from_bits(whole.to_bits() / 2);
-            Self { before: whole.minus(half), after: half } // so that the two are the step, to the last bit
-        } else {
-            Self { before: whole, after: Seconds::ZERO }
-        }
+        Self { step: step.seconds().max(Seconds::ZERO).to_bits().unsigned_abs(), trapezoid }
     }
 
-    /// The position at the end of the step, with its rest.
+    /// Whether it is the trapezoid.
+    #[must_use]
+    pub const fn is_trapezoid(&self) -> bool {
+        self.trapezoid
+    }
+
+    /// The position at the end of the step, with its rest; speeds are not negative. `TRAPEZOID` is what
+    /// [`is_trapezoid`](Self::is_trapezoid) says, so that a loop of steps need not ask.
     #[inline(always)]
     #[must_use]
-    pub const fn follow(
+    #[allow(clippy::arithmetic_side_effects)] // each speed is below 2³¹
+    pub const fn follow<const TRAPEZOID: bool>(
         &self,
         position: RingPosition,
         rest: Rest,
         before: Speed,
         after: Speed,
     ) -> (RingPosition, Rest) {
-        // Two steps of at most 1 s add up to 2⁵³ 256 m at the most.
-        let way = product(before.to_bits(), self.before.to_bits())
-            .wrapping_add(product(after.to_bits(), self.after.to_bits()));
-        position.along(rest, way)
+        // Half a bit of a speed is 0.06 µm/s.
+        let speed = if TRAPEZOID { (word(before) + word(after)) / 2 } else { word(before) };
+        self.advance(position, rest, speed)
     }
+
+    #[inline(always)]
+    #[allow(clippy::arithmetic_side_effects)] // 32 by 32 bits
+    const fn advance(&self, position: RingPosition, rest: Rest, speed: u32) -> (RingPosition, Rest) {
+        // At most 4 s at 256 m/s, which is 2⁶²; and modulo the ring, as it is meant to be (`UMLAL`).
+        position.along(rest, (speed as u64 * self.step as u64).cast_signed())
+    }
+}
+
+/// A speed that is not negative.
+#[inline(always)]
+#[allow(clippy::cast_sign_loss)] // as said
+const fn word(speed: Speed) -> u32 {
+    speed.to_bits() as u32
 }
