@@ -86,11 +86,8 @@ pub fn distance_cap(envelope: &Envelope, ego: &Ego, room: Distance, period: Dura
     // At a standstill the acceleration is lost and `z` springs up to 0, so that nothing may be built on its being less.
     let z = speed_micros(ego.speed).saturating_add(speed_micros(ego.acceleration.over(ego.lag))).max(0);
     let fastest = root(2i64.saturating_mul(braking).saturating_mul(distance_micros(room)));
-    let spare = fastest.saturating_sub(z);
-    if room < Distance::ZERO || spare < 0 {
-        return Acceleration::MIN;
-    }
-    let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare));
+    // Without room or without anything to spare the roots are 0, and what comes out is below the hardest braking.
+    let rise = root(2i64.saturating_mul(jerk).saturating_mul(fastest.saturating_sub(z)));
     let tick = micros(envelope.jerk.over(period.fine_seconds()));
     from_micros(rise.saturating_sub(tick).saturating_sub(braking))
 }
