@@ -163,33 +163,25 @@ pub struct ChannelRow {
     pub delay_s: Option<f64>,
 }
 
-/// A recorded channel: at least one row, time strictly increasing.
+/// A recorded channel: at least one row, time not decreasing (messages may be sent at the same time).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTrace {
     rows: Vec<ChannelRow>,
 }
 
 impl ChannelTrace {
-    /// Reads the file.
+    /// Reads a file of at least two rows: one message is no recording of a channel.
     ///
     /// # Errors
-    /// See [`ChannelTrace::parse`]; and a file that cannot be read.
+    /// See [`ChannelTrace::parse`]; only one row; and a file that cannot be read.
     pub fn read(file: &Path) -> Result<Self, Error> {
-        Self::parse(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?)
-    }
-
-    /// Reads a file that lasts: of two rows or more.
-    ///
-    /// # Errors
-    /// See [`ChannelTrace::read`]; and only one row.
-    pub fn read_lasting(file: &Path) -> Result<Self, Error> {
         Self::parse_rows(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?, 2)
     }
 
     /// Reads the bytes of a file; its name is for the errors.
     ///
     /// # Errors
-    /// Not text, no rows, a column missing, not a number or negative, time not increasing.
+    /// Not text, no rows, a column missing, not a number or negative, time running backwards.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Error> {
         Self::parse_rows(file, bytes, 1)
     }
@@ -200,7 +192,7 @@ impl ChannelTrace {
         let mut rows: Vec<ChannelRow> = Vec::new();
         for line in table.lines() {
             let row = ChannelRow { t_s: line.number(&t)?, delay_s: line.number_or_empty(&delay)? };
-            line.follows(rows.last().map(|row| row.t_s), row.t_s)?;
+            line.does_not_precede(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
         }
         table.has_rows(rows.len(), least)?;

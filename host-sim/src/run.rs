@@ -43,6 +43,7 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         None => None,
     };
     if options.json {
+        output::say(table::text(scenario, &summary, &failures).trim_end());
         let json = serde_json::to_string(&summary).map_err(|error| Error::new(error.to_string(), "report this"))?;
         output::print(&format!("{json}\n"))?;
     } else {

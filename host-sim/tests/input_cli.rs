@@ -62,7 +62,7 @@ fn recordings_named_on_the_command_line_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let (drive, link) = (folder.path().join("drive.csv"), folder.path().join("link.csv"));
     std::fs::write(&drive, "t_s,position_m,speed_mps\n0,0,5\n10,50,5\n").unwrap();
-    std::fs::write(&link, "t_s,delay_s\n0,0.1\n").unwrap();
+    std::fs::write(&link, "t_s,delay_s\n0,0.1\n1,0.1\n").unwrap();
     let run = options(&format!("--leader-motion {} --channel-trace {}", drive.display(), link.display())).unwrap();
     assert_eq!(run.scenario.duration_s, 10.0);
     assert!(matches!(run.scenario.channel.impairment, Impairment::Recorded(_)));

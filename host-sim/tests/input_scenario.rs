@@ -217,7 +217,7 @@ fn fixing_one_number_leaves_all_others_as_they_were_drawn() {
 fn the_command_line_goes_before_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let channel = folder.path().join("c.csv");
-    fs::write(&channel, "t_s,delay_s\n0,0.1\n").unwrap();
+    fs::write(&channel, "t_s,delay_s\n0,0.1\n1,0.1\n").unwrap();
     let overrides =
         Overrides { seed: Some(9), step_s: Some(0.5), channel_trace: Some(channel), ..Overrides::default() };
     let scenario = Scenario::parse(Path::new("s.toml"), "seed = 1\n[channel]\nloss = 0.5", &overrides).unwrap();

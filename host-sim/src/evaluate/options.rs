@@ -55,11 +55,8 @@ impl EvaluateOptions {
         }
         let impairment = impairment(&arguments)?;
         let recordings = recordings(&arguments)?;
-        for recording in &recordings {
-            match &impairment {
-                Impairment::Channel(file, trace) => recording.overlaps(file, trace)?,
-                Impairment::Outages(lengths) => recording.is_longer_than(lengths)?,
-            }
+        if let Impairment::Channel(file, trace) = &impairment {
+            recordings.iter().try_for_each(|recording| recording.overlaps(file, trace))?;
         }
         let report = (!arguments.no_report).then_some(arguments.out);
         if let Some(folder) = &report {
@@ -85,7 +82,7 @@ impl EvaluateOptions {
 
 fn impairment(arguments: &EvaluateArguments) -> Result<Impairment, Error> {
     match (&arguments.channel, &arguments.outage) {
-        (Some(file), None) => Ok(Impairment::Channel(file.clone(), ChannelTrace::read_lasting(file)?)),
+        (Some(file), None) => Ok(Impairment::Channel(file.clone(), ChannelTrace::read(file)?)),
         (None, Some(lengths)) => outages(lengths).map(Impairment::Outages),
         (None, None) => {
             let remedy = "give --channel FILE.csv, or --outage with lengths in seconds such as 0.5,1,2,4";
@@ -151,16 +148,5 @@ impl Recording {
             }
         }
         Ok(())
-    }
-
-    fn is_longer_than(&self, lengths: &[f64]) -> Result<(), Error> {
-        let duration_s = self.motion.duration_s();
-        match lengths.iter().find(|length| **length > duration_s + 1e-6) {
-            Some(length) => {
-                let cause = format!("lasts {duration_s:.3} s, which is less than the silence of {length} s");
-                Err(Error::new(cause, "give a longer recording, or shorter lengths to --outage").in_file(&self.file))
-            }
-            None => Ok(()),
-        }
     }
 }

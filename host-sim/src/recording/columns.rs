@@ -73,7 +73,31 @@ impl<'a> Table<'a> {
             return Err(Error::new("is empty", remedy).in_file(file));
         }
         let header = records.remove(0);
-        Ok(Self { file, columns, header, records })
+        let table = Self { file, columns, header, records };
+        table.is_even()?;
+        Ok(table)
+    }
+
+    /// That no column stands there twice, and no line has more fields than there are columns.
+    fn is_even(&self) -> Result<(), Error> {
+        let names: Vec<&str> = self.header.fields.iter().filter(|name| !name.is_empty()).collect();
+        if let Some((_, name)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+            let cause = format!("the column {} stands there twice", quoted(name));
+            return Err(Error::new(cause, "rename or delete one of the two")
+                .in_file(self.file)
+                .at_line(self.header.line));
+        }
+        let columns = self.header.fields.len();
+        let longer = |record: &&Record| record.fields.iter().skip(columns).any(|field| !field.is_empty());
+        match self.records.iter().find(longer) {
+            Some(record) => {
+                let cause =
+                    format!("has {} under {}", counted(record.fields.len(), "field"), counted(columns, "column"));
+                let remedy = "write decimal points, not commas, and one field for each column";
+                Err(Error::new(cause, remedy).in_file(self.file).at_line(record.line))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The column, which the file must have.
@@ -152,6 +176,13 @@ impl Line<'_> {
             Some(previous) if t_s == previous => {
                 Err(self.error(format!("time {t_s} s stands there twice"), "delete one of the two lines"))
             }
+            _ => self.does_not_precede(previous_t_s, t_s),
+        }
+    }
+
+    /// That time does not run backwards from line to line.
+    pub fn does_not_precede(&self, previous_t_s: Option<f64>, t_s: f64) -> Result<(), Error> {
+        match previous_t_s {
             Some(previous) if t_s < previous => Err(self.error(
                 format!("time runs backwards, from {previous} s to {t_s} s"),
                 "sort the lines by t_s, or split the recording here",
