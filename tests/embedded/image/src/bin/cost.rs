@@ -95,7 +95,9 @@ impl<const PEERS: usize> Bench<'_, PEERS> {
                     road.horizon_of(peer, &mut hear);
                 }
             }
-            let (answer, count) = counter.count(|| unit.tick(at));
+            // A tick begins some microseconds after its step, and then everything is read between two steps.
+            let now = at.plus(Duration::from_micros(3));
+            let (answer, count) = counter.count(|| unit.tick(now));
             let place = match (second, phase) {
                 (Second::Usual, 0) => &mut worst.send,
                 (Second::Usual, 1..=4 | 6..=9) => &mut worst.quiet,
