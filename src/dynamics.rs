@@ -65,7 +65,7 @@ impl Body {
 #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 // the divisor is positive by construction, and the quotient is clamped
 fn rounded(dividend: i64, divisor: i64) -> u16 {
-    (dividend.saturating_add(divisor / 2) / divisor).clamp(0, 65_534) as u16
+    crate::fixed::quotient(dividend.saturating_add(divisor / 2), divisor).clamp(0, 65_534) as u16
 }
 
 #[cfg(test)]

@@ -92,7 +92,10 @@ pub const fn ratio(numerator: i64, denominator: i64, fraction: u32) -> i64 {
 /// format is finer than `1/denominator`. Saturates like it.
 #[must_use]
 pub const fn unratio(word: i64, denominator: i64, fraction: u32) -> i64 {
-    divide_rounding(word.saturating_mul(denominator), 1i64.wrapping_shl(fraction))
+    let product = word.saturating_mul(denominator);
+    let half = 1u64.wrapping_shl(fraction) >> 1;
+    let magnitude = product.unsigned_abs().saturating_add(half).wrapping_shr(fraction).cast_signed(); // at most 2⁶³ >> fraction
+    if product < 0 { magnitude.wrapping_neg() } else { magnitude }
 }
 
 /// `a·b / 2^(32-BITS)`, rounded to nearest, saturating to within `2^BITS` of the ends.
@@ -188,12 +191,45 @@ pub const fn saturate_i32(x: i64) -> i32 {
     }
 }
 
-/// Quotient rounded to nearest, ties away from zero.
-#[allow(clippy::arithmetic_side_effects)] // callers never pass a divisor of 0, and -1 only divides what is not the minimum
+/// Quotient rounded to nearest, ties away from zero; 0 for a divisor of 0.
 const fn divide_rounding(dividend: i64, divisor: i64) -> i64 {
     let half = divisor.saturating_abs() / 2;
-    if dividend >= 0 { dividend.saturating_add(half) / divisor } else { dividend.saturating_sub(half) / divisor }
+    quotient(if dividend >= 0 { dividend.saturating_add(half) } else { dividend.saturating_sub(half) }, divisor)
 }
+
+/// `dividend / divisor` towards zero, saturating; 0 for a divisor of 0. See [`divide`].
+#[must_use]
+pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
+    let magnitude = divide(dividend.unsigned_abs(), divisor.unsigned_abs());
+    let magnitude = if magnitude > i64::MAX as u64 { i64::MAX } else { magnitude.cast_signed() };
+    if (dividend < 0) != (divisor < 0) { magnitude.wrapping_neg() } else { magnitude }
+}
+
+/// `dividend / divisor`, 0 for a divisor of 0. The divisors of the core are nearly all below 2²⁰ (a second is 10⁶ µs); for
+/// these it takes four 32-bit divisions by hand, digit by digit, which are an instruction each on a Cortex-M3 and up.
+#[must_use]
+#[inline(never)]
+#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // every step says how many bits there are
+pub const fn divide(dividend: u64, divisor: u64) -> u64 {
+    if divisor >= 1 << DIGITS_DIVISOR {
+        return if divisor == 0 { 0 } else { dividend / divisor };
+    }
+    let small = divisor as u32;
+    if small == 0 {
+        return 0;
+    }
+    let first = (dividend >> (3 * DIGIT)) as u32; // 28 bits
+    let second = (first % small) << DIGIT | (dividend >> (2 * DIGIT)) as u32 & NINES; // 20 and 12 bits, as are the others
+    let third = (second % small) << DIGIT | (dividend >> DIGIT) as u32 & NINES;
+    let fourth = (third % small) << DIGIT | dividend as u32 & NINES;
+    let low = (third / small) << DIGIT | fourth / small;
+    ((first / small) as u64) << (3 * DIGIT) | ((second / small) as u64) << (2 * DIGIT) | low as u64
+}
+
+/// A divisor of so many bits leaves a rest to which a digit of so many can be appended.
+const DIGITS_DIVISOR: u32 = 20;
+const DIGIT: u32 = 32 - DIGITS_DIVISOR;
+const NINES: u32 = (1 << DIGIT) - 1;
 
 #[cfg(test)]
 mod tests {
@@ -201,6 +237,15 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn a_quotient_is_the_one_that_64_bits_give(dividend: i64, divisor: i64, shift in 0u32..64) {
+            for (dividend, divisor) in [(dividend, divisor >> shift), (dividend >> shift, divisor % 1_048_577)] {
+                let exact = i128::from(dividend).checked_div(i128::from(divisor)).unwrap_or(0);
+                let saturated = exact.min(i64::MAX.into());
+                prop_assert_eq!(i128::from(quotient(dividend, divisor)), saturated, "{} {}", dividend, divisor);
+            }
+        }
+
         #[test]
         fn a_product_is_rounded_to_nearest_and_saturates_near_the_ends(a: i32, b: i32) {
             let exact = i128::from(a) * i128::from(b);

@@ -37,6 +37,12 @@ impl<T> Held<T> {
     }
 }
 
+impl<T> From<Option<T>> for Held<T> {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Self::Nothing, Self::Value)
+    }
+}
+
 impl<T: Copy> Held<T> {
     /// A copy of the value.
     #[must_use]

@@ -5,7 +5,7 @@
 //! `(reference - 12.0072 s, reference + 1.1 s]` ([`Stamp::unwrap_near`]). A modem must therefore drop what is older than
 //! 12 s; the unit refuses what is older than its own limit, which is less.
 
-use crate::fixed::{FineSecondsFormat, SecondsFormat, ratio, saturate_i32};
+use crate::fixed::{FineSecondsFormat, SecondsFormat, divide, quotient, ratio, saturate_i32};
 use crate::units::{FineSeconds, Seconds};
 
 /// A span of time in microseconds, signed.
@@ -40,7 +40,7 @@ impl Duration {
     /// In whole milliseconds, towards zero.
     #[must_use]
     pub const fn as_millis(self) -> i64 {
-        self.0 / 1000
+        quotient(self.0, 1000)
     }
 
     /// Sum, saturating.
@@ -145,7 +145,7 @@ impl GnssTime {
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // the modulo is below 2¹⁷
     pub const fn stamp(self) -> Stamp {
-        Stamp((self.0.saturating_add(50) / Stamp::MICROS % Stamp::MODULUS) as u32)
+        Stamp((divide(self.0.saturating_add(50), Stamp::MICROS) % Stamp::MODULUS) as u32)
     }
 }
 
@@ -182,7 +182,7 @@ impl Stamp {
     #[allow(clippy::arithmetic_side_effects)] // constants, and a remainder that is below the modulus
     pub const fn unwrap_near(self, reference: GnssTime) -> GnssTime {
         let latest = reference.0.saturating_add(Self::FUTURE.0.unsigned_abs());
-        let ticks = latest / Self::MICROS;
+        let ticks = divide(latest, Self::MICROS);
         let back = (ticks % Self::MODULUS + Self::MODULUS - self.0 as u64) % Self::MODULUS;
         GnssTime(ticks.saturating_sub(back) * Self::MICROS)
     }

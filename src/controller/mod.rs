@@ -13,7 +13,8 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Driver, Follower, Reading, State};
+use crate::estimator::{Driver, Follower, Reading, State, Stride};
+use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 
@@ -53,6 +54,8 @@ pub struct Controller {
     demand: Acceleration,
     blend: Blend,
     keep: Share,
+    /// The step of the law that was driven by last, which is made of a driver and a length.
+    stride: Held<(Driver, Option<Distance>, Stride)>,
 }
 
 /// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
@@ -77,13 +80,13 @@ const SPEED_LIMIT_TIME: i64 = 2;
 impl Controller {
     /// Not started: all zero.
     pub(crate) const fn idle() -> Self {
-        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: Share::ZERO }
+        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: Share::ZERO, stride: Held::Nothing }
     }
 
     /// At rest.
     #[must_use]
     pub fn new(period: Duration) -> Self {
-        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: keep_over(period) }
+        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: keep_over(period), stride: Held::Nothing }
     }
 
     /// The demand in force.
@@ -124,14 +127,18 @@ impl Controller {
     }
 
     fn by_law(
-        &self,
+        &mut self,
         config: &Config,
         driver: &Driver,
         ego: &State,
         target: Option<(Reading, Option<Distance>)>,
     ) -> Acceleration {
         let length = target.and_then(|(_, length)| length);
-        let stride = driver.over(config.period, length, &config.prediction.model);
+        let stride = match self.stride.get() {
+            Some((same, same_length, stride)) if same == *driver && same_length == length => stride,
+            _ => driver.over(config.period, length, &config.prediction.model),
+        };
+        self.stride.set((*driver, length, stride));
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
         let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
         if !config.prediction.model.limits {

@@ -12,6 +12,7 @@
 //! Products stay below 2⁶³: speeds are at most 65.534e6, the times for which they change at most 6.6e8 (0.1 m/s² up to
 //! that speed), all times are cut at an hour.
 
+use crate::fixed::quotient;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::intent::Limits;
@@ -199,11 +200,11 @@ fn micro_up(word: i32, fraction: u32) -> i64 {
 }
 
 fn micro_up_64(word: i64, fraction: u32) -> i64 {
-    ceil(word.saturating_mul(MICRO), 1i64.wrapping_shl(fraction))
+    word.saturating_neg().saturating_mul(MICRO).wrapping_shr(fraction).saturating_neg()
 }
 
 fn micro_down_64(word: i64, fraction: u32) -> i64 {
-    floor(word.saturating_mul(MICRO), 1i64.wrapping_shl(fraction))
+    word.saturating_mul(MICRO).wrapping_shr(fraction)
 }
 
 /// A position in µm, rounded down and up; exact up to ±8.8e6 m, beyond which it saturates.
@@ -213,16 +214,21 @@ fn micro_position(position: Position) -> (i64, i64) {
 
 /// Millionths as a word with `fraction` bits, rounded down.
 const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
-    micros.saturating_mul(1i64.wrapping_shl(fraction)).div_euclid(MICRO)
+    floor(micros.saturating_mul(1i64.wrapping_shl(fraction)), MICRO)
 }
 
 /// Quotient rounded down, for a positive divisor.
-fn floor(dividend: i64, divisor: i64) -> i64 {
-    dividend.checked_div_euclid(divisor).unwrap_or(i64::MIN)
+const fn floor(dividend: i64, divisor: i64) -> i64 {
+    let towards_zero = quotient(dividend, divisor);
+    if dividend < 0 && towards_zero.saturating_mul(divisor) != dividend {
+        towards_zero.saturating_sub(1)
+    } else {
+        towards_zero
+    }
 }
 
 /// Quotient rounded up, for a positive divisor.
-fn ceil(dividend: i64, divisor: i64) -> i64 {
+const fn ceil(dividend: i64, divisor: i64) -> i64 {
     floor(dividend.saturating_neg(), divisor).saturating_neg()
 }
 

@@ -1,7 +1,7 @@
 //! `e^(-h/T)` for the actuators' lag and the fading acceleration: two times enter, a share leaves. Within 4e-9 of the
 //! true value; integers only.
 
-use crate::fixed::saturate_i32;
+use crate::fixed::{divide, quotient, saturate_i32};
 use crate::time::Duration;
 use crate::units::{FineSeconds, Share};
 
@@ -27,7 +27,7 @@ impl Decay {
         // Share and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
         let lost = Share::ONE.minus(keep);
         let product = time_constant.as_micros().max(0).saturating_mul(i64::from(lost.to_bits()));
-        Self { keep, slip: FineSeconds::from_bits(saturate_i32(product.saturating_add(500_000) / 1_000_000)) }
+        Self { keep, slip: FineSeconds::from_bits(saturate_i32(quotient(product.saturating_add(500_000), 1_000_000))) }
     }
 }
 
@@ -39,7 +39,7 @@ fn keep(step: Duration, time_constant: Duration) -> Share {
     if step > 0 && step >= time_constant.saturating_mul(22) {
         return Share::ZERO;
     }
-    let x = step.saturating_mul(ONE).checked_div(time_constant).unwrap_or(0);
+    let x = divide(step.saturating_mul(ONE), time_constant);
     let halvings = x / LN_2;
     let rest = x.saturating_sub(halvings.saturating_mul(LN_2));
     Share::from_bits(rounded(exp_of_minus(rest), halvings.saturating_add(2)))

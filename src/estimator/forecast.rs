@@ -25,41 +25,45 @@ pub enum Ahead {
 /// All that one vehicle's horizon is computed with.
 pub struct Forecast<'a, const STEPS: usize> {
     /// The unit's grid.
-    pub grid: Grid,
+    pub grid: &'a Grid,
     /// Steps to keep.
     pub length: usize,
     /// What is in the model.
-    pub model: Model,
-    /// How the vehicle drives.
-    pub driver: Driver,
-    /// That over a whole step.
-    pub stride: Stride,
-    /// Length of its predecessor.
-    pub length_ahead: Option<Distance>,
+    pub model: &'a Model,
+    /// How the vehicle drives, over a whole step.
+    pub stride: &'a Stride,
     /// Its predecessor's horizon.
     pub ahead: Option<&'a Horizon<STEPS>>,
     /// The delay of eqs 10-12, in paper mode.
     pub delay: Option<Duration>,
 }
 
+/// What a horizon starts anew from.
+pub struct News<'a> {
+    /// The vehicle's state.
+    pub sample: &'a Sample,
+    /// The horizon that the vehicle sent, with its intent.
+    pub received: Option<(&'a Knots, &'a Intent)>,
+    /// How the vehicle drives.
+    pub driver: Driver,
+    /// Length of its predecessor.
+    pub length_ahead: Option<Distance>,
+}
+
 impl<const STEPS: usize> Forecast<'_, STEPS> {
     /// Starts the horizon anew from a sample, and from the vehicle's own horizon if it sent one with its intent.
-    pub fn anchor(
-        &self,
-        horizon: &mut Horizon<STEPS>,
-        present: i64,
-        sample: &Sample,
-        received: Option<(&Knots, &Intent)>,
-    ) {
+    pub fn anchor(&self, horizon: &mut Horizon<STEPS>, present: i64, news: &News<'_>) {
+        let sample = news.sample;
         let anchor =
             Anchor { at: sample.at, position: sample.position, speed: sample.speed, acceleration: sample.acceleration };
         horizon.clear();
         // A horizon that ends is kept from its sample on: eqs 10-12 look back into it by the delay.
         let from = if self.model.endless { present } else { i64::MIN };
         let mut filling = Filling { horizon, present: from, anchor };
-        let next = received
+        let next = news
+            .received
             .and_then(|(knots, intent)| self.resample(&mut filling, knots, intent))
-            .or_else(|| self.depart(&mut filling, sample));
+            .or_else(|| self.depart(&mut filling, news));
         if let Some((index, state)) = next {
             self.carry_on(&mut filling, index, state, self.end(present, sample));
         }
@@ -80,6 +84,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         while horizon.first() < present && horizon.len() > 1 {
             horizon.drop_first();
         }
+        if end == last.saturating_add(1) {
+            // What every quiet tick comes to.
+            horizon.push(self.stride.take(state, self.ahead_at(end)));
+            return;
+        }
         let anchor = *horizon.anchor();
         self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);
     }
@@ -91,7 +100,8 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// Source (b): from the sample to the first step on the grid. Without stamps that is the nearest one, as it is.
-    fn depart(&self, filling: &mut Filling<'_, STEPS>, sample: &Sample) -> Option<(i64, State)> {
+    fn depart(&self, filling: &mut Filling<'_, STEPS>, news: &News<'_>) -> Option<(i64, State)> {
+        let sample = news.sample;
         let mut state = State {
             position: sample.position.ring(),
             speed: sample.speed.max(Speed::ZERO),
@@ -104,7 +114,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             index = self.grid.at_or_after(sample.at);
             let part = self.grid.time_of(index).since(sample.at);
             if part > Duration::ZERO {
-                let stride = self.driver.over(part, self.length_ahead, &self.model);
+                let stride = news.driver.over(part, news.length_ahead, self.model);
                 state = stride.take(state, self.ahead_at(index));
             }
         } else {
@@ -174,7 +184,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         if let Some(step) = ahead.at(index) {
             return Some((step.position, step.speed));
         }
-        let reading = ahead.read(self.grid.time_of(index), &self.grid, true)?;
+        let reading = ahead.read(self.grid.time_of(index), self.grid, true)?;
         Some((reading.position.ring(), reading.speed))
     }
 

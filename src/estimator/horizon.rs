@@ -6,6 +6,7 @@
 
 use super::actuator::{Rests, State};
 use super::interpolation::between;
+use crate::fixed::quotient;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Position, RingPosition, Speed};
 
@@ -23,7 +24,14 @@ impl Grid {
     /// The last step at or before an instant.
     #[must_use]
     pub fn at_or_before(&self, at: Instant) -> i64 {
-        at.since(self.origin).as_micros().checked_div_euclid(self.step.as_micros()).unwrap_or(0)
+        let (since, step) = (at.since(self.origin).as_micros(), self.step.as_micros());
+        // Towards -∞: a step before the origin has a negative index.
+        let towards_zero = quotient(since, step);
+        if since < 0 && towards_zero.saturating_mul(step) != since {
+            towards_zero.saturating_sub(1)
+        } else {
+            towards_zero
+        }
     }
 
     /// The first step at or after an instant.

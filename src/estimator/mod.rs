@@ -33,7 +33,7 @@ pub use leader::Leader;
 pub use position::Path;
 
 use chain::Chain;
-use forecast::{Ahead, Forecast};
+use forecast::{Ahead, Forecast, News};
 
 use crate::config::{Model, Prediction};
 use crate::held::Held;
@@ -62,6 +62,8 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     horizons: [Horizon<STEPS>; PEERS],
     /// The step of each peer, until its intent or its predecessor changes.
     strides: [Held<Stride>; PEERS],
+    /// Whom each peer follows.
+    aheads: [Held<Ahead>; PEERS],
     news: [bool; PEERS],
     /// What another sensor made of a peer's state, until it is used.
     correction: Held<(usize, Sample)>,
@@ -80,6 +82,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             length: 0,
             horizons: [const { Horizon::empty() }; PEERS],
             strides: [Held::Nothing; PEERS],
+            aheads: [Held::Nothing; PEERS],
             news: [false; PEERS],
             correction: Held::Nothing,
             own: Horizon::empty(),
@@ -96,6 +99,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.length = length.min(STEPS);
         self.horizons.iter_mut().for_each(Horizon::clear);
         self.strides = [Held::Nothing; PEERS];
+        self.aheads = [Held::Nothing; PEERS];
         self.news = [false; PEERS];
         self.correction.clear();
         self.own.clear();
@@ -124,8 +128,9 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Takes note that a peer drives by another law, or behind somebody else.
     pub fn note_change<const SAMPLES: usize>(&mut self, peers: &Peers<PEERS, SAMPLES>) {
         self.strides = [Held::Nothing; PEERS];
-        self.chain = Chain::of(core::array::from_fn(|index| match self.ahead(peers, index) {
-            Some(Ahead::Peer(ahead)) => Some(ahead),
+        self.aheads = core::array::from_fn(|index| self.ahead(peers, index).into());
+        self.chain = Chain::of(self.aheads.map(|ahead| match ahead {
+            Held::Value(Ahead::Peer(ahead)) => Some(ahead),
             _ => None,
         }));
     }
@@ -163,44 +168,50 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         track: &Track<SAMPLES>,
         source: &Source<'_>,
     ) {
-        let ahead = self.ahead(peers, index);
-        let length_ahead = match ahead {
-            Some(Ahead::Peer(other)) => peers.get(other).and_then(|other| other.intent()).map(|intent| intent.length),
-            Some(Ahead::Own) => Some(self.own_length),
-            None => None,
+        let Self { grid, model, length, horizons, strides, own, own_length, aheads, .. } = self;
+        let ahead = aheads.get(index).and_then(Held::get);
+        // How it drives is asked only when its step has to be made, or its horizon starts anew.
+        let course = || {
+            let length_ahead = match ahead {
+                Some(Ahead::Peer(other)) => {
+                    peers.get(other).and_then(|other| other.intent()).map(|intent| intent.length)
+                }
+                Some(Ahead::Own) => Some(*own_length),
+                None => None,
+            };
+            let driver = match track.intent() {
+                Some(intent) if ahead.is_some() || intent.predecessor == Predecessor::None => {
+                    Driver::of_intent(intent, model)
+                }
+                _ => Driver::UNKNOWN,
+            };
+            (driver, length_ahead)
         };
-        let model = self.model;
-        let driver = match track.intent() {
-            Some(intent) if ahead.is_some() || intent.predecessor == Predecessor::None => {
-                Driver::of_intent(intent, &model)
-            }
-            _ => Driver::UNKNOWN,
-        };
-        let Some(cached) = self.strides.get_mut(index) else { return };
-        let stride = cached.get().unwrap_or_else(|| driver.over(self.grid.step, length_ahead, &model));
-        cached.set(stride);
+        if let Some(stride @ Held::Nothing) = strides.get_mut(index) {
+            let (driver, length_ahead) = course();
+            stride.set(driver.over(grid.step, length_ahead, model));
+        }
+        let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return };
         // The horizon is taken out of the array's borrow together with the one that it is computed from.
         let (horizon, ahead) = match ahead {
-            Some(Ahead::Peer(other)) => match self.horizons.get_disjoint_mut([index, other]) {
+            Some(Ahead::Peer(other)) => match horizons.get_disjoint_mut([index, other]) {
                 Ok([horizon, other]) => (Some(horizon), Some(&*other)),
-                Err(_) => (self.horizons.get_mut(index), None),
+                Err(_) => (horizons.get_mut(index), None),
             },
-            Some(Ahead::Own) => (self.horizons.get_mut(index), Some(&self.own)),
-            None => (self.horizons.get_mut(index), None),
+            Some(Ahead::Own) => (horizons.get_mut(index), Some(&*own)),
+            None => (horizons.get_mut(index), None),
         };
         let Some(horizon) = horizon else { return };
         let ahead = ahead.filter(|ahead| !ahead.is_empty());
         let delay = if model.stamped { None } else { Some(track.link().delay()) };
-        let forecast =
-            Forecast { grid: self.grid, length: self.length, model, driver, stride, length_ahead, ahead, delay };
-        match source {
-            Source::Heard(sample) => {
-                let knots = track.knots().filter(|_| model.received).zip(track.intent());
-                forecast.anchor(horizon, present, sample, knots);
-            }
-            Source::Seen(sample) => forecast.anchor(horizon, present, sample, None),
-            Source::Nothing => forecast.extend(horizon, present),
-        }
+        let forecast = Forecast { grid, length: *length, model, stride, ahead, delay };
+        let (sample, received) = match source {
+            Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.intent())),
+            Source::Seen(sample) => (sample, None),
+            Source::Nothing => return forecast.extend(horizon, present),
+        };
+        let (driver, length_ahead) = course();
+        forecast.anchor(horizon, present, &News { sample, received, driver, length_ahead });
     }
 
     /// Computes the ego's own horizon from its own state behind the peer that it follows, if any.
@@ -215,10 +226,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let length_ahead = target.and_then(|index| peers.get(index)?.intent().map(|intent| intent.length));
         let ahead = target.and_then(|index| self.horizons.get(index)).filter(|horizon| !horizon.is_empty());
         let stride = driver.over(self.grid.step, length_ahead, &self.model);
-        let model = self.model;
         let forecast =
-            Forecast { grid: self.grid, length: self.length, model, driver, stride, length_ahead, ahead, delay: None };
-        forecast.anchor(&mut self.own, self.grid.at_or_before(now), sample, None);
+            Forecast { grid: &self.grid, length: self.length, model: &self.model, stride: &stride, ahead, delay: None };
+        let present = self.grid.at_or_before(now);
+        forecast.anchor(&mut self.own, present, &News { sample, received: None, driver, length_ahead });
     }
 
     /// Where a peer is at an instant.

@@ -54,15 +54,30 @@ fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
     }
 }
 
-fn forecast<'a>(driver: Driver, length: usize, model: Model, ahead: Option<&'a Horizon<STEPS>>) -> Forecast<'a, STEPS> {
-    let length_ahead = Some(Distance::from_mm(4_800));
-    let stride = driver.over(GRID.step, length_ahead, &model);
-    Forecast { grid: GRID, length, model, driver, stride, length_ahead, ahead, delay: None }
+/// A driver with its stride behind a car.
+fn course(driver: Driver, model: &Model) -> (Driver, Stride) {
+    (driver, driver.over(GRID.step, CAR, model))
+}
+
+const CAR: Option<Distance> = Some(Distance::from_mm(4_800));
+
+fn forecast<'a>(
+    stride: &'a Stride,
+    length: usize,
+    model: &'a Model,
+    ahead: Option<&'a Horizon<STEPS>>,
+) -> Forecast<'a, STEPS> {
+    Forecast { grid: &GRID, length, model, stride, ahead, delay: None }
+}
+
+fn news(sample: &Sample, driver: Driver) -> News<'_> {
+    News { sample, received: None, driver, length_ahead: CAR }
 }
 
 fn anchored(intent: &Intent, sample: &Sample, length: usize, ahead: Option<&Horizon<STEPS>>) -> Horizon<STEPS> {
     let mut horizon = Horizon::empty();
-    forecast(Driver::of_intent(intent, &MODEL), length, MODEL, ahead).anchor(&mut horizon, 0, sample, None);
+    let (driver, stride) = course(Driver::of_intent(intent, &MODEL), &MODEL);
+    forecast(&stride, length, &MODEL, ahead).anchor(&mut horizon, 0, &news(sample, driver));
     horizon
 }
 
@@ -97,7 +112,8 @@ fn a_horizon_that_is_extended_is_the_one_that_was_longer_from_the_start() {
         let sample = sample(23_400, 12_000, -1_500);
         let long = anchored(&intent, &sample, 50, ahead);
         let mut extended = anchored(&intent, &sample, 20, ahead);
-        let forecast = forecast(Driver::of_intent(&intent, &MODEL), 20, MODEL, ahead);
+        let (_, stride) = course(Driver::of_intent(&intent, &MODEL), &MODEL);
+        let forecast = forecast(&stride, 20, &MODEL, ahead);
         for present in [1, 2, 12, 30] {
             forecast.extend(&mut extended, present);
             assert_eq!((extended.first(), extended.len()), (present, 20));
@@ -112,7 +128,8 @@ fn a_horizon_that_is_extended_is_the_one_that_was_longer_from_the_start() {
 #[test]
 fn after_a_pause_longer_than_the_ring_there_is_nothing_to_extend() {
     let mut horizon = anchored(&leader(), &sample(0, 10_000, 0), 20, None);
-    let forecast = forecast(Driver::of_intent(&leader(), &MODEL), 20, MODEL, None);
+    let (_, stride) = course(Driver::of_intent(&leader(), &MODEL), &MODEL);
+    let forecast = forecast(&stride, 20, &MODEL, None);
     let mut within = horizon.clone();
     forecast.extend(&mut within, STEPS as i64);
     assert_eq!((within.last(), within.at(STEPS as i64).is_some()), (STEPS as i64 + 19, true));
@@ -123,9 +140,10 @@ fn after_a_pause_longer_than_the_ring_there_is_nothing_to_extend() {
 #[test]
 fn a_horizon_that_ends_is_kept_from_its_sample_on_and_never_extended() {
     let model = Model { endless: false, ..MODEL };
-    let forecast = forecast(Driver::of_intent(&leader(), &model), 20, model, None);
+    let (driver, stride) = course(Driver::of_intent(&leader(), &model), &model);
+    let forecast = forecast(&stride, 20, &model, None);
     let mut horizon = Horizon::empty();
-    forecast.anchor(&mut horizon, 0, &sample(50_000, 10_000, 0), None);
+    forecast.anchor(&mut horizon, 0, &news(&sample(50_000, 10_000, 0), driver));
     assert_eq!((horizon.first(), horizon.last()), (-5, 14));
     let before = horizon.clone();
     forecast.extend(&mut horizon, 12);

@@ -64,12 +64,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
                 }
-                let admission = track.admit(sample, &doubt, &self.config.link)?;
-                if station != Some(sample.station) {
+                let admission = track.admit(sample, &doubt, &self.config.link);
+                // Even a sample that is refused may end the track of the station before.
+                if station != track.station() {
                     self.estimator.forget(index);
                     self.estimator.note_change(&self.peers);
                 }
-                if admission == Admission::News {
+                if admission? == Admission::News {
                     self.estimator.note_news(index);
                 }
             }

@@ -261,6 +261,6 @@ fn rounded(speed: Speed) -> Speed {
 pub(super) fn slope(change: Speed, time: Duration) -> Acceleration {
     // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
     let change = i64::from(change.to_bits()).saturating_mul(4_000_000);
-    let slope = change.checked_div(time.as_micros()).unwrap_or(0);
+    let slope = crate::fixed::quotient(change, time.as_micros());
     Acceleration::from_bits(crate::fixed::saturate_i32(slope))
 }

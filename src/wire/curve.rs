@@ -18,7 +18,7 @@
 //! without the bow 15 mm. The shares were found by dynamic programming over all pairs of 40 candidates.
 
 use super::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
-use crate::fixed::{ShareFormat, mul_hi, saturate_i32, shl_saturating};
+use crate::fixed::{ShareFormat, mul_hi, quotient, saturate_i32, shl_saturating};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Speed};
 
@@ -46,7 +46,7 @@ const MICROS_PER_S: i64 = 1_000_000;
 
 /// `word · t`, `t` in microseconds; words of at most 38 bits.
 const fn over(word: i64, micros: i64) -> i64 {
-    word.saturating_mul(micros) / MICROS_PER_S
+    quotient(word.saturating_mul(micros), MICROS_PER_S)
 }
 
 /// A state in the words of the number formats.
@@ -100,14 +100,14 @@ impl Piece {
         let speed = way.map(|c| {
             power = power.saturating_add(1);
             let per_second = (i64::from(c) << (3 - SPEED_SHIFT)).saturating_mul(power.saturating_mul(MICROS_PER_S));
-            saturate_i32(per_second.checked_div(micros).unwrap_or(0).clamp(-COEFFICIENT, COEFFICIENT))
+            saturate_i32(quotient(per_second, micros).clamp(-COEFFICIENT, COEFFICIENT))
         });
         Self { micros, origin: Distance::from_bits(saturate_i32(from.way)), way, speed }
     }
 
     fn share_of(&self, micros: i64) -> i32 {
         let share = micros.min(self.micros).max(0) << SHARE_BITS;
-        saturate_i32(share.checked_div(self.micros).unwrap_or(0))
+        saturate_i32(quotient(share, self.micros))
     }
 
     /// Way and speed at a share from 0 to 1: 11 multiplications. The speed is never negative.
@@ -136,8 +136,8 @@ impl Piece {
             coefficient.saturating_mul(power).saturating_add(sum.saturating_mul(i64::from(share)) >> SHARE_BITS)
         };
         let sum = up(up(up(up(v5.saturating_mul(5), 4, v4), 3, v3), 2, v2), 1, v1);
-        let per_second = (sum << (2 + SPEED_SHIFT)).saturating_mul(MICROS_PER_S).checked_div(self.micros);
-        Acceleration::from_bits(saturate_i32(per_second.unwrap_or(0)))
+        let per_second = quotient((sum << (2 + SPEED_SHIFT)).saturating_mul(MICROS_PER_S), self.micros);
+        Acceleration::from_bits(saturate_i32(per_second))
     }
 }
 
@@ -232,7 +232,7 @@ fn time_to_rest(way: i64, speed: i64, acceleration: i64, [n, p, q, r]: [i64; 4])
     let under = squared.saturating_add(acceleration.saturating_mul(way).saturating_mul(r)).max(0);
     let root = i64::try_from(under.unsigned_abs().isqrt()).unwrap_or(i64::MAX);
     let below = speed.saturating_mul(p).saturating_add(root);
-    way.saturating_mul(n).saturating_mul(MICROS_PER_S).checked_div(below).unwrap_or(0).max(SHORTEST)
+    quotient(way.saturating_mul(n).saturating_mul(MICROS_PER_S), below).max(SHORTEST)
 }
 
 /// A whole horizon between its knots.
@@ -311,7 +311,7 @@ impl<Pieces: Iterator<Item = (i64, Piece)>> Iterator for Walk<Pieces> {
             let passed = self.next.saturating_sub(start);
             let until_end = piece.micros.saturating_sub(passed);
             if until_end >= 0 {
-                let readings = until_end.checked_div(self.step).unwrap_or(0).saturating_add(1);
+                let readings = quotient(until_end, self.step).saturating_add(1);
                 self.left = u32::try_from(readings).unwrap_or(u32::MAX);
                 self.next = self.next.saturating_add(readings.saturating_mul(self.step));
                 self.share = piece.share_of(passed);
@@ -327,7 +327,7 @@ impl<Pieces: Iterator<Item = (i64, Piece)>> Iterator for Walk<Pieces> {
 }
 
 const fn share_of(length: Duration, per_mille: u16) -> i64 {
-    length.as_micros().saturating_mul(per_mille as i64) / 1000
+    quotient(length.as_micros().saturating_mul(per_mille as i64), 1000)
 }
 
 impl Knots {
@@ -388,7 +388,7 @@ fn braking_to_rest(from: &Knot, way: Distance, micros: i64) -> Acceleration {
     let from = State::of(from);
     let left =
         over(from.speed, micros.saturating_mul(6)).saturating_sub(i64::from(way.to_bits()).saturating_mul(12 << 3));
-    let per_time = |word: i64| word.saturating_mul(MICROS_PER_S).checked_div(micros).unwrap_or(0);
+    let per_time = |word: i64| quotient(word.saturating_mul(MICROS_PER_S), micros);
     let last = from.acceleration.saturating_add(per_time(per_time(left.saturating_mul(4)))); // F23 to F25
     Acceleration::from_bits(saturate_i32(last.min(0)))
 }

@@ -5,7 +5,8 @@
 //! zero) or, for what must not be understated, up.
 
 use crate::fixed::{
-    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, SpeedFormat, saturate_i32,
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, SpeedFormat, quotient,
+    saturate_i32,
 };
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 
@@ -32,7 +33,7 @@ fn word(steps: i64, per_unit: i64, fraction: u32) -> i32 {
     let scaled = steps.saturating_mul(1i64.wrapping_shl(fraction));
     let half = per_unit / 2;
     let rounded = if scaled < 0 { scaled.saturating_sub(half) } else { scaled.saturating_add(half) };
-    saturate_i32(rounded.checked_div(per_unit).unwrap_or(0))
+    saturate_i32(quotient(rounded, per_unit))
 }
 
 /// How many `1/per_unit` a word with so many fraction bits is. Units have at most 10⁷ steps, so that 64 bits hold it.

@@ -3,5 +3,9 @@
 #![no_std]
 
 pub mod counter;
+#[cfg(target_abi = "eabihf")]
+pub mod float;
+#[cfg(target_abi = "eabihf")]
+pub mod kalman;
 pub mod road;
 pub mod stack;

@@ -5,9 +5,14 @@
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
+use core::hint::black_box;
+use holdover::estimator::{Aim, Driver, State, Step};
 use holdover::time::{Duration, Instant};
+use holdover::units::{Position, Speed};
 use holdover::{Config, OnboardUnit};
 use holdover_image::counter::Counter;
+use holdover_image::float::{double, single};
+use holdover_image::kalman::predict;
 use holdover_image::road::{EGO, Road};
 use holdover_image::stack;
 
@@ -95,7 +100,9 @@ impl<const PEERS: usize> Bench<'_, PEERS> {
                     road.horizon_of(peer, &mut hear);
                 }
             }
-            let (answer, count) = counter.count(|| unit.tick(at));
+            // A tick begins some microseconds after its step, and then everything is read between two steps.
+            let now = at.plus(Duration::from_micros(3));
+            let (answer, count) = counter.count(|| unit.tick(now));
             let place = match (second, phase) {
                 (Second::Usual, 0) => &mut worst.send,
                 (Second::Usual, 1..=4 | 6..=9) => &mut worst.quiet,
@@ -145,7 +152,53 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         ] {
             hprintln!("{} {} {} {}", name, PEERS, steps, count);
         }
-        hprintln!("refused {} {} {}", PEERS, steps, unit.health().total());
+    }
+    for (steps, size) in [
+        (50, size_of::<OnboardUnit<PEERS, 8, 50>>()),
+        (100, size_of::<OnboardUnit<PEERS, 8, 100>>()),
+        (400, size_of::<OnboardUnit<PEERS, 8, 400>>()),
+    ] {
+        hprintln!("unit {} {} {}", PEERS, steps, size);
+    }
+}
+
+/// The same 400 steps of one follower in the core's fixed point, in `f32` and in `f64`; and as many predictions of a Kalman
+/// filter.
+fn compare(counter: &Counter) {
+    static mut FIXED: [[Step; CAPACITY]; 2] = [[Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; CAPACITY]; 2];
+    let config = Config::car(EGO);
+    let law = config.law;
+    let aim = Aim::Follow { gain: law.gain, damping: law.damping, time_gap: law.time_gap, standstill: law.standstill };
+    let stride = Driver::of_config(&config, aim).over(Duration::from_millis(10), None, &config.prediction.model);
+    let speed = Speed::from_mm_per_s(11_000);
+    let start = State { position: Position::ZERO.ring(), speed, ..State::default() };
+    // SAFETY: this function is called once, and nothing else names the static.
+    let [ahead, out] = unsafe { &mut *(&raw mut FIXED) };
+    for (step, way) in ahead.iter_mut().zip((18_110..).step_by(110)) {
+        *step = Step { position: Position::from_mm(way).ring(), speed };
+    }
+    let ((_, done), fixed) = counter.count(|| stride.run(start, black_box(ahead), black_box(out)));
+    assert!(done == CAPACITY);
+    // All of them predict the same.
+    let end = out.last().map_or(0, |step| step.position.ahead_of(Position::ZERO.ring()).to_mm()) as f32 / 1000.0;
+    macro_rules! in_float {
+        ($module:ident) => {{
+            static mut STEPS: [[$module::Step; CAPACITY]; 2] = [[$module::Step { position: 0.0, speed: 0.0 }; CAPACITY]; 2];
+            // SAFETY: as above.
+            let [ahead, out] = unsafe { &mut *(&raw mut STEPS) };
+            for (step, way) in ahead.iter_mut().zip((18_110u16..).step_by(110)) {
+                *step = $module::Step { position: $module::from(way) / 1000.0, speed: 11.0 };
+            }
+            let ((), count) = counter.count(|| $module::run(black_box(&$module::LAW), black_box(ahead), black_box(out)));
+            let float = out.last().map_or(0.0, |step| step.position as f32);
+            assert!((float - end).abs() < 0.01, "{float} {end}");
+            count
+        }};
+    }
+    let (single, double) = (in_float!(single), in_float!(double));
+    let (_, kalman) = counter.count(|| black_box(predict(black_box(CAPACITY))));
+    for (name, count) in [("step-fixed", fixed), ("step-f32", single), ("step-f64", double), ("step-kalman", kalman)] {
+        hprintln!("{} 1 {} {}", name, CAPACITY, count);
     }
 }
 
@@ -158,6 +211,7 @@ fn main() -> ! {
         measure(ONE, &counter);
         measure(FOUR, &counter);
         measure(EIGHT, &counter);
+        compare(&counter);
         debug::exit(EXIT_SUCCESS);
     }
     debug::exit(EXIT_FAILURE);

@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# cost.sh [--write]: counts what the core costs on the emulated ECU, holds it against the limits and against cost.csv, and
+# fails where it is more than 5 % worse than there. With --write it makes cost.csv and the tables of README.md anew.
+#
+# Needs qemu-system-arm, a target thumbv7em-none-eabihf for cargo, and `size` of any binutils.
+set -euo pipefail
+cd "$(dirname "$0")"
+export LC_ALL=C
+
+target=thumbv7em-none-eabihf
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+cargo build --locked --quiet --profile firmware --target $target --bin cost
+timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial none \
+    -semihosting-config enable=on,target=native -icount shift=6,align=off,sleep=off \
+    -kernel "${CARGO_TARGET_DIR:-target}/$target/firmware/cost" >"$work/counts" || {
+    echo "cost: the program failed in the emulator; its last words:"
+    tail -n 5 "$work/counts"
+    exit 1
+}
+
+# The firmware without logs: what is in flash (.data lies there too, for the start), and what is in RAM for good.
+(cd ../.. && cargo build --locked --quiet --profile firmware --target $target --bin holdover-ecu)
+size -A "${CARGO_TARGET_DIR:-../../target}/$target/firmware/holdover-ecu" | awk '
+    $1 == ".vector_table" || $1 == ".text" || $1 == ".rodata" || $1 == ".data" { flash += $2 }
+    $1 == ".data" || $1 == ".bss" || $1 == ".uninit" { ram += $2 }
+    END { print "flash 8 400", flash; print "ram 8 400", ram }' >>"$work/counts"
+{
+    echo name,peers,steps,count
+    tr ' ' , <"$work/counts"
+} >"$work/cost.csv"
+
+# The figures that have a limit, as `what|limit|figure|how close`.
+limits() {
+    awk -F, -v OFS='|' '
+        { count[$1 "," $2 "," $3] = $4 }
+        function at(name, steps) { return count[name ",8," (steps ? steps : 400)] }
+        function row(what, limit, figure) {
+            print what, limit, figure, figure <= limit ? "met" : sprintf("missed by %.0f %%", (figure / limit - 1) * 100)
+        }
+        END {
+            fixed = count["step-fixed,1,400"]; single = count["step-f32,1,400"]; double = count["step-f64,1,400"]
+            row("quiet tick, instructions", 6000, at("quiet"))
+            row("worst tick, own models of all peers, instructions", 240000, at("all"))
+            row("worst tick, horizons received from all peers, instructions", 240000, at("horizons"))
+            row("per vehicle and step, in the worst tick, instructions", 60, sprintf("%.1f", (at("all") - at("all", 100)) / 300 / 9))
+            row("flash without logs, bytes", 65536, at("flash"))
+            row("static RAM, bytes", 65536, at("ram"))
+            row("deepest stack, bytes", 4096, at("stack"))
+            row("a follower'\''s step against f32 on the FPU", 1.5, sprintf("%.2f", fixed / single))
+            row("a follower'\''s step against f64", 1, sprintf("%.3f", fixed / double))
+        }' "$work/cost.csv"
+}
+
+tables() {
+    echo
+    echo '| figure, for 8 peers and 400 steps | limit | measured | |'
+    echo '|---|--:|--:|---|'
+    limits | sed 's/|/ | /g; s/.*/| & |/'
+    echo
+    echo '| peers | steps | quiet tick | one peer new | send tick | worst, models | worst, horizons | samples of 2 s ago | start | unit, bytes | stack, bytes |'
+    echo '|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|'
+    awk -F, '
+        $1 == "quiet" { order[++n] = $2 "," $3 }
+        { count[$1 "," $2 "," $3] = $4 }
+        END {
+            for (i = 1; i <= n; i++) {
+                split(order[i], key, ",")
+                printf "| %d | %d |", key[1], key[2]
+                m = split("quiet one send all horizons late start unit stack", names, " ")
+                for (j = 1; j <= m; j++) printf " %d |", count[names[j] "," order[i]]
+                print ""
+            }
+        }' "$work/cost.csv"
+    echo
+    echo '| `receive`, 8 peers | instructions |'
+    echo '|---|--:|'
+    awk -F, '$1 == "receive" && $2 == 8 && $3 == 400 { print "| worst frame | " $4 " |" }
+        $1 == "receive-mean" && $2 == 8 && $3 == 400 { print "| mean of all frames | " $4 " |" }' "$work/cost.csv"
+    echo
+    echo '| one step of one vehicle | instructions | |'
+    echo '|---|--:|---|'
+    awk -F, '
+        function row(what, count) { printf "| %s | %.1f | %.2f |\n", what, count / 400, count / fixed }
+        $1 == "step-fixed" { fixed = $4; row("follower, the core (fixed point)", $4) }
+        $1 == "step-f32" { row("follower, `f32` on the FPU", $4) }
+        $1 == "step-f64" { row("follower, `f64` in software", $4) }
+        $1 == "step-kalman" { row("Kalman filter with constant acceleration, `f32` (`minikalman`)", $4) }' "$work/cost.csv"
+    echo
+}
+
+limits | awk -F'|' '{ printf "  %-60s %10s of %8s  %s\n", $1, $3, $2, $4 }'
+
+if [ "${1:-}" = --write ]; then
+    cp "$work/cost.csv" cost.csv
+    tables >"$work/tables"
+    awk -v tables="$work/tables" '
+        /<!-- tables -->/ { print; while ((getline line < tables) > 0) print line; inside = 1 }
+        /<!-- end -->/ { inside = 0 }
+        !inside && !/<!-- tables -->/ { print }' README.md >"$work/README.md"
+    cp "$work/README.md" README.md
+    echo "cost: cost.csv and README.md written"
+    exit
+fi
+
+awk -F, '
+    NR == FNR { old[$1 "," $2 "," $3] = $4; next }
+    FNR > 1 && !(($1 "," $2 "," $3) in old) { print "cost: " $1 " for " $2 " peers and " $3 " steps is not in cost.csv"; bad = 1 }
+    FNR > 1 && $4 > 1.05 * old[$1 "," $2 "," $3] {
+        printf "cost: %s for %d peers and %d steps: %d, was %d\n", $1, $2, $3, $4, old[$1 "," $2 "," $3]
+        bad = 1
+    }
+    END { exit bad }' cost.csv "$work/cost.csv" || {
+    echo "cost: more than 5 % worse than cost.csv; if that is meant, tests/embedded/cost.sh --write writes it anew"
+    exit 1
+}
