@@ -78,15 +78,8 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// That no column stands there twice, and no line has more fields than there are columns.
+    /// That no line has more fields than there are columns.
     fn is_even(&self) -> Result<(), Error> {
-        let names: Vec<&str> = self.header.fields.iter().filter(|name| !name.is_empty()).collect();
-        if let Some((_, name)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
-            let cause = format!("the column {} stands there twice", quoted(name));
-            return Err(Error::new(cause, "rename or delete one of the two")
-                .in_file(self.file)
-                .at_line(self.header.line));
-        }
         let columns = self.header.fields.len();
         let longer = |record: &&Record| record.fields.iter().skip(columns).any(|field| !field.is_empty());
         match self.records.iter().find(longer) {
@@ -100,8 +93,14 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The column, which the file must have.
+    /// The column, which the file must have once.
     pub fn column(&self, column: &'static Column) -> Result<FoundColumn, Error> {
+        if self.header.fields.iter().filter(|name| *name == column.name).count() > 1 {
+            let cause = format!("the column {} stands there twice", quoted(column.name));
+            return Err(Error::new(cause, "rename or delete one of the two")
+                .in_file(self.file)
+                .at_line(self.header.line));
+        }
         self.optional_column(column).ok_or_else(|| {
             let found = self.header.fields.iter().collect::<Vec<_>>().join(",");
             Error::new(
