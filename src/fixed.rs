@@ -212,7 +212,10 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // every step says how many bits there are
 pub const fn divide(dividend: u64, divisor: u64) -> u64 {
     if divisor >= 1 << DIGITS_DIVISOR {
-        return if divisor == 0 { 0 } else { dividend / divisor };
+        return match dividend.checked_div(divisor) {
+            Some(quotient) => quotient,
+            None => 0,
+        };
     }
     let small = divisor as u32;
     if small == 0 {
@@ -222,7 +225,7 @@ pub const fn divide(dividend: u64, divisor: u64) -> u64 {
     let second = (first % small) << DIGIT | (dividend >> (2 * DIGIT)) as u32 & NINES; // 20 and 12 bits, as are the others
     let third = (second % small) << DIGIT | (dividend >> DIGIT) as u32 & NINES;
     let fourth = (third % small) << DIGIT | dividend as u32 & NINES;
-    let low = (third / small) << DIGIT | fourth / small;
+    let low = ((third / small) << DIGIT) | (fourth / small);
     ((first / small) as u64) << (3 * DIGIT) | ((second / small) as u64) << (2 * DIGIT) | low as u64
 }
 
