@@ -50,10 +50,8 @@ macro_rules! follower {
                 let (mut position, mut speed) = (first.position - 18.11, first.speed);
                 let (mut acceleration, mut demand): ($float, $float) = (0.0, 0.0);
                 for (out, ahead) in out.iter_mut().zip(ahead) {
-                    let error = position - ahead.position
-                        + law.spacing
-                        + law.gap * speed
-                        + law.damping * (speed - ahead.speed);
+                    let error =
+                        position - ahead.position + law.spacing + law.gap * speed + law.damping * (speed - ahead.speed);
                     let wish = -law.gain * error;
                     let low = larger(demand - law.slew, law.floor);
                     let high = smaller(demand + law.slew, law.ceiling);

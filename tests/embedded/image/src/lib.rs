@@ -3,6 +3,7 @@
 #![no_std]
 
 pub mod counter;
+pub mod file;
 #[cfg(target_abi = "eabihf")]
 pub mod float;
 #[cfg(target_abi = "eabihf")]

@@ -48,8 +48,7 @@ impl Road {
     /// The ego's own motion and the driver's wish.
     pub fn ego(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
         let predecessor = Predecessor::Station(StationHash(self.peers - 1));
-        let wish =
-            EgoIntent { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
+        let wish = EgoIntent { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
         self.say(&Message::EgoIntent(wish), hear);
         let motion = self.motion(at, self.peers, EGO);
         self.say(&Message::Ego(Said::Motion(motion)), hear);
@@ -66,7 +65,9 @@ impl Road {
         let intent = Intent {
             length: Distance::from_mm(4_800),
             standstill: Distance::from_mm(2_000),
-            predecessor: peer.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
+            predecessor: peer
+                .checked_sub(1)
+                .map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
             target_speed: Speed::from_mm_per_s(13_400),
             time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
             gain: GAIN,

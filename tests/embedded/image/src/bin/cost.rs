@@ -2,10 +2,10 @@
 #![no_std]
 #![no_main]
 
+use core::hint::black_box;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
-use core::hint::black_box;
 use holdover::estimator::{Aim, Driver, State, Step};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Speed};
@@ -165,7 +165,8 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
 /// The same 400 steps of one follower in the core's fixed point, in `f32` and in `f64`; and as many predictions of a Kalman
 /// filter.
 fn compare(counter: &Counter) {
-    static mut FIXED: [[Step; CAPACITY]; 2] = [[Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; CAPACITY]; 2];
+    static mut FIXED: [[Step; CAPACITY]; 2] =
+        [[Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; CAPACITY]; 2];
     let config = Config::car(EGO);
     let law = config.law;
     let aim = Aim::Follow { gain: law.gain, damping: law.damping, time_gap: law.time_gap, standstill: law.standstill };
@@ -183,13 +184,15 @@ fn compare(counter: &Counter) {
     let end = out.last().map_or(0, |step| step.position.ahead_of(Position::ZERO.ring()).to_mm()) as f32 / 1000.0;
     macro_rules! in_float {
         ($module:ident) => {{
-            static mut STEPS: [[$module::Step; CAPACITY]; 2] = [[$module::Step { position: 0.0, speed: 0.0 }; CAPACITY]; 2];
+            static mut STEPS: [[$module::Step; CAPACITY]; 2] =
+                [[$module::Step { position: 0.0, speed: 0.0 }; CAPACITY]; 2];
             // SAFETY: as above.
             let [ahead, out] = unsafe { &mut *(&raw mut STEPS) };
             for (step, way) in ahead.iter_mut().zip((18_110u16..).step_by(110)) {
                 *step = $module::Step { position: $module::from(way) / 1000.0, speed: 11.0 };
             }
-            let ((), count) = counter.count(|| $module::run(black_box(&$module::LAW), black_box(ahead), black_box(out)));
+            let ((), count) =
+                counter.count(|| $module::run(black_box(&$module::LAW), black_box(ahead), black_box(out)));
             let float = out.last().map_or(0.0, |step| step.position as f32);
             assert!((float - end).abs() < 0.01, "{float} {end}");
             count
