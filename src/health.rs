@@ -57,6 +57,10 @@ pub enum Refusal {
     BusOff = 23,
     /// The unit was restarted by its watchdog ([`Incident::Restart`]).
     Restart = 24,
+    /// A place on the globe that is not on the ego's path.
+    OffRoute = 25,
+    /// A station that arrived later went on overlooking the ego, which then gave way to it.
+    Overlooked = 26,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -92,7 +96,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 27] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -118,6 +122,8 @@ impl Refusal {
         Self::TransmitOverflow,
         Self::BusOff,
         Self::Restart,
+        Self::OffRoute,
+        Self::Overlooked,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -149,6 +155,8 @@ impl Refusal {
             Self::TransmitOverflow => "transmit_overflow",
             Self::BusOff => "bus_off",
             Self::Restart => "restart",
+            Self::OffRoute => "off_route",
+            Self::Overlooked => "overlooked",
         }
     }
 }

@@ -28,6 +28,7 @@
 pub mod clock;
 pub mod config;
 pub mod controller;
+pub mod coordination;
 pub mod dynamics;
 pub mod envelope;
 pub mod estimator;

@@ -7,6 +7,7 @@ use heapless::Vec;
 use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
+use crate::coordination::Coordination;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Incident, Refusal};
@@ -19,6 +20,7 @@ use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
 
 mod caution;
+mod coordinate;
 mod inbox;
 mod outbox;
 mod range;
@@ -26,7 +28,7 @@ mod range;
 /// A view of the range sensor older than this is not driven by.
 const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), status.
+/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), route (2), status.
 pub const MAX_FRAMES: usize = 16;
 
 /// What became of a frame that was not refused.
@@ -88,6 +90,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     health: Health,
     outbox: outbox::Outbox,
     ranging: range::Ranging,
+    coordination: Coordination<PEERS>,
     last_tick: Option<Instant>,
 }
 
@@ -111,6 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             outbox: outbox::Outbox::new(),
             ranging: range::Ranging::new(),
+            coordination: Coordination::idle(),
             last_tick: None,
         }
     }
@@ -137,6 +141,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.outbox = outbox::Outbox::new();
         self.ranging = range::Ranging::new();
+        self.coordination.reset();
         self.last_tick = None;
         Ok(())
     }
@@ -186,6 +191,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// the last one.
     pub fn tick(&mut self, now: Instant) -> Answer {
         let now = self.monotonic(now);
+        self.coordinate(now);
         let target = self.target();
         let before = target.and_then(|index| self.estimator.read(index, now));
         let was_off = matches!(self.mode, Mode::Holdover { .. });
@@ -236,7 +242,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The slot of whom the ego is to follow.
     fn target(&self) -> Option<usize> {
-        match self.wish.get()?.predecessor {
+        match self.predecessor() {
             Predecessor::Station(station) => self.peers.index_of(station),
             Predecessor::None | Predecessor::Unknown => None,
         }
@@ -250,10 +256,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
-        let target = match (self.wish.get().map(|wish| wish.predecessor), track) {
-            (Some(Predecessor::None), _) => TargetFact::NotNeeded,
-            (None | Some(Predecessor::Unknown), _) => TargetFact::Lost(FallbackCause::NotAssociated),
-            (Some(Predecessor::Station(_)), Some(track)) if readable => {
+        let target = match (self.predecessor(), track) {
+            (Predecessor::None, _) => TargetFact::NotNeeded,
+            (Predecessor::Unknown, _) => TargetFact::Lost(FallbackCause::NotAssociated),
+            (Predecessor::Station(_), Some(track)) if readable => {
                 let silence = track.link().silence(now).unwrap_or(Duration::MAX);
                 if track.link().is_on(now, &self.config.link) {
                     TargetFact::On
@@ -263,14 +269,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                     TargetFact::Lost(FallbackCause::Silent)
                 }
             }
-            (Some(Predecessor::Station(_)), _) => TargetFact::Lost(FallbackCause::NeverHeard),
+            (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
         };
         Facts { engaged: self.wish.get().is_some_and(|wish| wish.engaged), ego, target }
     }
 
     /// Looks the gains up when the target changes.
     fn associate(&mut self, reading: Option<Reading>) {
-        let Some(Predecessor::Station(station)) = self.wish.get().map(|wish| wish.predecessor) else {
+        let Predecessor::Station(station) = self.predecessor() else {
             self.association = None;
             return;
         };
@@ -361,6 +367,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[must_use]
     pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
         &self.peers
+    }
+
+    /// The order at the intersections as it is known.
+    #[must_use]
+    pub const fn coordination(&self) -> &Coordination<PEERS> {
+        &self.coordination
     }
 
     /// The horizons as they are held.

@@ -125,6 +125,10 @@ pub enum Status {
     RefusedBusOff = -87,
     /// Likewise: the watchdog restarted the unit.
     RefusedRestart = -88,
+    /// A place on the globe that is not on the ego's path.
+    RefusedOffRoute = -89,
+    /// Not a refusal of a frame: a station went on overlooking the ego.
+    RefusedOverlooked = -90,
 }
 
 impl From<ConfigError> for Status {
@@ -177,6 +181,8 @@ impl From<Refusal> for Status {
             Refusal::TransmitOverflow => Self::RefusedTransmitOverflow,
             Refusal::BusOff => Self::RefusedBusOff,
             Refusal::Restart => Self::RefusedRestart,
+            Refusal::OffRoute => Self::RefusedOffRoute,
+            Refusal::Overlooked => Self::RefusedOverlooked,
         }
     }
 }
@@ -238,6 +244,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedTransmitOverflow, c"refused: transmit_overflow"),
     (Status::RefusedBusOff, c"refused: bus_off"),
     (Status::RefusedRestart, c"refused: restart"),
+    (Status::RefusedOffRoute, c"refused: off the route"),
+    (Status::RefusedOverlooked, c"counted: overlooked"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

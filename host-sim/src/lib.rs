@@ -9,6 +9,7 @@ pub mod cli;
 pub mod error;
 pub mod evaluate;
 pub mod figures;
+pub mod ground;
 pub mod heard;
 pub mod metrics;
 pub mod modem;

@@ -134,6 +134,14 @@ impl Bound {
         self.at
     }
 
+    /// The same that far ahead, rounded outward.
+    #[must_use]
+    pub fn shifted(&self, way: Distance) -> Self {
+        let shift = |end: End, micros: i64| End { position: end.position.saturating_add(micros), ..end };
+        let bits = i64::from(way.to_bits());
+        Self { near: shift(self.near, micro_down_64(bits, 20)), far: shift(self.far, micro_up_64(bits, 20)), ..*self }
+    }
+
     /// The bound at a later instant; at an earlier one it is what it is.
     #[must_use]
     pub fn after(&self, now: Instant, reach: &Reach) -> Self {

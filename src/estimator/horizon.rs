@@ -8,7 +8,7 @@ use super::actuator::{Rests, State};
 use super::interpolation::between;
 use crate::fixed::quotient;
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Position, RingPosition, Speed};
+use crate::units::{Acceleration, Distance, Position, RingPosition, Speed};
 
 /// The time grid that all horizons of one unit share: step `n` is at `origin + n·δt`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -230,6 +230,14 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.head = self.place(1);
         self.len = self.len.saturating_sub(1);
         self.first = self.first.saturating_add(1);
+    }
+
+    /// Every step moves that far ahead.
+    pub fn shift(&mut self, way: Distance) {
+        self.steps.iter_mut().for_each(|step| step.position = step.position.ahead(way));
+        self.base = self.base.ahead(way);
+        self.tip.position = self.tip.position.ahead(way);
+        self.anchor.position = self.anchor.position.ahead(way);
     }
 
     /// The step with this grid index.

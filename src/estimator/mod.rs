@@ -135,6 +135,18 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }));
     }
 
+    /// What is held of a peer's place moves that far ahead: its axis did.
+    pub fn shift(&mut self, index: usize, way: Distance) {
+        if let Some(horizon) = self.horizons.get_mut(index) {
+            horizon.shift(way);
+        }
+        if let Held::Value((corrected, sample)) = &mut self.correction
+            && *corrected == index
+        {
+            sample.position = sample.position.ahead(way);
+        }
+    }
+
     /// Forgets a peer.
     pub fn forget(&mut self, index: usize) {
         if let Some(horizon) = self.horizons.get_mut(index) {

@@ -21,6 +21,7 @@ use crate::parameters::{
     UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::time::Duration;
+use crate::units::Distance;
 
 /// What is certain of a peer, and the evidence against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,6 +56,12 @@ impl Certainty {
     #[must_use]
     pub const fn bound(&self) -> Option<&Bound> {
         self.bound.as_ref()
+    }
+
+    /// All of it moves that far ahead: the vehicle's axis did.
+    pub fn shift(&mut self, way: Distance) {
+        self.bound = self.bound.map(|bound| bound.shifted(way));
+        self.suspects = self.suspects.map(|(suspect, count)| (suspect.shifted(way), count));
     }
 
     /// Narrows the bound by something else that is certain; whether they agree.

@@ -10,6 +10,7 @@ use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
+use crate::units::Distance;
 use crate::wire::StationHash;
 use crate::wire::horizon::Knots;
 use crate::wire::intent::Intent;
@@ -81,6 +82,18 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub fn reach(&self) -> Reach {
         self.intent.as_ref().map_or(Reach::WORST, |intent| Reach::published(&intent.limits))
+    }
+
+    /// Everything that is held of its place moves that far ahead: its axis did.
+    pub fn shift(&mut self, way: Distance) {
+        self.samples.iter_mut().for_each(|sample| sample.position = sample.position.ahead(way));
+        self.certainty.shift(way);
+    }
+
+    /// Nothing is held of its place any more; what it said of how it drives holds.
+    pub fn restart(&mut self) {
+        self.samples.clear();
+        self.certainty = Certainty::NONE;
     }
 
     /// What it said of how it drives.

@@ -24,12 +24,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
-    /// or the near end of what is certain. Never a stale sample.
+    /// or the near end of what is certain. Never a stale sample. A target that comes by another leg is not what the sensor
+    /// sees: of the two, the one that is nearer.
     pub(super) fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
-        if let Some(seen) = self.ranging.ahead(now, RANGE_TIMEOUT) {
-            return Some(seen);
+        let seen = self.ranging.ahead(now, RANGE_TIMEOUT);
+        if seen.is_some() && target == self.visible() {
+            return seen;
         }
-        let index = target?;
+        let certain = target.and_then(|index| self.certain_rear(now, index));
+        [seen, certain].into_iter().flatten().min_by_key(|rear| rear.position)
+    }
+
+    /// The rear bumper at the near end of what is certain of a peer.
+    fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         let position = bound.lowest_position().ahead(length.negated());
@@ -65,13 +72,41 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             last,
             lag: self.config.lag,
         };
-        let stop_before = match (target.and_then(|index| self.stop_behind(index)), self.stop_behind_seen(now)) {
-            (Some(heard), Some(seen)) => Some(heard.min(seen)),
-            (heard, seen) => heard.or(seen),
+        // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
+        let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
+        let heard = match self.coordination.itinerary() {
+            None => target.and_then(|index| self.stop_behind(index)),
+            Some(_) => self.stop_at_crossing(now, rearmost),
         };
+        let stop_before = [heard, self.stop_behind_seen(now)].into_iter().flatten().min();
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
+    }
+
+    /// On an itinerary: behind the vehicle ahead on the same leg, and before the conflict area for every one ahead in the order
+    /// whose way crosses the ego's.
+    fn stop_at_crossing(&self, now: Instant, rearmost: Position) -> Option<Position> {
+        let choice = self.coordination.choice();
+        let lane = choice.lane.and_then(|index| self.stop_behind(index.into()));
+        let crossing = (0..PEERS)
+            .filter(|index| choice.is_ahead(*index))
+            .filter_map(|index| self.stop_before_area(now, index, rearmost))
+            .min();
+        [lane, crossing].into_iter().flatten().min()
+    }
+
+    fn stop_before_area(&self, now: Instant, index: usize, rearmost: Position) -> Option<Position> {
+        let (standing, crossing) = (self.coordination.standing(index)?, self.coordination.crossing()?);
+        let intersection = crossing.intersection;
+        let point = self.coordination.crossing_point(crossing)?;
+        let area_begins = point.ahead(intersection.half.negated());
+        if rearmost > area_begins || !intersection.conflict(crossing.leg, standing.leg) {
+            return None;
+        }
+        let near_end = self.bound(index, now)?.lowest_position();
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
     /// The point behind a peer before which the ego has to be able to stop.

@@ -5,7 +5,7 @@ use super::OnboardUnit;
 use crate::health::Refusal;
 use crate::peers::plausibility::doubt;
 use crate::peers::{Admission, Sample};
-use crate::time::{Duration, Instant};
+use crate::time::{Duration, Instant, Stamp};
 use crate::wire::motion::Motion;
 use crate::wire::{Message, Said, Slot};
 
@@ -19,7 +19,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Message::EgoIntent(wish) => self.wish.set(*wish),
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
             Message::Range(seen) => self.take_range(at, *seen)?,
-            // Understood, and of use to later stages only.
+            Message::Ego(Said::Geo(geo)) => self.take_ego_place(at, geo)?,
             Message::Ego(_) => {}
             Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}
         }
@@ -27,7 +27,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn take_ego(&mut self, at: Instant, motion: &Motion) -> Result<(), Refusal> {
-        let instant = self.instant_of(motion, at).unwrap_or(at);
+        let instant = self.instant_of(motion.stamp, at).unwrap_or(at);
         let age = at.since(instant);
         if age > self.config.link.ego_timeout {
             return Err(Refusal::Stale);
@@ -53,13 +53,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let index = usize::from(slot.0);
         match said {
             Said::Motion(motion) => {
-                let instant = self.instant_of(motion, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
+                let Some(motion) = self.translate(at, slot, motion)? else { return Ok(()) };
+                let instant =
+                    self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
                 let ego = self.ego.get().map(|ego| ego.position);
                 let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
                 let station = track.station();
                 let near = ego.or(track.newest().map(|sample| sample.position));
-                let sample = Sample::of(motion, instant, at, near);
+                let sample = Sample::of(&motion, instant, at, near);
                 let doubt = doubt(&sample, is_synchronised, &self.config.link);
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
@@ -90,16 +92,23 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                     self.estimator.note_news(index);
                 }
             }
-            Said::Geo(_) | Said::Route(_) => {}
+            Said::Geo(geo) => {
+                self.peers.get_mut(slot)?;
+                self.take_peer_place(at, slot, geo);
+            }
+            Said::Route(route) => {
+                self.peers.get_mut(slot)?;
+                self.take_peer_route(at, slot, route);
+            }
         }
         Ok(())
     }
 
     /// The instant of a message's stamp, while GNSS time is known.
-    fn instant_of(&self, motion: &Motion, at: Instant) -> Option<Instant> {
+    pub(super) fn instant_of(&self, stamp: Stamp, at: Instant) -> Option<Instant> {
         if !self.clock.is_synchronised(at, self.config.link.sync_timeout) {
             return None;
         }
-        self.clock.instant_of(motion.stamp, at)
+        self.clock.instant_of(stamp, at)
     }
 }

@@ -20,11 +20,14 @@ use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
+use crate::wire::route::Route;
 use crate::wire::status::Status;
 use crate::wire::{Frame, Message, Predecessor, Said};
 
 /// How many own motions go by from one intent to the next.
 const INTENT_EVERY: u8 = 5;
+/// How many own motions go by from one route to the next; tags count modulo 4.
+const ROUTE_EVERY: u8 = 2;
 
 /// When what is due.
 #[derive(Clone, Debug)]
@@ -145,6 +148,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             station: self.config.station,
         };
         self.emit(&Message::Own(Said::Motion(motion)), frames);
+        self.send_route(tag, ego, frames);
         let is_by_law = matches!(self.mode, Mode::Cooperative | Mode::Holdover { .. });
         if self.mode != Mode::Standby {
             let intent = self.intent(is_by_law);
@@ -159,6 +163,28 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let knots = self.own_knots(tag, ego);
             self.emit(&Message::Own(Said::Horizon(knots)), frames);
         }
+    }
+
+    /// Every other time, the way to the next crossing point, from where the ego was at the motion's stamp.
+    fn send_route(&mut self, tag: u8, ego: &Sample, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        let (Some(crossing), Some(registration)) = (self.coordination.crossing(), self.coordination.registration())
+        else {
+            return;
+        };
+        let Some(point) = self.coordination.crossing_point(crossing) else { return };
+        if !tag.is_multiple_of(ROUTE_EVERY) {
+            return;
+        }
+        let route = Route {
+            tag,
+            intersection: crossing.intersection.id,
+            leg: crossing.leg,
+            distance: point.ahead_of(WirePosition::from_position(ego.position).nearest_to(ego.position)),
+            stamp: ego.stamp,
+            arrival: registration.arrival.0,
+            predecessor: self.coordination.claim(),
+        };
+        self.emit(&Message::Own(Said::Route(route)), frames);
     }
 
     fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
@@ -196,7 +222,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             length: config.length,
             standstill: law.standstill,
             predecessor: match self.wish.get() {
-                Some(wish) if is_by_law => wish.predecessor,
+                Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,
             },
             target_speed: self.wish.get().map_or(law.target_speed, |wish| wish.target_speed),

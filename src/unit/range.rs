@@ -90,7 +90,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
         let doubt = self.doubt_of_sight(&ego, since, &seen);
         let mut sight = Sight { at, rear, speed, doubt, is_target: false };
-        if let Some(index) = self.target() {
+        if let Some(index) = self.visible() {
             sight.is_target = self.compare(index, &sight);
         }
         self.ranging.sight.set(sight);

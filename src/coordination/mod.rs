@@ -1,0 +1,283 @@
+//! Coordination at intersections without signals: the map, the ego's place on the globe and what the peers say of theirs enter;
+//! whom the ego follows leaves.
+//!
+//! Theory of operation:
+//!
+//! * *Where:* the ego's position on the globe ties its own axis to the path of its itinerary ([`path`]). With the map it then
+//!   knows where on its axis every crossing point lies. A peer says how far it is from a crossing point (`PeerRoute`), or where
+//!   it is on the globe (`PeerPosition`); either ties its axis to the ego's, and from then on it is translated where it comes
+//!   in ([`axis`]). So estimator, controller and envelope know of one lane only, the virtual one.
+//! * *Who:* whoever names the same intersection is in its order ([`order`]); the last one ahead is the *order predecessor*. The
+//!   nearest one ahead on the ego's own leg, at this intersection or another, is the *lane predecessor*. Of the two the ego
+//!   follows the one that asks for more caution. Where the choice changes, both ask for the same, so that it costs no jump.
+//! * *Until when:* a vehicle is at an intersection until its rear has left the conflict area, and arrives at the next one then.
+//!   Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
+
+pub mod axis;
+pub mod map;
+pub mod order;
+pub mod path;
+
+pub use axis::{Axis, Standing};
+pub use map::{Approach, Crossing, Intersection, Itinerary};
+pub use order::{Arrival, Entry};
+pub use path::{Path, Place, Scale, Segment};
+
+use crate::held::Held;
+use crate::time::{Duration, Instant};
+use crate::units::{Distance, Position};
+use crate::wire::{Predecessor, StationHash};
+
+/// Time from one review to the next.
+pub(crate) const REVIEW: Duration = Duration::from_millis(100);
+
+/// A later arrival has to overlook the ego for this long to be given way: five of the messages that tell it, so that what is
+/// only on its way, or lost once or twice, costs nothing.
+pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
+
+/// Fixes that differ from the tie by more than this are another place; others are averaged over 16, which takes the rounding
+/// of a position on the globe (11 mm) out.
+const RELOCATED: Distance = Distance::from_mm(5_000);
+const AVERAGED: i64 = 16;
+
+/// Whom the ego has to mind, as of the last review.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Choice {
+    /// The slot of whom the ego follows.
+    pub target: Option<u8>,
+    /// The slot of the one just ahead in the order.
+    pub order: Option<u8>,
+    /// The slot of the one just ahead on the same leg.
+    pub lane: Option<u8>,
+    /// The slots of all that are ahead in the order, a bit each.
+    pub ahead: u16,
+}
+
+impl Choice {
+    /// Whether a slot is ahead in the order.
+    #[must_use]
+    pub fn is_ahead(&self, index: usize) -> bool {
+        self.ahead & bit(index) != 0
+    }
+}
+
+fn bit(index: usize) -> u16 {
+    u32::try_from(index).ok().and_then(|index| 1u16.checked_shl(index)).unwrap_or(0)
+}
+
+/// The ego at its next crossing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Registration {
+    /// When it arrived, as it tells the others.
+    pub arrival: Arrival,
+    /// When it arrived, by the unit's own clock.
+    pub since: Instant,
+}
+
+/// The unit's coordination.
+#[derive(Clone, Debug)]
+pub struct Coordination<const PEERS: usize> {
+    itinerary: Option<&'static Itinerary>,
+    /// Where the path begins on the ego's axis.
+    tie: Held<Position>,
+    /// Which crossing is next.
+    current: usize,
+    registration: Held<Registration>,
+    axes: [Axis; PEERS],
+    /// Since when a slot overlooks the ego.
+    overlooked: [Held<Instant>; PEERS],
+    claim: Held<StationHash>,
+    choice: Choice,
+    reviewed: Held<Instant>,
+}
+
+impl<const PEERS: usize> Coordination<PEERS> {
+    /// No itinerary: all zero.
+    pub(crate) const fn idle() -> Self {
+        Self {
+            itinerary: None,
+            tie: Held::Nothing,
+            current: 0,
+            registration: Held::Nothing,
+            axes: [Axis::UNKNOWN; PEERS],
+            overlooked: [Held::Nothing; PEERS],
+            claim: Held::Nothing,
+            choice: Choice { target: None, order: None, lane: None, ahead: 0 },
+            reviewed: Held::Nothing,
+        }
+    }
+
+    /// Sets out on a way, from its beginning.
+    pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary) {
+        self.reset();
+        self.itinerary = Some(itinerary);
+    }
+
+    pub(crate) fn reset(&mut self) {
+        self.itinerary = None;
+        self.tie.clear();
+        self.current = 0;
+        self.registration.clear();
+        self.axes = [Axis::UNKNOWN; PEERS];
+        self.overlooked = [Held::Nothing; PEERS];
+        self.claim.clear();
+        self.choice = Choice::default();
+        self.reviewed.clear();
+    }
+
+    /// The ego's way, if it has one.
+    #[must_use]
+    pub const fn itinerary(&self) -> Option<&'static Itinerary> {
+        self.itinerary
+    }
+
+    /// The crossing that the ego is at or comes to next.
+    #[must_use]
+    pub fn crossing(&self) -> Option<&'static Crossing> {
+        self.itinerary?.crossings.get(self.current)
+    }
+
+    /// When the ego arrived there.
+    #[must_use]
+    pub fn registration(&self) -> Option<Registration> {
+        self.registration.get()
+    }
+
+    /// Whom the ego has to mind.
+    #[must_use]
+    pub const fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// What a peer says of its place.
+    #[must_use]
+    pub fn standing(&self, index: usize) -> Option<&Standing> {
+        self.axes.get(index)?.standing()
+    }
+
+    /// Whom the ego takes to be just ahead of it in the order; unknown before it has arrived.
+    #[must_use]
+    pub fn claim(&self) -> Predecessor {
+        match (self.registration.as_ref(), self.claim.get()) {
+            (None, _) => Predecessor::Unknown,
+            (Some(_), None) => Predecessor::None,
+            (Some(_), Some(station)) => Predecessor::Station(station),
+        }
+    }
+
+    /// Where a crossing point of the ego's way lies on its own axis.
+    #[must_use]
+    pub fn crossing_point(&self, crossing: &Crossing) -> Option<Position> {
+        let tie = self.tie.get()?;
+        Some(Position::from_bits(tie.to_bits().saturating_add(crossing.at.to_bits())))
+    }
+
+    /// Whether the ego and a station that stands there come by the same leg.
+    #[must_use]
+    pub(crate) fn is_on_lane(&self, standing: &Standing) -> bool {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(standing.crossing));
+        crossing.is_some_and(|crossing| crossing.leg == standing.leg)
+    }
+
+    /// Whether a station is at the crossing that is next for the ego.
+    #[must_use]
+    pub(crate) const fn is_here(&self, standing: &Standing) -> bool {
+        standing.crossing == self.current
+    }
+
+    /// The axis of a slot.
+    pub(crate) fn axis_mut(&mut self, index: usize) -> Option<&mut Axis> {
+        self.axes.get_mut(index)
+    }
+
+    /// Ties the ego's axis to the path: it was there on both at the same time.
+    pub(crate) fn locate(&mut self, on_axis: Position, along: Position) {
+        let tie = Position::from_bits(on_axis.to_bits().saturating_sub(along.to_bits()));
+        let Some(held) = self.tie.get() else { return self.tie.set(tie) };
+        let off = tie.to_bits().saturating_sub(held.to_bits());
+        let is_elsewhere = off.unsigned_abs() > i64::from(RELOCATED.to_bits()).unsigned_abs();
+        let step = if is_elsewhere { off } else { off / AVERAGED };
+        self.tie.set(Position::from_bits(held.to_bits().saturating_add(step)));
+    }
+
+    /// Whether a review is due.
+    pub(crate) fn is_due(&self, now: Instant) -> bool {
+        self.itinerary.is_some() && self.reviewed.get().is_none_or(|last| now.since(last) >= REVIEW)
+    }
+
+    /// Brings the ego on to the crossing that its front bumper at this position, and its length, make the next one.
+    pub(crate) fn advance(&mut self, front: Position, length: Distance, now: Instant, arrival: Arrival) {
+        let (Some(itinerary), Some(_)) = (self.itinerary, self.tie.get()) else { return };
+        while let Some(crossing) = itinerary.crossings.get(self.current) {
+            let Some(point) = self.crossing_point(crossing) else { return };
+            let has_left = front.ahead(length.negated()) >= point.ahead(crossing.intersection.half);
+            if !has_left || self.current.saturating_add(1) >= itinerary.crossings.len() {
+                break;
+            }
+            self.current = self.current.saturating_add(1);
+            self.registration.clear();
+        }
+        if self.registration.as_ref().is_none() {
+            self.registration.set(Registration { arrival, since: now });
+            self.claim.clear();
+            self.overlooked = [Held::Nothing; PEERS];
+        }
+    }
+
+    /// Reviews the slots that are here: what each says as an entry of the order, and when it said so. Gives whether the ego gave
+    /// way to one that overlooked it.
+    pub(crate) fn review(&mut self, now: Instant, own: StationHash, entries: &[(usize, Entry, Instant)]) -> bool {
+        self.reviewed.set(now);
+        let Some(registration) = self.registration.get() else { return false };
+        let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
+        let mut given_way = None;
+        for (index, entry, heard) in entries {
+            let overlooks = order::overlooks(entry, &ego, entries.iter().map(|(_, entry, _)| entry));
+            // What was said before the ego could be heard of does not count.
+            let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
+            if self.is_lasting(*index, now, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
+                given_way = Some(entry);
+            }
+        }
+        let ego = match given_way.and_then(|other| other.arrival) {
+            Some(arrival) => {
+                self.registration.set(Registration { arrival: arrival.next(), since: now });
+                Entry { arrival: Some(arrival.next()), ..ego }
+            }
+            None => ego,
+        };
+        let mut last: Option<(usize, Entry)> = None;
+        self.choice.ahead = 0;
+        for (index, entry, _) in entries.iter().filter(|(_, entry, _)| entry.is_before(&ego)) {
+            self.choice.ahead |= bit(*index);
+            if last.is_none_or(|(_, last)| last.is_before(entry)) {
+                last = Some((*index, *entry));
+            }
+        }
+        self.choice.order = last.and_then(|(index, _)| u8::try_from(index).ok());
+        self.claim = last.map(|(_, entry)| entry.station).into();
+        given_way.is_some()
+    }
+
+    /// Chooses whom to follow, and takes note of who is ahead on the lane.
+    pub(crate) fn choose(&mut self, target: Option<usize>, lane: Option<usize>) {
+        let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
+        (self.choice.target, self.choice.lane) = (slot(target), slot(lane));
+    }
+
+    /// Whether a slot has overlooked the ego for too long.
+    fn is_lasting(&mut self, index: usize, now: Instant, overlooks: bool) -> bool {
+        let Some(since) = self.overlooked.get_mut(index) else { return false };
+        match (overlooks, since.get()) {
+            (false, _) => since.clear(),
+            (true, None) => since.set(now),
+            (true, Some(begun)) => return now.since(begun) >= OVERLOOKED,
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests;

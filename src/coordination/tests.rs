@@ -1,0 +1,205 @@
+//! The order, against a naive oracle; and stations that hear one another late, in part or not at all.
+
+use super::order::overlooks;
+use super::*;
+use crate::coordination::order::Arrival;
+
+fn entry(station: u8, arrival: u32, claim: Option<u8>) -> Entry {
+    let claim = claim.map_or(Predecessor::None, |station| Predecessor::Station(StationHash(station)));
+    Entry { station: StationHash(station), arrival: Some(Arrival(arrival)), claim }
+}
+
+#[test]
+fn arrivals_decide_then_stations_and_who_does_not_say_goes_first() {
+    let turn = 1 << 20;
+    for (a, b) in [(5, 6), (turn - 1, 0), (turn - 5, turn / 2 - 6), (0, turn / 2 - 1)] {
+        assert!(entry(9, a, None).is_before(&entry(1, b, None)), "{a} {b}");
+        assert!(!entry(1, b, None).is_before(&entry(9, a, None)), "{a} {b}");
+    }
+    assert!(entry(1, 7, None).is_before(&entry(2, 7, None)));
+    assert!(!entry(2, 7, None).is_before(&entry(2, 7, None)));
+    let silent = Entry { arrival: None, ..entry(200, 0, None) };
+    assert!(silent.is_before(&entry(1, 7, None)));
+    assert!(!entry(1, 7, None).is_before(&silent));
+    assert!(Entry { station: StationHash(1), ..silent }.is_before(&silent));
+}
+
+#[test]
+fn arrivals_of_gnss_time_come_round_after_2_9_hours() {
+    assert_eq!(Arrival::of_micros(0), Arrival(0));
+    assert_eq!(Arrival::of_micros(19_999), Arrival(1));
+    assert_eq!(Arrival::of_micros((1 << 20) * 10_000 + 30_000), Arrival(3));
+}
+
+#[test]
+fn only_who_arrived_later_and_claims_somebody_before_the_ego_or_nobody_overlooks_it() {
+    let (before, own, after, later) =
+        (entry(1, 10, None), entry(2, 20, Some(1)), entry(3, 30, Some(2)), entry(4, 40, None));
+    let all = [before, after, later];
+    let claims = |claim| Entry { claim, ..later };
+    let station = |station| Predecessor::Station(StationHash(station));
+    assert!(overlooks(&claims(Predecessor::None), &own, all.iter()));
+    assert!(overlooks(&claims(station(1)), &own, all.iter()));
+    assert!(!overlooks(&claims(station(2)), &own, all.iter()));
+    assert!(!overlooks(&claims(station(3)), &own, all.iter()));
+    assert!(!overlooks(&claims(station(77)), &own, all.iter()));
+    assert!(!overlooks(&claims(Predecessor::Unknown), &own, all.iter()));
+    assert!(!overlooks(&before, &own, all.iter()));
+}
+
+/// Stations at one intersection, each with its own coordination, and what each last heard of each other.
+struct Meeting {
+    stations: Vec<(Entry, Coordination<8>)>,
+    heard: Vec<Vec<Option<(Entry, Instant)>>>,
+}
+
+const TICK_MS: u64 = 100;
+
+fn at(tick: u64) -> Instant {
+    Instant::from_micros(tick * TICK_MS * 1000)
+}
+
+impl Meeting {
+    fn of(arrivals: &[u32]) -> Self {
+        static SCALE: Scale = Scale { north: 0, east: 0 };
+        static SEGMENTS: [Segment; 1] = [Segment {
+            latitude: 0,
+            longitude: 0,
+            begins: Position::ZERO,
+            length: Distance::from_mm(1),
+            along: SCALE,
+            across: SCALE,
+            heading: 0,
+        }];
+        static PATH: Path = Path { segments: &SEGMENTS };
+        static INTERSECTION: Intersection = Intersection { id: 1, half: Distance::from_mm(8_000), approaches: &[] };
+        static CROSSINGS: [Crossing; 1] =
+            [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
+        static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
+        let stations = arrivals.iter().enumerate().map(|(index, arrival)| {
+            let mut coordination = Coordination::idle();
+            coordination.set_out(&ITINERARY);
+            coordination.locate(Position::ZERO, Position::ZERO);
+            coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(*arrival));
+            (entry(index as u8 + 1, *arrival, None), coordination)
+        });
+        Self { stations: stations.collect(), heard: vec![vec![None; arrivals.len()]; arrivals.len()] }
+    }
+
+    /// Everyone hears whom it hears, then reviews. Gives how many gave way.
+    fn tick(&mut self, tick: u64, mut hears: impl FnMut(usize, usize) -> bool) -> usize {
+        let mut gave_way = 0;
+        for to in 0..self.stations.len() {
+            for from in (0..self.stations.len()).filter(|from| *from != to) {
+                if hears(to, from) {
+                    let (own, coordination) = &self.stations[from];
+                    let arrival = coordination.registration().map(|registration| registration.arrival);
+                    let said = Entry { arrival, claim: coordination.claim(), ..*own };
+                    self.heard[to][from] = Some((said, at(tick)));
+                }
+            }
+        }
+        for (index, (own, coordination)) in self.stations.iter_mut().enumerate() {
+            let heard = self.heard[index].iter().enumerate();
+            let entries: Vec<_> =
+                heard.filter_map(|(from, heard)| heard.map(|(entry, when)| (from, entry, when))).collect();
+            gave_way += usize::from(coordination.review(at(tick + 1), own.station, &entries));
+        }
+        gave_way
+    }
+
+    /// Whom each takes to be just ahead, by index.
+    fn claims(&self) -> Vec<Option<usize>> {
+        let index = |claim| match claim {
+            Predecessor::Station(StationHash(station)) => Some(usize::from(station) - 1),
+            _ => None,
+        };
+        self.stations.iter().map(|(_, coordination)| index(coordination.claim())).collect()
+    }
+
+    /// The stations in the order of the chain of claims, if they are one chain.
+    fn chain(&self) -> Option<Vec<usize>> {
+        let claims = self.claims();
+        let mut chain = vec![claims.iter().position(Option::is_none)?];
+        while let Some(next) = claims.iter().position(|claim| *claim == chain.last().copied()) {
+            chain.push(next);
+            if chain.len() > claims.len() {
+                return None;
+            }
+        }
+        (chain.len() == claims.len()).then_some(chain)
+    }
+}
+
+/// A generator of its own, so that a failure can be repeated.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, sides: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % sides
+    }
+}
+
+fn arrivals(dice: &mut Dice) -> Vec<u32> {
+    (0..2 + dice.below(7)).map(|_| dice.below(40) as u32).collect()
+}
+
+fn by_arrival(arrivals: &[u32]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..arrivals.len()).collect();
+    order.sort_by_key(|index| (arrivals[*index], *index));
+    order
+}
+
+#[test]
+fn who_hears_late_and_with_loss_agrees_on_arrivals_and_nobody_gives_way() {
+    let mut dice = Dice(1);
+    for _ in 0..2_000 {
+        let arrivals = arrivals(&mut dice);
+        let mut meeting = Meeting::of(&arrivals);
+        let mut gave_way = 0;
+        for tick in 0..30 {
+            gave_way += meeting.tick(tick, |_, _| dice.below(10) > 0);
+        }
+        assert_eq!(meeting.chain(), Some(by_arrival(&arrivals)), "{arrivals:?}");
+        assert_eq!(gave_way, 0, "{arrivals:?}");
+    }
+}
+
+#[test]
+fn after_any_deafness_all_agree_again_on_one_order() {
+    let mut dice = Dice(2);
+    for round in 0..2_000 {
+        let arrivals = arrivals(&mut dice);
+        let mut meeting = Meeting::of(&arrivals);
+        let deaf: Vec<bool> = (0..64).map(|_| dice.below(2) == 0).collect();
+        for tick in 0..40 {
+            meeting.tick(tick, |to, from| !deaf[to * 8 + from] && dice.below(10) > 0);
+        }
+        for tick in 40..70 {
+            meeting.tick(tick, |_, _| dice.below(10) > 0);
+        }
+        let mut chain = meeting.chain().unwrap_or_else(|| panic!("{round}: {arrivals:?} {:?}", meeting.claims()));
+        chain.sort_unstable();
+        assert_eq!(chain, (0..arrivals.len()).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn one_of_two_that_head_for_the_same_place_gives_way() {
+    // The last one cannot hear the second one, whoever the others are: the second one makes room.
+    let mut dice = Dice(3);
+    for _ in 0..2_000 {
+        let arrivals = arrivals(&mut dice);
+        let (deaf, unheard) = (dice.below(arrivals.len() as u64), dice.below(arrivals.len() as u64));
+        let mut meeting = Meeting::of(&arrivals);
+        for tick in 0..60 {
+            let hears = |to: usize, from: usize| (to as u64, from as u64) != (deaf, unheard);
+            meeting.tick(tick, |to, from| hears(to, from) && dice.below(20) > 0);
+        }
+        let claims = meeting.claims();
+        for (a, b) in (0..claims.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
+            assert_ne!(claims[a], claims[b], "{arrivals:?}, {deaf} does not hear {unheard}: {claims:?}");
+        }
+    }
+}

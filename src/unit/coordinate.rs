@@ -1,0 +1,204 @@
+//! The unit at intersections: places on the globe and on routes enter; whom it follows leaves. The rules are those of
+//! [`crate::coordination`].
+
+use heapless::Vec;
+
+use super::OnboardUnit;
+use crate::coordination::{Arrival, Crossing, Entry, Itinerary, Standing};
+use crate::estimator::Reading;
+use crate::health::Refusal;
+use crate::parameters::{DEFAULT_LENGTH, REACH};
+use crate::time::{Duration, Instant, Stamp};
+use crate::units::{Distance, Position};
+use crate::wire::geo::GeoPosition;
+use crate::wire::motion::Motion;
+use crate::wire::route::Route;
+use crate::wire::{Predecessor, Slot};
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// Sets out on a way through intersections: from now on, and until the unit is started anew, positions of peers are taken on
+    /// the virtual lane, and where `EgoIntent` names no predecessor the order at the intersections decides whom to follow.
+    pub fn set_out(&mut self, itinerary: &'static Itinerary) {
+        self.coordination.set_out(itinerary);
+    }
+
+    /// Whom the ego is to follow: whom it was told to, or whom the order has put ahead of it.
+    pub(super) fn predecessor(&self) -> Predecessor {
+        let wished = self.wish.get().map_or(Predecessor::Unknown, |wish| wish.predecessor);
+        if wished != Predecessor::Unknown || self.coordination.registration().is_none() {
+            return wished;
+        }
+        let Some(target) = self.coordination.choice().target else { return Predecessor::None };
+        let station = self.peers.get(target.into()).and_then(|track| track.station());
+        station.map_or(Predecessor::None, Predecessor::Station)
+    }
+
+    /// The slot of the vehicle that a sensor would see ahead.
+    pub(super) fn visible(&self) -> Option<usize> {
+        match self.coordination.itinerary() {
+            Some(_) => self.coordination.choice().lane.map(usize::from),
+            None => self.target(),
+        }
+    }
+
+    /// Takes in where the ego is on the globe.
+    pub(super) fn take_ego_place(&mut self, at: Instant, geo: &GeoPosition) -> Result<(), Refusal> {
+        let (Some(itinerary), Some(ego)) = (self.coordination.itinerary(), self.ego.get()) else { return Ok(()) };
+        let since = self.instant_of(geo.stamp, at).unwrap_or(at).since(ego.at);
+        if since.as_micros().unsigned_abs() > self.config.link.ego_timeout.as_micros().unsigned_abs() {
+            return Err(Refusal::Stale);
+        }
+        let place = itinerary.path.place(geo).ok_or(Refusal::OffRoute)?;
+        self.coordination.locate(ego.position.ahead(ego.speed.over(since.seconds())), place.along);
+        Ok(())
+    }
+
+    /// A peer's motion on the ego's axis; `None` while its axis is not known.
+    ///
+    /// # Errors
+    /// [`Refusal::StationConflict`]: what another station says in the slot does not touch the axis.
+    pub(super) fn translate(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<Option<Motion>, Refusal> {
+        let track = self.peers.get_mut(slot)?;
+        if self.coordination.itinerary().is_none() {
+            return Ok(Some(*motion));
+        }
+        let is_alive = track.link().silence(at).is_some_and(|silence| silence < self.config.link.slot_reuse);
+        if is_alive && track.station().is_some_and(|station| station != motion.station) {
+            return Err(Refusal::StationConflict);
+        }
+        let index = usize::from(slot.0);
+        let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
+        let (translated, moved) = axis.translate(motion);
+        self.move_axis(index, moved);
+        Ok(translated)
+    }
+
+    /// Takes in what a peer says of its way to a crossing point.
+    pub(super) fn take_peer_route(&mut self, at: Instant, slot: Slot, route: &Route) {
+        let Some((place, crossing)) = self.coordination.itinerary().and_then(|way| way.find(route.intersection)) else {
+            return self.leave(slot);
+        };
+        let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
+        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at };
+        self.take_standing(slot, route.stamp, crossing, route.distance, standing);
+    }
+
+    /// Takes in where a peer is on the globe, unless it says more than that.
+    pub(super) fn take_peer_place(&mut self, at: Instant, slot: Slot, geo: &GeoPosition) {
+        let index = usize::from(slot.0);
+        let says_more = |standing: &Standing| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
+        if self.coordination.itinerary().is_none() || self.coordination.standing(index).is_some_and(says_more) {
+            return;
+        }
+        let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(slot) };
+        let standing = Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at };
+        self.take_standing(slot, geo.stamp, crossing, distance, standing);
+    }
+
+    /// The crossing of the ego's way that a vehicle at this place comes to next, and its leg and way there.
+    fn approached(&self, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
+        let mut next: Option<(usize, &'static Crossing, u8, Distance)> = None;
+        for (place, crossing) in self.coordination.itinerary()?.crossings.iter().enumerate() {
+            let intersection = crossing.intersection;
+            for approach in intersection.approaches {
+                let Some(found) = approach.path.place(geo) else { continue };
+                let distance = approach.crossing.ahead_of(found.along);
+                let has_left = distance < intersection.half.plus(DEFAULT_LENGTH).negated();
+                if !has_left && next.is_none_or(|(.., nearest)| distance < nearest) {
+                    next = Some((place, crossing, approach.leg, distance));
+                }
+            }
+        }
+        next
+    }
+
+    fn take_standing(&mut self, slot: Slot, stamp: Stamp, crossing: &Crossing, distance: Distance, standing: Standing) {
+        let index = usize::from(slot.0);
+        let Some(point) = self.coordination.crossing_point(crossing) else { return };
+        let Some(axis) = self.coordination.axis_mut(index) else { return };
+        let moved = axis.place(stamp, point, distance, standing);
+        self.move_axis(index, moved);
+    }
+
+    fn leave(&mut self, slot: Slot) {
+        if let Some(axis) = self.coordination.axis_mut(slot.0.into()) {
+            axis.leave();
+        }
+    }
+
+    /// Everything that is held of a peer moves with its axis.
+    fn move_axis(&mut self, index: usize, moved: Option<Distance>) {
+        let (Some(moved), Some(track)) = (moved, self.peers.get_index_mut(index)) else { return };
+        if moved.magnitude() > REACH {
+            track.restart();
+            self.estimator.forget(index);
+        } else {
+            track.shift(moved);
+            self.estimator.shift(index, moved);
+        }
+    }
+
+    /// Reviews who is ahead, when that is due.
+    pub(super) fn coordinate(&mut self, now: Instant) {
+        if !self.coordination.is_due(now) || !self.is_synchronised(now) {
+            return;
+        }
+        let (Some(sample), Some(state), Some(gnss)) = (self.ego.get(), self.ego_at(now), self.clock.gnss(now)) else {
+            return;
+        };
+        let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));
+        let arrival = Arrival::of_micros(gnss.as_micros());
+        self.coordination.advance(front, self.config.length, now, arrival);
+
+        let mut entries: Vec<(usize, Entry, Instant), PEERS> = Vec::new();
+        let mut lane: Option<(usize, Position)> = None;
+        for index in 0..PEERS {
+            let (Some(standing), Some((reading, rear))) = (self.coordination.standing(index), self.rear(index, now))
+            else {
+                continue;
+            };
+            let Some(station) = self.peers.get(index).and_then(|track| track.station()) else { continue };
+            if self.coordination.is_here(standing) && !self.has_left(rear) {
+                let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
+                let _ = entries.push((index, entry, standing.heard)); // as many as slots
+            }
+            let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
+            if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
+                lane = Some((index, reading.position));
+            }
+        }
+        if self.coordination.review(now, self.config.station, &entries) {
+            self.health.count(Refusal::Overlooked);
+        }
+        let order = self.coordination.choice().order.map(usize::from);
+        let lane = lane.map(|(index, _)| index);
+        let room = |index: &usize| self.rear(*index, now).map_or(i64::MAX, |(reading, rear)| self.asks(reading, rear));
+        let target = [order, lane].into_iter().flatten().min_by_key(room);
+        self.coordination.choose(target, lane);
+    }
+
+    /// What a vehicle ahead asks of the law of eq. 5: of two, the one with the smaller `r_j - l_j + γ v_j` asks for the smaller
+    /// acceleration, because everything else in the law is the ego's own.
+    fn asks(&self, reading: Reading, rear: Position) -> i64 {
+        rear.ahead(reading.speed.over(self.config.law.damping)).to_bits()
+    }
+
+    /// Where a peer is estimated to be, and its rear bumper.
+    fn rear(&self, index: usize, now: Instant) -> Option<(Reading, Position)> {
+        let reading = self.estimator.read(index, now)?;
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
+        Some((reading, reading.position.ahead(length.negated())))
+    }
+
+    /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.
+    fn has_left(&self, rear: Position) -> bool {
+        let end = self
+            .coordination
+            .crossing()
+            .and_then(|crossing| Some(self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)));
+        end.is_some_and(|end| rear >= end)
+    }
+}
+
+/// A peer that told its route less than this ago is not placed by the globe.
+const SAYS_MORE: Duration = Duration::from_millis(2_000);
