@@ -149,6 +149,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_BUS_OFF = -87,
   // Likewise: the watchdog restarted the unit.
   HOLDOVER_REFUSED_RESTART = -88,
+  // A place on the globe that is not on the ego's path.
+  HOLDOVER_REFUSED_OFF_ROUTE = -89,
+  // Not a refusal of a frame: a station went on overlooking the ego.
+  HOLDOVER_REFUSED_OVERLOOKED = -90,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
