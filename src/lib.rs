@@ -43,4 +43,5 @@ pub mod units;
 pub mod wire;
 
 pub use config::{Config, ConfigError};
+pub use coordination::MapError;
 pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};

@@ -315,7 +315,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 gain: gains.gain,
                 damping: gains.damping,
                 time_gap: wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap),
-                standstill: if self.config.prediction.model.standstill { law.standstill } else { Distance::ZERO },
+                standstill: if self.config.prediction.model.standstill { self.standstill() } else { Distance::ZERO },
             },
             None => Aim::Lead {
                 largest: law.free_road_acceleration,

@@ -21,6 +21,22 @@ pub struct Approach {
     pub conflicts: u8,
 }
 
+/// What is wrong with a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum MapError {
+    /// The itinerary has no crossing, or more than 65,535.
+    Crossings,
+    /// An intersection is met twice, or the crossings do not lie one behind the other.
+    Order,
+    /// A leg is numbered [`LEGS`] or more.
+    Leg,
+    /// Half a conflict area is negative, or longer than 5.115 m: twice that has to fit the standstill distance of `Intent`.
+    Area,
+    /// A path has no segment.
+    Path,
+}
+
 /// An intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -68,9 +84,101 @@ pub struct Itinerary {
 }
 
 impl Itinerary {
+    /// Whether it can be driven by.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn check(&self) -> Result<(), MapError> {
+        const AREA_MAX: Distance = Distance::from_mm(5_115);
+        if self.crossings.is_empty() || u16::try_from(self.crossings.len()).is_err() {
+            return Err(MapError::Crossings);
+        }
+        if self.path.segments.is_empty() {
+            return Err(MapError::Path);
+        }
+        for (place, crossing) in self.crossings.iter().enumerate() {
+            let Intersection { id, half, approaches } = crossing.intersection;
+            if crossing.leg >= LEGS || approaches.iter().any(|approach| approach.leg >= LEGS) {
+                return Err(MapError::Leg);
+            }
+            if *half < Distance::ZERO || *half > AREA_MAX {
+                return Err(MapError::Area);
+            }
+            if approaches.iter().any(|approach| approach.path.segments.is_empty()) {
+                return Err(MapError::Path);
+            }
+            let is_last = |other: &Crossing| other.intersection.id != *id && other.at > crossing.at;
+            if !self.crossings.iter().skip(place.saturating_add(1)).all(is_last) {
+                return Err(MapError::Order);
+            }
+        }
+        Ok(())
+    }
+
     /// The crossing of this intersection, and its place on the way.
     #[must_use]
     pub fn find(&self, intersection: u8) -> Option<(usize, &'static Crossing)> {
         self.crossings.iter().enumerate().find(|(_, crossing)| crossing.intersection.id == intersection)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::path::{Scale, Segment};
+    use super::*;
+
+    static SEGMENTS: [Segment; 1] = [Segment {
+        latitude: 0,
+        longitude: 0,
+        begins: Position::ZERO,
+        length: Distance::from_mm(1_000),
+        along: Scale { north: 1, east: 0 },
+        across: Scale { north: 0, east: 1 },
+        heading: 0,
+    }];
+    static PATH: Path = Path { segments: &SEGMENTS };
+    static NO_PATH: Path = Path { segments: &[] };
+
+    const fn intersection(id: u8, half_mm: i32, approaches: &'static [Approach]) -> Intersection {
+        Intersection { id, half: Distance::from_mm(half_mm), approaches }
+    }
+
+    const fn crossing(intersection: &'static Intersection, leg: u8, at_mm: i64) -> Crossing {
+        Crossing { intersection, leg, at: Position::from_mm(at_mm) }
+    }
+
+    #[test]
+    fn a_map_that_cannot_be_driven_by_is_refused_by_name() {
+        static GOOD: Intersection = intersection(1, 5_115, &[]);
+        static OTHER: Intersection = intersection(2, 0, &[]);
+        static WIDE: Intersection = intersection(1, 5_116, &[]);
+        static LEGLESS: Intersection =
+            intersection(1, 4_000, &[Approach { leg: 8, path: &PATH, crossing: Position::ZERO, conflicts: 0 }]);
+        static PATHLESS: Intersection =
+            intersection(1, 4_000, &[Approach { leg: 7, path: &NO_PATH, crossing: Position::ZERO, conflicts: 0 }]);
+        let check = |crossings: &'static [Crossing]| Itinerary { path: &PATH, crossings }.check();
+        assert_eq!(check(&[const { crossing(&GOOD, 7, 5) }, const { crossing(&OTHER, 0, 6) }]), Ok(()));
+        assert_eq!(check(&[]), Err(MapError::Crossings));
+        assert_eq!(check(&[const { crossing(&GOOD, 8, 5) }]), Err(MapError::Leg));
+        assert_eq!(check(&[const { crossing(&LEGLESS, 0, 5) }]), Err(MapError::Leg));
+        assert_eq!(check(&[const { crossing(&WIDE, 0, 5) }]), Err(MapError::Area));
+        assert_eq!(check(&[const { crossing(&PATHLESS, 0, 5) }]), Err(MapError::Path));
+        assert_eq!(check(&[const { crossing(&GOOD, 0, 5) }, const { crossing(&GOOD, 0, 6) }]), Err(MapError::Order));
+        assert_eq!(check(&[const { crossing(&GOOD, 0, 5) }, const { crossing(&OTHER, 0, 5) }]), Err(MapError::Order));
+        let lost = Itinerary { path: &NO_PATH, crossings: &[const { crossing(&GOOD, 0, 5) }] };
+        assert_eq!(lost.check(), Err(MapError::Path));
+    }
+
+    #[test]
+    fn legs_conflict_as_the_map_says_and_an_unknown_leg_with_every_other() {
+        static APPROACHES: [Approach; 2] = [
+            Approach { leg: 0, path: &PATH, crossing: Position::ZERO, conflicts: 0b100 },
+            Approach { leg: 2, path: &PATH, crossing: Position::ZERO, conflicts: 0b001 },
+        ];
+        let intersection = intersection(1, 4_000, &APPROACHES);
+        assert!(intersection.conflict(0, 2) && intersection.conflict(2, 0));
+        assert!(!intersection.conflict(0, 0));
+        assert!(intersection.conflict(0, 3) && intersection.conflict(3, 0));
+        assert!(!intersection.conflict(3, 3));
     }
 }

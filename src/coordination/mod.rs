@@ -19,7 +19,7 @@ pub mod order;
 pub mod path;
 
 pub use axis::{Axis, Standing};
-pub use map::{Approach, Crossing, Intersection, Itinerary};
+pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
 pub use order::{Arrival, Entry};
 pub use path::{Path, Place, Scale, Segment};
 
@@ -27,6 +27,14 @@ use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 use crate::wire::{Predecessor, StationHash};
+
+/// Behind a vehicle that comes by a crossing leg the standstill distance is the length of the conflict area, if that is longer:
+/// then at whatever speed the two pass, the one's rear has left the area when the other's front enters it.
+#[must_use]
+pub fn standstill_behind(law: Distance, crossing: &Crossing, leg: u8) -> Distance {
+    let intersection = crossing.intersection;
+    if intersection.conflict(crossing.leg, leg) { law.max(intersection.half.plus(intersection.half)) } else { law }
+}
 
 /// Time from one review to the next.
 pub(crate) const REVIEW: Duration = Duration::from_millis(100);
@@ -50,7 +58,7 @@ pub struct Choice {
     pub order: Option<u8>,
     /// The slot of the one just ahead on the same leg.
     pub lane: Option<u8>,
-    /// The slots of all that are ahead in the order, a bit each.
+    /// The slots of all that are ahead in the order, a bit each; also of those that are only estimated to have left.
     pub ahead: u16,
 }
 
@@ -64,6 +72,20 @@ impl Choice {
 
 fn bit(index: usize) -> u16 {
     u32::try_from(index).ok().and_then(|index| 1u16.checked_shl(index)).unwrap_or(0)
+}
+
+/// A station at the ego's next crossing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) struct Present {
+    /// Its slot.
+    pub index: usize,
+    /// What it says.
+    pub entry: Entry,
+    /// When it said so.
+    pub heard: Instant,
+    /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
+    pub has_left: bool,
 }
 
 /// The ego at its next crossing.
@@ -110,9 +132,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
     }
 
     /// Sets out on a way, from its beginning.
-    pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary) {
+    ///
+    /// # Errors
+    /// What is wrong with the map; nothing is changed then.
+    pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
+        itinerary.check()?;
         self.reset();
         self.itinerary = Some(itinerary);
+        Ok(())
     }
 
     pub(crate) fn reset(&mut self) {
@@ -226,15 +253,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
-    /// Reviews the slots that are here: what each says as an entry of the order, and when it said so. Gives whether the ego gave
-    /// way to one that overlooked it.
-    pub(crate) fn review(&mut self, now: Instant, own: StationHash, entries: &[(usize, Entry, Instant)]) -> bool {
+    /// Reviews who is here. Gives whether the ego gave way to one that overlooked it.
+    pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
         self.reviewed.set(now);
         let Some(registration) = self.registration.get() else { return false };
         let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
         let mut given_way = None;
-        for (index, entry, heard) in entries {
-            let overlooks = order::overlooks(entry, &ego, entries.iter().map(|(_, entry, _)| entry));
+        for Present { index, entry, heard, .. } in present {
+            let overlooks = order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
             // What was said before the ego could be heard of does not count.
             let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
             if self.is_lasting(*index, now, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
@@ -250,9 +276,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
         };
         let mut last: Option<(usize, Entry)> = None;
         self.choice.ahead = 0;
-        for (index, entry, _) in entries.iter().filter(|(_, entry, _)| entry.is_before(&ego)) {
+        for Present { index, entry, has_left, .. } in present.iter().filter(|other| other.entry.is_before(&ego)) {
             self.choice.ahead |= bit(*index);
-            if last.is_none_or(|(_, last)| last.is_before(entry)) {
+            if !has_left && last.is_none_or(|(_, last)| last.is_before(entry)) {
                 last = Some((*index, *entry));
             }
         }

@@ -72,13 +72,13 @@ impl Meeting {
             heading: 0,
         }];
         static PATH: Path = Path { segments: &SEGMENTS };
-        static INTERSECTION: Intersection = Intersection { id: 1, half: Distance::from_mm(8_000), approaches: &[] };
+        static INTERSECTION: Intersection = Intersection { id: 1, half: Distance::from_mm(4_000), approaches: &[] };
         static CROSSINGS: [Crossing; 1] =
             [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
         static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
         let stations = arrivals.iter().enumerate().map(|(index, arrival)| {
             let mut coordination = Coordination::idle();
-            coordination.set_out(&ITINERARY);
+            coordination.set_out(&ITINERARY).unwrap();
             coordination.locate(Position::ZERO, Position::ZERO);
             coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(*arrival));
             (entry(index as u8 + 1, *arrival, None), coordination)
@@ -101,9 +101,12 @@ impl Meeting {
         }
         for (index, (own, coordination)) in self.stations.iter_mut().enumerate() {
             let heard = self.heard[index].iter().enumerate();
-            let entries: Vec<_> =
-                heard.filter_map(|(from, heard)| heard.map(|(entry, when)| (from, entry, when))).collect();
-            gave_way += usize::from(coordination.review(at(tick + 1), own.station, &entries));
+            let present: Vec<_> = heard
+                .filter_map(|(index, heard)| {
+                    heard.map(|(entry, heard)| Present { index, entry, heard, has_left: false })
+                })
+                .collect();
+            gave_way += usize::from(coordination.review(at(tick + 1), own.station, &present));
         }
         gave_way
     }

@@ -4,7 +4,7 @@
 use heapless::Vec;
 
 use super::OnboardUnit;
-use crate::coordination::{Arrival, Crossing, Entry, Itinerary, Standing};
+use crate::coordination::{Arrival, Crossing, Entry, Itinerary, MapError, Present, Standing, standstill_behind};
 use crate::estimator::Reading;
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
@@ -18,8 +18,11 @@ use crate::wire::{Predecessor, Slot};
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Sets out on a way through intersections: from now on, and until the unit is started anew, positions of peers are taken on
     /// the virtual lane, and where `EgoIntent` names no predecessor the order at the intersections decides whom to follow.
-    pub fn set_out(&mut self, itinerary: &'static Itinerary) {
-        self.coordination.set_out(itinerary);
+    ///
+    /// # Errors
+    /// What is wrong with the map; nothing is changed then.
+    pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
+        self.coordination.set_out(itinerary)
     }
 
     /// Whom the ego is to follow: whom it was told to, or whom the order has put ahead of it.
@@ -150,7 +153,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let arrival = Arrival::of_micros(gnss.as_micros());
         self.coordination.advance(front, self.config.length, now, arrival);
 
-        let mut entries: Vec<(usize, Entry, Instant), PEERS> = Vec::new();
+        let mut present: Vec<Present, PEERS> = Vec::new();
         let mut lane: Option<(usize, Position)> = None;
         for index in 0..PEERS {
             let (Some(standing), Some((reading, rear))) = (self.coordination.standing(index), self.rear(index, now))
@@ -158,29 +161,48 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 continue;
             };
             let Some(station) = self.peers.get(index).and_then(|track| track.station()) else { continue };
-            if self.coordination.is_here(standing) && !self.has_left(rear) {
+            if self.coordination.is_here(standing) {
                 let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
-                let _ = entries.push((index, entry, standing.heard)); // as many as slots
+                let has_left = self.has_left(rear);
+                let _ = present.push(Present { index, entry, heard: standing.heard, has_left }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
             if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
                 lane = Some((index, reading.position));
             }
         }
-        if self.coordination.review(now, self.config.station, &entries) {
+        if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
         let order = self.coordination.choice().order.map(usize::from);
         let lane = lane.map(|(index, _)| index);
-        let room = |index: &usize| self.rear(*index, now).map_or(i64::MAX, |(reading, rear)| self.asks(reading, rear));
+        let room =
+            |index: &usize| self.rear(*index, now).map_or(i64::MAX, |(reading, rear)| self.asks(*index, reading, rear));
         let target = [order, lane].into_iter().flatten().min_by_key(room);
         self.coordination.choose(target, lane);
     }
 
-    /// What a vehicle ahead asks of the law of eq. 5: of two, the one with the smaller `r_j - l_j + γ v_j` asks for the smaller
-    /// acceleration, because everything else in the law is the ego's own.
-    fn asks(&self, reading: Reading, rear: Position) -> i64 {
-        rear.ahead(reading.speed.over(self.config.law.damping)).to_bits()
+    /// What a vehicle ahead asks of the law of eq. 5: of two, the one with the smaller `r_j - l_j - s_0 + γ v_j` asks for the
+    /// smaller acceleration, because everything else in the law is the ego's own.
+    fn asks(&self, index: usize, reading: Reading, rear: Position) -> i64 {
+        let damped = reading.speed.over(self.config.law.damping);
+        rear.ahead(damped).ahead(self.standstill_behind(index).negated()).to_bits()
+    }
+
+    /// The standstill distance behind whom the ego follows.
+    pub(super) fn standstill(&self) -> Distance {
+        let target = self.coordination.choice().target.map(usize::from);
+        target.map_or(self.config.law.standstill, |index| self.standstill_behind(index))
+    }
+
+    fn standstill_behind(&self, index: usize) -> Distance {
+        let law = self.config.law.standstill;
+        match (self.coordination.crossing(), self.coordination.standing(index)) {
+            (Some(crossing), Some(standing)) if self.coordination.is_here(standing) => {
+                standstill_behind(law, crossing, standing.leg)
+            }
+            _ => law,
+        }
     }
 
     /// Where a peer is estimated to be, and its rear bumper.

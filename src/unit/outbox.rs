@@ -220,7 +220,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         };
         Intent {
             length: config.length,
-            standstill: law.standstill,
+            standstill: self.standstill(),
             predecessor: match self.wish.get() {
                 Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,

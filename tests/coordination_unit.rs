@@ -1,0 +1,165 @@
+//! Coordination in the whole unit, frames in and frames out: who comes first goes first, every leg on one virtual lane.
+
+mod rig;
+
+use holdover::health::Refusal;
+use holdover::wire::{Message, Predecessor, Said, StationHash};
+use rig::junction::{CROSSING, Driver, HALF, Junction};
+
+/// The earlier one is station 2, on leg 1; the later one station 1, on leg 0, and `behind` metres further from the crossing.
+fn two(behind: f64, envelope: bool) -> Junction {
+    let first = Driver::new(2, 1, 40.0, 11.0, envelope);
+    let second = Driver::new(1, 0, 40.0 - behind, 11.0, envelope);
+    Junction::new(vec![second, first])
+}
+
+/// Lets the first one register before the second one is heard.
+fn settled(mut junction: Junction) -> Junction {
+    let position = junction.drivers[0].body.position;
+    junction.drivers[0].engaged = false;
+    junction.drivers[0].hears = false;
+    junction.run(0.3, |junction| junction.drivers[0].body.position = position);
+    let fresh = Driver::new(1, 0, position, 11.0, junction.drivers[0].rig.unit.config().envelope.is_some());
+    let now = junction.now;
+    junction.drivers[0] = fresh;
+    junction.drivers[0].rig.power_up(true, 0);
+    junction.drivers[0].rig.synchronise(now - 1, 0);
+    junction
+}
+
+#[test]
+fn a_vehicle_on_another_leg_is_where_it_is_from_the_crossing_point() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(2.0, |_| {});
+    let mut worst: f64 = 0.0;
+    junction.run(8.0, |junction| {
+        let truth = junction.drivers[1].body.position;
+        // The bodies have moved on by one period since the tick.
+        let estimate = junction.drivers[0].estimate().expect("the first one is followed");
+        worst = worst.max((estimate + junction.drivers[1].body.speed * 0.01 - truth).abs());
+    });
+    assert!(worst < 0.05, "{worst}");
+}
+
+#[test]
+fn who_comes_first_goes_first_and_both_say_so() {
+    let mut junction = settled(two(3.0, false));
+    let (mut claims, mut said_follow) = (Vec::new(), Vec::new());
+    junction.run(3.0, |junction| {
+        for message in &junction.drivers[0].last.as_ref().unwrap().all {
+            match message {
+                Message::Own(Said::Route(route)) => claims.push((route.intersection, route.leg, route.predecessor)),
+                Message::Own(Said::Intent(intent)) => said_follow.push(intent.predecessor),
+                _ => {}
+            }
+        }
+    });
+    let first = Predecessor::Station(StationHash(2));
+    assert_eq!((junction.drivers[0].follows(), junction.drivers[1].follows()), (Some(2), None));
+    assert_eq!(claims.last(), Some(&(5, 0, first)));
+    assert_eq!(said_follow.last(), Some(&first));
+}
+
+#[test]
+fn neither_stops_nor_meets_the_other_in_the_conflict_area_and_no_command_jumps() {
+    for behind in [0.5, 4.0, 9.0, 15.0, 25.0] {
+        let mut junction = settled(two(behind, false));
+        let (mut slowest, mut jump, mut both): (f64, f64, bool) = (f64::MAX, 0.0, false);
+        let mut last = [0.0, 0.0];
+        junction.run(25.0, |junction| {
+            let inside = |driver: &Driver| (CROSSING - HALF..CROSSING + HALF + 4.8).contains(&driver.body.position);
+            both |= junction.drivers.iter().all(inside);
+            for (driver, last) in junction.drivers.iter().zip(&mut last) {
+                slowest = slowest.min(driver.body.speed);
+                jump = jump.max((driver.command() - *last).abs());
+                *last = driver.command();
+            }
+        });
+        assert!(!both && slowest > 1.0, "{behind} m behind: slowest {slowest}");
+        // 5 m/s³ over 10 ms, and the command's resolution.
+        assert!(jump < 0.05 + 0.021, "{behind} m behind: a jump of {jump}");
+        assert!(junction.drivers[0].follows().is_none(), "the one that has left is not followed any more");
+        assert!(junction.drivers[0].body.speed > 10.0 && junction.drivers[0].body.position > 220.0);
+    }
+}
+
+#[test]
+fn the_next_intersection_is_told_of_when_the_rear_has_left_the_first() {
+    let mut junction = Junction::new(vec![Driver::new(1, 0, 150.0, 11.0, false)]);
+    junction.run(10.0, |junction| {
+        let front = junction.drivers[0].body.position;
+        for message in &junction.drivers[0].last.as_ref().unwrap().all {
+            let Message::Own(Said::Route(route)) = message else { continue };
+            let distance = f64::from(route.distance.to_mm()) * 1e-3;
+            // A review comes every 100 ms.
+            if front < CROSSING + HALF + 4.7 {
+                assert_eq!(route.intersection, 5);
+            } else if front > CROSSING + HALF + 4.9 + 1.2 {
+                assert_eq!(route.intersection, 6);
+            }
+            let crossing = if route.intersection == 5 { 200.0 } else { 390.0 };
+            assert!((crossing - front - distance).abs() < 0.13, "{front} {distance}");
+        }
+    });
+    assert!(junction.drivers[0].body.position > 240.0);
+}
+
+#[test]
+fn a_vehicle_that_only_says_where_on_the_globe_it_is_goes_first() {
+    let mut junction = two(-10.0, false);
+    junction.drivers[1].says_route = false;
+    junction.run(4.0, |_| {});
+    // The later one by place is the one that says nothing of its arrival.
+    assert_eq!(junction.drivers[0].follows(), Some(2));
+    let estimate = junction.drivers[0].estimate().unwrap();
+    assert!((estimate - junction.drivers[1].body.position).abs() < 0.2);
+}
+
+#[test]
+fn with_the_envelope_nobody_enters_before_it_is_certain_that_the_area_is_left() {
+    for silent_at in [60.0, 110.0, 150.0, 180.0, 195.0] {
+        let mut junction = settled(two(6.0, true));
+        let mut entered = false;
+        junction.run(40.0, |junction| {
+            let [ego, other] = &mut junction.drivers[..] else { panic!("two") };
+            other.speaks &= other.body.position < silent_at;
+            // After that the one ahead may brake at its hardest at once, and stand in the area for ever.
+            entered |= !other.speaks && ego.body.position > CROSSING - HALF;
+        });
+        assert!(!entered, "silent at {silent_at} m: entered");
+        assert!(junction.drivers[0].body.speed < 0.05);
+    }
+}
+
+#[test]
+fn with_the_envelope_who_is_heard_to_leave_is_not_waited_for() {
+    let mut junction = settled(two(6.0, true));
+    junction.run(40.0, |_| {});
+    assert!(junction.drivers[0].body.position > 300.0, "{}", junction.drivers[0].body.position);
+}
+
+#[test]
+fn a_place_beside_the_path_is_refused_and_changes_nothing() {
+    let mut junction = Junction::new(vec![Driver::new(1, 0, 50.0, 11.0, false)]);
+    junction.run(1.0, |_| {});
+    let before = junction.drivers[0].rig.unit.coordination().clone();
+    let now = junction.now - rig::junction::PERIOD;
+    let mut geo = junction.drivers[0].geo(now);
+    geo.longitude = 1_101;
+    let verdict = junction.drivers[0].rig.put(now, &Message::Ego(Said::Geo(geo)));
+    assert_eq!(verdict, Err(Refusal::OffRoute));
+    assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
+}
+
+#[test]
+fn another_station_in_a_live_slot_does_not_move_the_axis() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(3.0, |_| {});
+    let now = junction.now;
+    let motion = junction.drivers[0].rig.motion(StationHash(77), now, 9_000.0, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
+    let before = junction.drivers[0].rig.unit.coordination().clone();
+    let slot = holdover::wire::Slot(1);
+    let verdict = junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Motion(motion)));
+    assert_eq!(verdict, Err(Refusal::StationConflict));
+    assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
+}

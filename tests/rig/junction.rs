@@ -1,0 +1,201 @@
+//! An intersection on a flat globe where a step of 1e-7° is a centimetre: two straight streets, one to the north (leg 0) and
+//! one to the east (leg 1), that cross 200 m from where each begins, and for the one to the north a second intersection
+//! 190 m further on. Vehicles with a unit each drive on them, and hear one another without delay, if at all.
+
+use super::*;
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::wire::geo::GeoPosition;
+
+const CM: i32 = 687_194_767; // 0.01 · 2³⁶
+
+static NORTH: [Segment; 1] = [Segment {
+    latitude: 0,
+    longitude: 0,
+    begins: Position::ZERO,
+    length: Distance::from_mm(500_000),
+    along: Scale { north: CM, east: 0 },
+    across: Scale { north: 0, east: CM },
+    heading: 0,
+}];
+static EAST: [Segment; 1] = [Segment {
+    latitude: 20_000,
+    longitude: -20_000,
+    begins: Position::ZERO,
+    length: Distance::from_mm(500_000),
+    along: Scale { north: 0, east: CM },
+    across: Scale { north: -CM, east: 0 },
+    heading: 7_200,
+}];
+static NORTHWARD: Path = Path { segments: &NORTH };
+static EASTWARD: Path = Path { segments: &EAST };
+
+static FIRST: Intersection = Intersection {
+    id: 5,
+    half: Distance::from_mm(4_000),
+    approaches: &[
+        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b10 },
+        Approach { leg: 1, path: &EASTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
+    ],
+};
+static SECOND: Intersection = Intersection {
+    id: 6,
+    half: Distance::from_mm(4_000),
+    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(390_000), conflicts: 0b10 }],
+};
+static WAYS: [Itinerary; 2] = [
+    Itinerary {
+        path: &NORTHWARD,
+        crossings: &[
+            Crossing { intersection: &FIRST, leg: 0, at: Position::from_mm(200_000) },
+            Crossing { intersection: &SECOND, leg: 0, at: Position::from_mm(390_000) },
+        ],
+    },
+    Itinerary {
+        path: &EASTWARD,
+        crossings: &[Crossing { intersection: &FIRST, leg: 1, at: Position::from_mm(200_000) }],
+    },
+];
+
+/// Where both streets cross, along each.
+pub const CROSSING: f64 = 200.0;
+/// Half of the conflict area.
+pub const HALF: f64 = 4.0;
+
+/// A vehicle with its unit.
+pub struct Driver {
+    pub rig: Rig,
+    pub leg: usize,
+    pub body: plant::Plant,
+    /// Its own axis begins so far before its street.
+    pub axis: f64,
+    pub target_speed: f64,
+    pub engaged: bool,
+    /// Whether it speaks, whether it hears, and whether it says its route.
+    pub speaks: bool,
+    pub hears: bool,
+    pub says_route: bool,
+    pub last: Option<Heard>,
+}
+
+impl Driver {
+    pub fn new(station: u8, leg: usize, at: f64, speed: f64, envelope: bool) -> Self {
+        let mut config = config();
+        config.station = StationHash(station);
+        config.envelope = envelope.then_some(holdover::config::Envelope::CAR);
+        let mut rig = Rig::new(&config);
+        rig.power_up(true, 0);
+        rig.unit.set_out(&WAYS[leg]).unwrap();
+        let body = plant::Plant { position: at, speed, acceleration: 0.0, lag: 0.3 };
+        let axis = 1_000.0 * f64::from(station);
+        Self {
+            rig,
+            leg,
+            body,
+            axis,
+            target_speed: speed,
+            engaged: true,
+            speaks: true,
+            hears: true,
+            says_route: true,
+            last: None,
+        }
+    }
+
+    pub fn geo(&self, at: i64) -> GeoPosition {
+        let cm = (self.body.position * 100.0).round() as i32;
+        let (tag, stamp) = ((at / 100_000 % 4) as u8, gnss(at, 0).stamp());
+        match self.leg {
+            0 => GeoPosition { tag, latitude: cm, longitude: 0, heading: 0, stamp },
+            _ => GeoPosition { tag, latitude: 20_000, longitude: cm - 20_000, heading: 7_200, stamp },
+        }
+    }
+
+    /// Whom the unit says that it follows.
+    pub fn follows(&self) -> Option<u8> {
+        let index = self.rig.unit.coordination().choice().target?;
+        Some(self.rig.unit.peers().get(index.into())?.station()?.0)
+    }
+
+    pub fn command(&self) -> f64 {
+        self.last.as_ref().map_or(0.0, |last| mps2_of(last.command.acceleration))
+    }
+
+    /// Where the unit says that its target is, along its own street.
+    pub fn estimate(&self) -> Option<f64> {
+        let estimate = self.last.as_ref()?.answer.estimate.as_ref()?;
+        Some(m_of(estimate.reading.position) - self.axis)
+    }
+}
+
+/// All of them.
+pub struct Junction {
+    pub drivers: Vec<Driver>,
+    pub now: i64,
+}
+
+pub const PERIOD: i64 = 10_000;
+
+impl Junction {
+    pub fn new(drivers: Vec<Driver>) -> Self {
+        Self { drivers, now: 0 }
+    }
+
+    /// Ticks for so many seconds; `each` sees the junction after every tick.
+    pub fn run(&mut self, seconds: f64, mut each: impl FnMut(&mut Self)) {
+        for _ in 0..(seconds * 100.0).round() as usize {
+            self.tick();
+            each(self);
+        }
+    }
+
+    fn tick(&mut self) {
+        let now = self.now;
+        let mut said: Vec<(usize, Said)> = Vec::new();
+        for (index, driver) in self.drivers.iter_mut().enumerate() {
+            let plant::Plant { position, speed, acceleration, .. } = driver.body;
+            let demand = driver.command();
+            let station = driver.rig.unit.config().station;
+            let at = position + driver.axis;
+            let motion = driver.rig.motion(station, now, at, speed, acceleration, demand, Some((0.05, 0.02)));
+            let _ = driver.rig.put(now, &Message::Ego(Said::Motion(motion)));
+            if now % 100_000 == 0 {
+                let geo = driver.geo(now);
+                let _ = driver.rig.put(now, &Message::Ego(Said::Geo(geo)));
+                let wish = EgoIntent {
+                    engaged: driver.engaged,
+                    predecessor: Predecessor::Unknown,
+                    target_speed: mps(driver.target_speed),
+                    time_gap: None,
+                };
+                let _ = driver.rig.put(now, &Message::EgoIntent(wish));
+            }
+            if now % 500_000 == 0 {
+                driver.rig.synchronise(now, 0);
+            }
+            let heard = driver.rig.tick(now);
+            if driver.speaks {
+                for message in &heard.all {
+                    if let Message::Own(own) = message {
+                        said.push((index, *own));
+                    }
+                }
+                if !driver.says_route && now % 100_000 == 0 {
+                    said.push((index, Said::Geo(driver.geo(now))));
+                }
+            }
+            driver.last = Some(heard);
+            let command = driver.command();
+            driver.body.drive(command, PERIOD as f64 * 1e-6);
+        }
+        for (from, own) in said {
+            for to in 0..self.drivers.len() {
+                let is_silent = matches!(own, Said::Route(_)) && !self.drivers[from].says_route;
+                if to != from && self.drivers[to].hears && !is_silent {
+                    let slot = Slot(from as u8);
+                    let _ = self.drivers[to].rig.put(now + 1_000, &Message::Peer(slot, own));
+                }
+            }
+        }
+        self.now += PERIOD;
+    }
+}
