@@ -28,6 +28,12 @@ impl Body {
     /// A car: 1,500 kg, wheels of 0.31 m radius, 0.4 N/(m/s)² of drag, 150 N of rolling resistance.
     pub const CAR: Self =
         Self { mass_kg: 1500, ratio_milli: 3226, drag_milli: 400, friction_milli: 2000, mechanical_n: 150 };
+    /// A high van: 2,800 kg, wheels of 0.345 m radius, 0.96 N/(m/s)² of drag, 300 N of rolling resistance.
+    pub const VAN: Self =
+        Self { mass_kg: 2800, ratio_milli: 2899, drag_milli: 960, friction_milli: 4000, mechanical_n: 300 };
+    /// A city bus, half full: 12,500 kg, wheels of 0.47 m radius, 3.06 N/(m/s)² of drag, 980 N of rolling resistance.
+    pub const BUS: Self =
+        Self { mass_kg: 12_500, ratio_milli: 2128, drag_milli: 3060, friction_milli: 10_000, mechanical_n: 980 };
 
     /// Whether every number is in its range.
     #[must_use]
