@@ -7,6 +7,7 @@ use heapless::Vec;
 use super::{Estimate, MAX_FRAMES, OnboardUnit};
 use crate::config::Config;
 use crate::controller::Mode;
+use crate::dynamics::Inversion;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Reading};
 use crate::health::Refusal;
@@ -29,6 +30,7 @@ const INTENT_EVERY: u8 = 5;
 /// When what is due.
 #[derive(Clone, Debug)]
 pub(super) struct Outbox {
+    inversion: Inversion,
     tick: u8,
     tag: u8,
     page: u8,
@@ -39,7 +41,15 @@ pub(super) struct Outbox {
 
 impl Outbox {
     pub(super) const fn new() -> Self {
-        Self { tick: 0, tag: 0, page: 0, due: None, until_intent: 0, intent: Held::Nothing }
+        Self {
+            inversion: Inversion::new(),
+            tick: 0,
+            tag: 0,
+            page: 0,
+            due: None,
+            until_intent: 0,
+            intent: Held::Nothing,
+        }
     }
 
     /// The command of this tick.
@@ -52,7 +62,7 @@ impl Outbox {
         limited: bool,
     ) -> Command {
         self.tick = self.tick.wrapping_add(1) % 64;
-        let effort = config.body.effort(acceleration, speed);
+        let effort = self.inversion.effort(&config.body, acceleration, speed);
         Command { acceleration, effort, mode: mode.code(), limited, tick: self.tick }
     }
 
