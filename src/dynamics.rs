@@ -9,6 +9,12 @@
 //! brake. So the one that acts gives way to the other only when that one is wanted for more than [`DEADBAND`]; until then
 //! it does nothing, and the acceleration is off by at most that.
 
+mod correction;
+
+pub use correction::Correction;
+
+use crate::config::Config;
+use crate::estimator::State;
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::Effort;
 
@@ -88,23 +94,29 @@ impl Body {
 /// the demand by, and below what anyone feels.
 pub const DEADBAND: Acceleration = Acceleration::from_mm_per_s2(15);
 
-/// Which of the two acts, with the deadband between them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+/// From the demand to the actuators: what eq. 1 does not know of is made up for, and which of the two acts is remembered.
+#[derive(Clone, Debug, Default)]
 pub struct Inversion {
+    correction: Correction,
     braking: bool,
 }
 
 impl Inversion {
-    /// The engine acts.
+    /// The engine acts, and nothing is known that eq. 1 does not know.
     #[must_use]
     pub const fn new() -> Self {
-        Self { braking: false }
+        Self { correction: Correction::new(), braking: false }
+    }
+
+    /// What brings the demand about from the ego's state on. `is_driving`: it is this unit that drives.
+    #[must_use]
+    pub fn effort(&mut self, config: &Config, ego: Option<&State>, is_driving: bool, demand: Acceleration) -> Effort {
+        let asked = self.correction.apply(config, ego.filter(|_| is_driving), demand);
+        self.choose(&config.body, asked, ego.map_or(Speed::ZERO, |ego| ego.speed))
     }
 
     /// Eqs 2 and 3 with the deadband; as [`Body::effort`] outside it.
-    #[must_use]
-    pub fn effort(&mut self, body: &Body, acceleration: Acceleration, speed: Speed) -> Effort {
+    fn choose(&mut self, body: &Body, acceleration: Acceleration, speed: Speed) -> Effort {
         let force = body.net_force(acceleration, speed);
         let band = body.inertia(DEADBAND);
         self.braking = if self.braking { force <= band } else { force < band.saturating_neg() };
@@ -161,7 +173,7 @@ mod tests {
         for amplitude in [14, 40] {
             for step in 0..40 {
                 let demand = coasting + if step % 2 == 0 { amplitude } else { -amplitude };
-                let effort = inversion.effort(&body, Acceleration::from_mm_per_s2(demand), speed);
+                let effort = inversion.choose(&body, Acceleration::from_mm_per_s2(demand), speed);
                 let back = acceleration(&body, effort, 10.0) * 1e3;
                 let tolerance = if amplitude > 15 { 2.0 } else { 15.0 };
                 assert!((back - f64::from(demand)).abs() <= tolerance, "{demand} {effort:?} {back}");
@@ -181,7 +193,7 @@ mod tests {
                 let (demand, speed) = (Acceleration::from_mm_per_s2(demand), Speed::from_mm_per_s(speed));
                 let coasting = Body::CAR.net_force(demand, speed);
                 if coasting.abs() > Body::CAR.inertia(DEADBAND) {
-                    assert_eq!(inversion.effort(&Body::CAR, demand, speed), Body::CAR.effort(demand, speed));
+                    assert_eq!(inversion.choose(&Body::CAR, demand, speed), Body::CAR.effort(demand, speed));
                 }
             }
         }

@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::controller::Mode;
 use crate::dynamics::Inversion;
 use crate::estimator::bound::Bound;
-use crate::estimator::{Aim, Driver, Reading};
+use crate::estimator::{Aim, Driver, Reading, State};
 use crate::health::Refusal;
 use crate::held::Held;
 use crate::peers::Sample;
@@ -57,12 +57,12 @@ impl Outbox {
         &mut self,
         config: &Config,
         acceleration: Acceleration,
-        speed: Speed,
+        ego: Option<&State>,
         mode: Mode,
         limited: bool,
     ) -> Command {
         self.tick = self.tick.wrapping_add(1) % 64;
-        let effort = self.inversion.effort(&config.body, acceleration, speed);
+        let effort = self.inversion.effort(config, ego, mode != Mode::Standby, acceleration);
         Command { acceleration, effort, mode: mode.code(), limited, tick: self.tick }
     }
 
