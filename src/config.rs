@@ -173,6 +173,8 @@ pub struct Config {
     pub limits: Limits,
     /// The vehicle of eqs 1-3.
     pub body: Body,
+    /// Whether what eq. 1 does not know of, such as a grade, is measured and made up for.
+    pub correction: bool,
     /// The law.
     pub law: Law,
     /// The prediction.
@@ -198,6 +200,7 @@ impl Config {
             emergency_braking: Acceleration::ZERO,
         },
         body: Body { mass_kg: 0, ratio_milli: 0, drag_milli: 0, friction_milli: 0, mechanical_n: 0 },
+        correction: false,
         law: Law {
             time_gap: Seconds::ZERO,
             standstill: Distance::ZERO,
@@ -240,6 +243,7 @@ impl Config {
                 emergency_braking: Acceleration::from_mm_per_s2(8000),
             },
             body: Body::CAR,
+            correction: true,
             law: Law {
                 time_gap: Seconds::from_millis(1000),
                 standstill: Distance::from_mm(2000),

@@ -4,7 +4,17 @@
 //! Eq. 1: `a = (F_net - R·T_br - c_v v² - c_f v - d_m)/m`. Driving (eq. 2): `F_net = m a + c_v v² + c_f v + d_m`. Braking:
 //! eq. 3 read as `T_br = -(m a + c_v v² + c_f v + d_m)/R >= 0`; as printed it has the speed for the acceleration, two
 //! names for the friction coefficient, and the sign of a brake that accelerates.
+//!
+//! *Deadband:* a demand near coasting, moved by a few mm/s² at every message, would go back and forth between engine and
+//! brake. So the one that acts gives way to the other only when that one is wanted for more than [`DEADBAND`]; until then
+//! it does nothing, and the acceleration is off by at most that.
 
+mod correction;
+
+pub use correction::Correction;
+
+use crate::config::Config;
+use crate::estimator::State;
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::Effort;
 
@@ -28,6 +38,12 @@ impl Body {
     /// A car: 1,500 kg, wheels of 0.31 m radius, 0.4 N/(m/s)² of drag, 150 N of rolling resistance.
     pub const CAR: Self =
         Self { mass_kg: 1500, ratio_milli: 3226, drag_milli: 400, friction_milli: 2000, mechanical_n: 150 };
+    /// A high van: 2,800 kg, wheels of 0.345 m radius, 0.96 N/(m/s)² of drag, 300 N of rolling resistance.
+    pub const VAN: Self =
+        Self { mass_kg: 2800, ratio_milli: 2899, drag_milli: 960, friction_milli: 4000, mechanical_n: 300 };
+    /// A city bus, half full: 12,500 kg, wheels of 0.47 m radius, 3.06 N/(m/s)² of drag, 980 N of rolling resistance.
+    pub const BUS: Self =
+        Self { mass_kg: 12_500, ratio_milli: 2128, drag_milli: 3060, friction_milli: 10_000, mechanical_n: 980 };
 
     /// Whether every number is in its range.
     #[must_use]
@@ -42,22 +58,69 @@ impl Body {
     /// Eqs 2 and 3: rounded to nearest N or N·m, saturating at the wire's 65,534. Bodies that are not sane saturate too.
     #[must_use]
     pub fn effort(&self, acceleration: Acceleration, speed: Speed) -> Effort {
+        let force = self.net_force(acceleration, speed);
+        if force >= 0 { self.drive(force) } else { self.brake(force) }
+    }
+
+    /// What brings the acceleration about, in nano-newtons, so that every term is an integer: kg·mm/s² is 1e6 nN,
+    /// mN/(m/s)² by (mm/s)² is 1e3·1e-6·1e9. Engine if positive, brakes if negative.
+    fn net_force(&self, acceleration: Acceleration, speed: Speed) -> i64 {
         let v = speed.to_mm_per_s().max(0) as i64;
         let scaled = |x: u32| x as i64;
-        // In nano-newtons, so that every term is an integer: kg·mm/s² is 1e6 nN, mN/(m/s)² by (mm/s)² is 1e3·1e-6·1e9.
-        let inertia = scaled(self.mass_kg).saturating_mul(acceleration.to_mm_per_s2() as i64).saturating_mul(1_000_000);
         let drag = scaled(self.drag_milli).saturating_mul(v).saturating_mul(v);
         let friction = scaled(self.friction_milli).saturating_mul(v).saturating_mul(1000);
         let mechanical = scaled(self.mechanical_n).saturating_mul(1_000_000_000);
-        let force = inertia.saturating_add(drag).saturating_add(friction).saturating_add(mechanical);
-        if force >= 0 {
-            Effort::Force(rounded(force, 1_000_000_000))
-        } else {
-            Effort::BrakeTorque(rounded(
-                force.saturating_neg(),
-                (self.ratio_milli.max(1) as i64).saturating_mul(1_000_000),
-            ))
-        }
+        self.inertia(acceleration).saturating_add(drag).saturating_add(friction).saturating_add(mechanical)
+    }
+
+    /// `m a` in nano-newtons.
+    fn inertia(&self, acceleration: Acceleration) -> i64 {
+        i64::from(self.mass_kg).saturating_mul(i64::from(acceleration.to_mm_per_s2())).saturating_mul(1_000_000)
+    }
+
+    fn drive(&self, force: i64) -> Effort {
+        Effort::Force(rounded(force, 1_000_000_000))
+    }
+
+    fn brake(&self, force: i64) -> Effort {
+        Effort::BrakeTorque(rounded(
+            force.saturating_neg(),
+            i64::from(self.ratio_milli.max(1)).saturating_mul(1_000_000),
+        ))
+    }
+}
+
+/// Half the width of the deadband between engine and brakes: three times what a tick's rounding and a message's news move
+/// the demand by, and below what anyone feels.
+pub const DEADBAND: Acceleration = Acceleration::from_mm_per_s2(15);
+
+/// From the demand to the actuators: what eq. 1 does not know of is made up for, and which of the two acts is remembered.
+#[derive(Clone, Debug, Default)]
+pub struct Inversion {
+    correction: Correction,
+    braking: bool,
+}
+
+impl Inversion {
+    /// The engine acts, and nothing is known that eq. 1 does not know.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { correction: Correction::new(), braking: false }
+    }
+
+    /// What brings the demand about from the ego's state on. `is_driving`: it is this unit that drives.
+    #[must_use]
+    pub fn effort(&mut self, config: &Config, ego: Option<&State>, is_driving: bool, demand: Acceleration) -> Effort {
+        let asked = self.correction.apply(config, ego.filter(|_| is_driving), demand);
+        self.choose(&config.body, asked, ego.map_or(Speed::ZERO, |ego| ego.speed))
+    }
+
+    /// Eqs 2 and 3 with the deadband; as [`Body::effort`] outside it.
+    fn choose(&mut self, body: &Body, acceleration: Acceleration, speed: Speed) -> Effort {
+        let force = body.net_force(acceleration, speed);
+        let band = body.inertia(DEADBAND);
+        self.braking = if self.braking { force <= band } else { force < band.saturating_neg() };
+        if self.braking { body.brake(force.min(0)) } else { body.drive(force.max(0)) }
     }
 }
 
@@ -94,6 +157,44 @@ mod tests {
                 // Half a newton, half a newton metre times R, over the mass.
                 let tolerance = 0.5 * f64::from(body.ratio_milli) / 1000.0 / 1500.0 + 1e-9;
                 assert!((back - f64::from(demand) / 1000.0).abs() <= tolerance, "{demand} {speed} {effort:?} {back}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_other_actuator_acts_only_beyond_the_deadband_and_the_error_stays_within_it() {
+        let (body, speed) = (Body::CAR, Speed::from_mm_per_s(10_000));
+        // Where coasting is: -(0.4 · 10² + 2 · 10 + 150)/1500 m/s².
+        let coasting = -140;
+        let mut inversion = Inversion::new();
+        let mut changes = 0;
+        let mut was_braking = false;
+        // Up and down around coasting, first within the band and then beyond it.
+        for amplitude in [14, 40] {
+            for step in 0..40 {
+                let demand = coasting + if step % 2 == 0 { amplitude } else { -amplitude };
+                let effort = inversion.choose(&body, Acceleration::from_mm_per_s2(demand), speed);
+                let back = acceleration(&body, effort, 10.0) * 1e3;
+                let tolerance = if amplitude > 15 { 2.0 } else { 15.0 };
+                assert!((back - f64::from(demand)).abs() <= tolerance, "{demand} {effort:?} {back}");
+                let is_braking = matches!(effort, Effort::BrakeTorque(_));
+                changes += usize::from(is_braking != was_braking);
+                was_braking = is_braking;
+            }
+            assert_eq!(changes, if amplitude > 15 { 39 } else { 0 });
+        }
+    }
+
+    #[test]
+    fn beyond_the_deadband_the_inversion_is_eqs_2_and_3() {
+        let mut inversion = Inversion::new();
+        for demand in (-8000..=4000).step_by(37) {
+            for speed in (0..=60_000).step_by(1711) {
+                let (demand, speed) = (Acceleration::from_mm_per_s2(demand), Speed::from_mm_per_s(speed));
+                let coasting = Body::CAR.net_force(demand, speed);
+                if coasting.abs() > Body::CAR.inertia(DEADBAND) {
+                    assert_eq!(inversion.choose(&Body::CAR, demand, speed), Body::CAR.effort(demand, speed));
+                }
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Speed};
+use crate::units::{Acceleration, Distance};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
@@ -211,7 +211,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let last = self.controller.last_demand();
         let course = self.course(now, target);
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
-        let speed = ego.map_or(Speed::ZERO, |ego| ego.speed);
         let (acceleration, limited) = match &self.config.envelope {
             Some(limits) if self.mode != Mode::Standby => {
                 self.gate(limits, now, demand, last, ego.as_ref(), &facts, target)
@@ -219,7 +218,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ => (demand, false),
         };
         self.controller.correct(acceleration);
-        let command = self.outbox.command(&self.config, acceleration, speed, self.mode, limited);
+        let command = self.outbox.command(&self.config, acceleration, ego.as_ref(), self.mode, limited);
         let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         let mut frames = Vec::new();
         self.send(now, &command, estimate.as_ref(), last, target, &mut frames);

@@ -1,6 +1,23 @@
-//! The vehicle's body: the commanded acceleration enters, the true motion leaves, in float64.
+//! The vehicle's body: the commanded engine force or brake torque enters, the true motion leaves, in float64.
 //!
-//! So far an actuator lag, `ȧ = (u - a)/T`, solved exactly while the command holds, and a speed that never falls below 0.
+//! Eq. 1 in full, `m a = F - R T_br - c_v (v + w)|v + w| - c_f v - d_m - m g sin(grade)`, with the head wind `w`. Engine and
+//! brakes each follow what they are told, as far as they can, with the actuators' lag: `Ḟ = (F_cmd - F)/T`, solved exactly
+//! while the command holds. What resists the motion, and what the engine's power allows, is taken at the middle of pieces of a millisecond, which leaves an
+//! error of the third order: micrometres over a minute.
+//!
+//! A vehicle never rolls back. At rest its brakes are let off to what holds it, as an automatic hold does, so that a
+//! start waits for no pressure to fall that nothing needs.
+
+mod kind;
+mod machine;
+
+pub use kind::Kind;
+pub use machine::{Difference, Machine};
+
+use holdover::wire::command::Effort;
+
+/// The longest piece: a vehicle comes to a stand between two instants, and this puts it within half a millisecond.
+const PIECE_S: f64 = 1e-3;
 
 /// The true motion of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,69 +28,86 @@ pub struct Plant {
     pub speed_mps: f64,
     /// Acceleration reached.
     pub acceleration_mps2: f64,
-    /// Time constant of the actuators; 0 for none.
-    pub lag_s: f64,
+    machine: Machine,
+    engine_n: f64,
+    brake_nm: f64,
 }
 
 impl Plant {
+    /// A vehicle that keeps its speed: engine and brakes do what that takes, as far as they can.
+    #[must_use]
+    pub fn cruising(machine: Machine, position_m: f64, speed_mps: f64) -> Self {
+        let needed_n = if speed_mps > 0.0 { machine.resistance_n(speed_mps) } else { 0.0 };
+        let engine_n = needed_n.clamp(0.0, machine.engine_limit_n(speed_mps));
+        let brake_nm = (-needed_n / machine.ratio_per_m).clamp(0.0, machine.brake_limit_nm);
+        Self { position_m, speed_mps, acceleration_mps2: 0.0, machine, engine_n, brake_nm }
+    }
+
     /// Moves on by `time_s` under a command that holds.
-    pub fn drive(&mut self, command_mps2: f64, time_s: f64) {
-        // A vehicle comes to a stand between two instants: pieces of a millisecond put that within half a millisecond.
-        let pieces = (time_s / 1e-3).ceil().max(1.0);
+    pub fn drive(&mut self, effort: Effort, time_s: f64) {
+        let pieces = (time_s / PIECE_S).ceil().max(1.0);
+        let slip = Slip::over(time_s / pieces, self.machine.lag_s);
         for _ in 0..pieces as u64 {
-            self.drive_piece(command_mps2, time_s / pieces);
+            self.drive_piece(effort, &slip);
         }
     }
 
-    fn drive_piece(&mut self, u: f64, h: f64) {
-        let behind = self.acceleration_mps2 - u;
-        let (kept, gained, way) = if self.lag_s > 0.0 {
-            let kept = (-h / self.lag_s).exp();
-            let gained = self.lag_s * (1.0 - kept);
-            (kept, gained, self.lag_s * (h - gained))
-        } else {
-            (0.0, 0.0, 0.0)
+    fn drive_piece(&mut self, effort: Effort, slip: &Slip) {
+        let Machine { mass_kg, ratio_per_m, brake_limit_nm, .. } = self.machine;
+        let h = slip.time_s;
+        let middle_mps = (self.speed_mps + 0.5 * h * self.acceleration_mps2).max(0.0);
+        let (engine_n, brake_nm) = match effort {
+            Effort::Force(newtons) => (f64::from(newtons).min(self.machine.engine_limit_n(middle_mps)), 0.0),
+            Effort::BrakeTorque(newton_metres) => (0.0, f64::from(newton_metres).min(brake_limit_nm)),
         };
-        let speed = self.speed_mps + u * h + behind * gained;
-        if speed >= 0.0 {
-            self.position_m += self.speed_mps * h + 0.5 * u * h * h + behind * way;
-            self.speed_mps = speed;
-            self.acceleration_mps2 = u + behind * kept;
+        let wanted = (engine_n - ratio_per_m * brake_nm - self.machine.resistance_n(middle_mps)) / mass_kg;
+        let behind = (self.engine_n - engine_n - ratio_per_m * (self.brake_nm - brake_nm)) / mass_kg;
+        let speed_mps = self.speed_mps + wanted * h + behind * slip.gained_s;
+        if speed_mps >= 0.0 {
+            self.position_m += self.speed_mps * h + 0.5 * wanted * h * h + behind * slip.way_s2;
         } else {
             // Comes to a stand within this piece; what way it still makes is its mean speed over the part.
-            let part = h * self.speed_mps / (self.speed_mps - speed);
-            self.position_m += 0.5 * self.speed_mps * part;
-            self.speed_mps = 0.0;
-            self.acceleration_mps2 = (u + behind * kept).max(0.0);
+            let part_s = h * self.speed_mps / (self.speed_mps - speed_mps);
+            self.position_m += 0.5 * self.speed_mps * part_s;
         }
+        self.speed_mps = speed_mps.max(0.0);
+        self.engine_n = engine_n + (self.engine_n - engine_n) * slip.kept;
+        self.brake_nm = brake_nm + (self.brake_nm - brake_nm) * slip.kept;
+        self.accelerate();
+    }
+
+    /// Eq. 1 as it stands now, and the hold at rest.
+    fn accelerate(&mut self) {
+        let Machine { mass_kg, ratio_per_m, .. } = self.machine;
+        let net_n = self.engine_n - ratio_per_m * self.brake_nm - self.machine.resistance_n(self.speed_mps);
+        self.acceleration_mps2 = net_n / mass_kg;
+        if self.speed_mps == 0.0 && net_n < 0.0 {
+            self.brake_nm = (self.brake_nm + net_n / ratio_per_m).max(0.0);
+            self.acceleration_mps2 = 0.0;
+        }
+    }
+}
+
+/// What a first-order lag makes of a step that holds over a piece of time.
+struct Slip {
+    time_s: f64,
+    /// Share of the step that is still to come at the end.
+    kept: f64,
+    /// Its integral over the piece, and the integral of that.
+    gained_s: f64,
+    way_s2: f64,
+}
+
+impl Slip {
+    fn over(time_s: f64, lag_s: f64) -> Self {
+        if lag_s <= 0.0 {
+            return Self { time_s, kept: 0.0, gained_s: 0.0, way_s2: 0.0 };
+        }
+        let kept = (-time_s / lag_s).exp();
+        let gained_s = lag_s * (1.0 - kept);
+        Self { time_s, kept, gained_s, way_s2: lag_s * (time_s - gained_s) }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pieces_make_the_same_motion_as_the_whole() {
-        let mut plant = Plant { position_m: 3.0, speed_mps: 10.0, acceleration_mps2: 1.0, lag_s: 0.3 };
-        plant.drive(-2.0, 0.7);
-        // Closed form over the whole time.
-        let (u, b, lag, h): (f64, f64, f64, f64) = (-2.0, 3.0, 0.3, 0.7);
-        let kept = (-h / lag).exp();
-        let speed = 10.0 + u * h + b * lag * (1.0 - kept);
-        let position = 3.0 + 10.0 * h + 0.5 * u * h * h + b * lag * (h - lag * (1.0 - kept));
-        assert!((plant.speed_mps - speed).abs() < 1e-12);
-        assert!((plant.position_m - position).abs() < 1e-12);
-        assert!((plant.acceleration_mps2 - (u + b * kept)).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_braking_vehicle_stops_after_v_squared_over_2_a_and_stays() {
-        let mut plant = Plant { position_m: 0.0, speed_mps: 10.0, acceleration_mps2: -5.0, lag_s: 0.0 };
-        for _ in 0..400 {
-            plant.drive(-5.0, 0.01);
-        }
-        assert!((plant.position_m - 10.0).abs() < 1e-3, "{}", plant.position_m);
-        assert_eq!(plant.speed_mps, 0.0);
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@
 mod draw;
 mod envelope;
 mod keys;
+mod plant;
 mod sensors;
 mod start;
 mod validate;
@@ -15,11 +16,12 @@ pub use sensors::{Accuracy, RangeSensor};
 
 use crate::channel::ChannelModel;
 use crate::error::Error;
+use crate::plant::{Difference, Kind};
 use crate::recording::Motion;
 use std::path::{Path, PathBuf};
 
-/// The most vehicles of a scenario: a unit has slots for eight peers, and itself.
-pub const MAX_VEHICLES: usize = 9;
+/// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the eight that are nearest.
+pub const MAX_VEHICLES: usize = 11;
 
 /// What happens, to whom, for how long.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +61,8 @@ pub struct Leader {
 /// A vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
+    /// What its unit is told of its body, and its length and lag unless they are given.
+    pub kind: Kind,
     /// Where it starts.
     pub start: Start,
     /// Speed at the start; 0 to 65.534 m/s. The leader's is the recording's if it drives one.
@@ -69,6 +73,8 @@ pub struct Vehicle {
     pub lag_s: f64,
     /// The time constant that its actuators really have; 0 to 5 s, `lag_s` by default.
     pub plant_lag_s: f64,
+    /// How its body and its road differ otherwise from what its unit believes.
+    pub difference: Difference,
     /// Time gap that it keeps, `t_g`; 0.1 to 3.995 s.
     pub time_gap_s: f64,
     /// Distance that it keeps at standstill, `s_0`; 0 to 10.23 m.

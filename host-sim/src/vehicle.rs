@@ -5,6 +5,7 @@ use std::io;
 
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
+use holdover::wire::command::Effort;
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -73,6 +74,8 @@ pub struct Vehicle {
     pub engaged: bool,
     /// What its unit commanded last.
     pub command_mps2: f64,
+    /// The engine force or brake torque that its unit commanded for that.
+    pub effort: Effort,
     /// Whether its unit's envelope changed that.
     pub limited: bool,
     /// What its unit said last of its target.
@@ -113,6 +116,7 @@ impl Vehicle {
             unit: Unit::new(config)?,
             engaged: wish.engaged,
             command_mps2: 0.0,
+            effort: Effort::Force(0),
             limited: false,
             estimate: None,
             wish,
@@ -254,6 +258,7 @@ impl Vehicle {
                 Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
                 Ok(Received::Whole(Message::Command(command))) => {
                     self.command_mps2 = command.acceleration.get().to_num();
+                    self.effort = command.effort;
                     self.limited = command.limited;
                 }
                 _ => {}

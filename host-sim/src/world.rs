@@ -10,6 +10,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::io;
 
+use holdover::config::Envelope;
 use holdover::health::Refusal;
 use holdover::time::Instant;
 use holdover::wire::BaseId;
@@ -22,7 +23,7 @@ use crate::bus::{Bus, Frame};
 use crate::channel::{Channel, Link};
 use crate::modem::V2xMessage;
 use crate::observer::Observer;
-use crate::plant::Plant;
+use crate::plant::{Machine, Plant};
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::streams::{Purpose, stream, unit};
@@ -130,12 +131,8 @@ impl<'a> World<'a> {
             let described = &scenario.vehicles[index];
             let config = config(scenario, index);
             let is_recorded = index == 0 && scenario.leader.motion.is_some();
-            let plant = Plant {
-                position_m: state.position_m,
-                speed_mps: state.speed_mps,
-                acceleration_mps2: 0.0,
-                lag_s: described.plant_lag_s,
-            };
+            let machine = Machine::new(described.kind, described.plant_lag_s, &described.difference);
+            let plant = Plant::cruising(machine, state.position_m, state.speed_mps);
             let wish = wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
             let clock_offset_us = clock_offset(seed, index);
             let sensors = Sensors::new(described, seed, index);
@@ -243,7 +240,7 @@ impl<'a> World<'a> {
             self.broadcast(at_s, from, message);
         }
         for vehicle in self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged) {
-            vehicle.plant.drive(vehicle.command_mps2, self.scenario.period_s);
+            vehicle.plant.drive(vehicle.effort, self.scenario.period_s);
         }
         Ok(())
     }
@@ -310,13 +307,18 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.period = duration(scenario.period_s);
     config.length = crate::vehicle::distance(vehicle.length_m);
     config.lag = fine_seconds(vehicle.lag_s);
+    config.body = vehicle.kind.body();
+    config.limits = vehicle.kind.limits();
     config.law.time_gap = seconds(vehicle.time_gap_s);
     config.law.standstill = crate::vehicle::distance(vehicle.standstill_m);
     config.law.target_speed = speed(scenario.leader.target_speed_mps);
     config.link.period = duration(1.0 / scenario.message_rate_hz);
     config.prediction.step = duration(scenario.step_s);
     config.prediction.horizon = horizon(scenario.step_s);
-    config.envelope = scenario.envelope.limits();
+    // Nobody brakes harder than it publishes.
+    let capable = config.limits.emergency_braking;
+    config.envelope =
+        scenario.envelope.limits().map(|limits| Envelope { braking: limits.braking.min(capable), ..limits });
     config
 }
 

@@ -2,6 +2,7 @@
 
 use holdover_sim::channel::{AppliesTo, Impairment};
 use holdover_sim::error::Error;
+use holdover_sim::plant::{Difference, Kind};
 use holdover_sim::scenario::{Overrides, Scenario, Span, Start};
 use proptest::prelude::*;
 use std::fs;
@@ -58,6 +59,20 @@ fn values_are_taken_as_they_stand() {
 }
 
 #[test]
+fn a_kind_brings_its_length_and_lag_and_a_plant_can_be_another() {
+    let scenario = parse(
+        "[[vehicle]]\nkind = \"bus\"\n[[vehicle]]\nkind = \"van\"\nlength_m = 7\n[vehicle.plant]\nmass_scale = 1.3\n\
+         grade = -0.04\nheadwind_mps = 8\nthrottle = 0.5\n",
+    )
+    .unwrap();
+    let [bus, van] = &scenario.vehicles[..] else { panic!("two vehicles") };
+    assert_eq!((bus.kind, bus.length_m, bus.lag_s, bus.plant_lag_s), (Kind::Bus, 12.0, 0.5, 0.5));
+    assert_eq!(bus.difference, Difference::NONE);
+    assert_eq!((van.kind, van.length_m, van.lag_s), (Kind::Van, 7.0, 0.4));
+    assert_eq!(van.difference, Difference { mass_scale: 1.3, grade: -0.04, headwind_mps: 8.0, throttle: 0.5 });
+}
+
+#[test]
 fn the_ego_of_two_vehicles_is_the_second_unless_said_otherwise() {
     assert_eq!(parse("[[vehicle]]\n[[vehicle]]\n").unwrap().ego, 1);
 }
@@ -65,6 +80,12 @@ fn the_ego_of_two_vehicles_is_the_second_unless_said_otherwise() {
 #[test]
 fn a_scenario_that_cannot_be_is_refused_with_file_line_cause_and_remedy() {
     let cases = [
+        ("[[vehicle]]\n[[vehicle]]\nkind = \"tram\"", "s.toml:3: `kind` is \"tram\"; give \"car\", \"van\" or \"bus\""),
+        ("[[vehicle]]\n[[vehicle]]\nplant.grade = 0.4", "s.toml:3: `grade` is 0.4; give a share from -0.15 to 0.15"),
+        (
+            "[[vehicle]]\n[[vehicle]]\nplant.mas_scale = 1",
+            "s.toml:3: unknown key \"mas_scale\" in [plant]; write `mass_scale`",
+        ),
         ("sead = 1", "s.toml:1: unknown key \"sead\"; write `seed`"),
         ("seed = 1\nego = 1\ndelay_mean = 1", "s.toml:3: unknown key \"delay_mean\"; remove it, or use one of "),
         ("[channel]\ndelay_mean = 1", "s.toml:2: unknown key \"delay_mean\" in [channel]; write `delay_mean_s`"),
@@ -97,8 +118,8 @@ fn a_scenario_that_cannot_be_is_refused_with_file_line_cause_and_remedy() {
              relative one starts from this file's folder)",
         ),
         ("[vehicle]\nlag_s = 1", "s.toml:1: `vehicle` is a table; give one [[vehicle]] per vehicle"),
-        ("vehicle = []", "s.toml: 0 [[vehicle]] make no scenario; give from 2 to 9, or none for the paper's five"),
-        ("\n[[vehicle]]", "s.toml:2: 1 [[vehicle]] make no scenario; give from 2 to 9, or none for the paper's five"),
+        ("vehicle = []", "s.toml: 0 [[vehicle]] make no scenario; give from 2 to 11, or none for the paper's five"),
+        ("\n[[vehicle]]", "s.toml:2: 1 [[vehicle]] make no scenario; give from 2 to 11, or none for the paper's five"),
         ("[[vehicle]]\nlag_s = -0.3\n[[vehicle]]", "s.toml:2: `lag_s` is -0.3; give seconds from 0 to 1.998"),
         (
             "[[vehicle]]\nspeed_mps = [11, 9]\n[[vehicle]]",
@@ -165,9 +186,9 @@ fn a_scenario_that_cannot_be_is_refused_with_file_line_cause_and_remedy() {
 }
 
 #[test]
-fn at_most_nine_vehicles_fit_and_the_error_points_at_the_tenth() {
-    assert_eq!(parse(&"[[vehicle]]\n".repeat(9)).unwrap().vehicles.len(), 9);
-    assert!(refused(&"[[vehicle]]\n".repeat(10)).starts_with("s.toml:10: 10 [[vehicle]] make no scenario; "));
+fn at_most_eleven_vehicles_fit_and_the_error_points_at_the_twelfth() {
+    assert_eq!(parse(&"[[vehicle]]\n".repeat(11)).unwrap().vehicles.len(), 11);
+    assert!(refused(&"[[vehicle]]\n".repeat(12)).starts_with("s.toml:12: 12 [[vehicle]] make no scenario; "));
 }
 
 #[test]

@@ -84,6 +84,12 @@ impl Actuator {
         wish.min(high).max(low)
     }
 
+    /// The gain in speed at an acceleration over the step.
+    #[must_use]
+    pub const fn gained(&self, acceleration: Acceleration) -> Speed {
+        acceleration.over(self.step)
+    }
+
     /// The state after one step under a demand that holds for the whole step: the lag `ȧ = (u - a)/T` solved exactly,
     /// a speed that never becomes negative, and Algorithm 3.
     #[inline(always)]

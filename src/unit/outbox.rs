@@ -7,8 +7,9 @@ use heapless::Vec;
 use super::{Estimate, MAX_FRAMES, OnboardUnit};
 use crate::config::Config;
 use crate::controller::Mode;
+use crate::dynamics::Inversion;
 use crate::estimator::bound::Bound;
-use crate::estimator::{Aim, Driver, Reading};
+use crate::estimator::{Aim, Driver, Reading, State};
 use crate::health::Refusal;
 use crate::held::Held;
 use crate::peers::Sample;
@@ -32,6 +33,7 @@ const ROUTE_EVERY: u8 = 2;
 /// When what is due.
 #[derive(Clone, Debug)]
 pub(super) struct Outbox {
+    inversion: Inversion,
     tick: u8,
     tag: u8,
     page: u8,
@@ -42,7 +44,15 @@ pub(super) struct Outbox {
 
 impl Outbox {
     pub(super) const fn new() -> Self {
-        Self { tick: 0, tag: 0, page: 0, due: None, until_intent: 0, intent: Held::Nothing }
+        Self {
+            inversion: Inversion::new(),
+            tick: 0,
+            tag: 0,
+            page: 0,
+            due: None,
+            until_intent: 0,
+            intent: Held::Nothing,
+        }
     }
 
     /// The command of this tick.
@@ -50,12 +60,12 @@ impl Outbox {
         &mut self,
         config: &Config,
         acceleration: Acceleration,
-        speed: Speed,
+        ego: Option<&State>,
         mode: Mode,
         limited: bool,
     ) -> Command {
         self.tick = self.tick.wrapping_add(1) % 64;
-        let effort = config.body.effort(acceleration, speed);
+        let effort = self.inversion.effort(config, ego, mode != Mode::Standby, acceleration);
         Command { acceleration, effort, mode: mode.code(), limited, tick: self.tick }
     }
 

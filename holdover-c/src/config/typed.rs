@@ -44,6 +44,7 @@ impl TryFrom<&Config> for config::Config {
             lag: FineSeconds::from_millis(milli(plain.lag_ms)),
             limits: plain.limits.into(),
             body: plain.body.into(),
+            correction: true,
             law: plain.law.into(),
             prediction: config::Prediction {
                 step: micros(plain.prediction.step_us),

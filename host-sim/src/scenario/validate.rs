@@ -1,7 +1,7 @@
 //! From the keys of a scenario file to a checked [`Scenario`]: text and command line enter, one of the two leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
-use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, envelope, sensors, start};
+use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, envelope, plant, sensors, start};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::error::{Error, quoted};
 use crate::recording::{ChannelTrace, Motion};
@@ -200,14 +200,17 @@ fn vehicle(document: &Document, mut section: Section, drives: Drives, speeds: Sp
         (None, None) => Start::Gap(PAPER_GAP),
     };
     let speed_mps = section.span(&SPEED)?.map_or(speeds, |speed| speed.value);
-    let lag_s = section.number(&LAG)?.value;
+    let kind = plant::kind(&mut section)?;
+    let lag_s = section.number(&Number { default: kind.lag_s(), ..LAG })?.value;
     let plant_lag = section.number(&PLANT_LAG)?;
     let vehicle = Vehicle {
         start,
         speed_mps,
-        length_m: section.number(&LENGTH)?.value,
+        kind,
+        length_m: section.number(&Number { default: kind.length_m(), ..LENGTH })?.value,
         lag_s,
         plant_lag_s: if plant_lag.line.is_some() { plant_lag.value } else { lag_s },
+        difference: plant::difference(section.section("plant")?)?,
         time_gap_s: section.number(&TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
         accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
