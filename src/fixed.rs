@@ -211,15 +211,12 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
 #[inline(never)]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // every step says how many bits there are
 pub const fn divide(dividend: u64, divisor: u64) -> u64 {
-    if divisor >= 1 << DIGITS_DIVISOR {
+    let small = divisor as u32;
+    if divisor >= 1 << DIGITS_DIVISOR || small == 0 {
         return match dividend.checked_div(divisor) {
             Some(quotient) => quotient,
             None => 0,
         };
-    }
-    let small = divisor as u32;
-    if small == 0 {
-        return 0;
     }
     let first = (dividend >> (3 * DIGIT)) as u32; // 28 bits
     let second = (first % small) << DIGIT | (dividend >> (2 * DIGIT)) as u32 & NINES; // 20 and 12 bits, as are the others
