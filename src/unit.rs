@@ -161,6 +161,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// The named cause for which the frame, or the message that it completes, is refused. It is counted, and nothing else
     /// is changed by it but the end-to-end state of its identifier.
+    #[inline(never)] // neither door is to hold the stack of the other
     pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Refusal> {
         if !self.is_started() {
             return Ok(Reception::Foreign);
@@ -184,6 +185,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The task of one period: always answers, and takes bounded time. A `now` before the last one is counted and taken as
     /// the last one.
+    #[inline(never)]
     pub fn tick(&mut self, now: Instant) -> Answer {
         let now = self.monotonic(now);
         let target = self.target();

@@ -4,7 +4,7 @@
 use super::actuator::{Rests, State};
 use super::delay::adjusted;
 use super::driver::{Driver, Stride};
-use super::horizon::{Anchor, Grid, Horizon};
+use super::horizon::{Anchor, Grid, Horizon, Step};
 use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::Duration;
@@ -133,14 +133,23 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let after = self.grid.time_of(first).since(anchor.at);
         let origin = anchor.position.ring();
         let acceleration = knots.knots.last()?.acceleration;
-        let mut last = None;
-        for (index, (way, speed)) in (first..).zip(curve.walk(after, self.grid.step)) {
-            let state =
-                State { position: origin.ahead(way), speed, acceleration, demand: acceleration, rests: Rests::NONE };
-            filling.put(index, state);
-            last = Some((index, state));
-        }
-        last
+        let at = |(way, speed)| {
+            let position = origin.ahead(way);
+            State { position, speed, acceleration, demand: acceleration, rests: Rests::NONE }
+        };
+        let mut walk = curve.walk(after, self.grid.step);
+        filling.put(first, at(walk.next()?));
+        // Apart from a horizon longer than the ring, that is all of them.
+        filling.horizon.run(STEPS, |mut tip, out| {
+            let mut done = 0usize;
+            for (step, reading) in out.iter_mut().zip(&mut walk) {
+                tip = at(reading);
+                *step = Step { position: tip.position, speed: tip.speed };
+                done = done.saturating_add(1);
+            }
+            (tip, done)
+        });
+        Some((filling.horizon.last(), filling.horizon.tip()))
     }
 
     /// Steps from an index to the end of the horizon: one by one until the horizon has begun and its predecessor's has,
@@ -175,7 +184,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// The predecessor at a step; nobody if it is out of reach.
-    #[inline(always)]
+    #[inline(never)]
     fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
         let ahead = self.ahead?;
         if let Some(delay) = self.delay {
@@ -204,7 +213,6 @@ struct Filling<'a, const STEPS: usize> {
 }
 
 impl<const STEPS: usize> Filling<'_, STEPS> {
-    #[inline(always)]
     fn put(&mut self, index: i64, state: State) {
         if !self.horizon.is_empty() {
             self.horizon.push(state);

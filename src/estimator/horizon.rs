@@ -182,7 +182,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
     }
 
     /// Adds the next step at the far end; a full ring drops its first step.
-    #[inline(always)]
+    #[inline(never)]
     pub fn push(&mut self, state: State) {
         if self.len == STEPS {
             self.drop_first();
