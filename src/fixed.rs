@@ -226,6 +226,23 @@ pub const fn divide(dividend: u64, divisor: u64) -> u64 {
     ((first / small) as u64) << (3 * DIGIT) | ((second / small) as u64) << (2 * DIGIT) | low as u64
 }
 
+/// `dividend / 10⁶` for a dividend below 2⁶³, by multiplying: `10⁶ = 2⁶·5⁶`, and a product with `⌈2⁷⁷/5⁶⌉`, which is off by
+/// less than 1, is off by less than `2⁵⁷/2⁷⁷` of a quotient whose fraction is at most `1 - 1/5⁶`.
+#[must_use]
+#[inline(never)]
+#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴
+pub const fn per_million(dividend: u64) -> u64 {
+    const FACTOR: u128 = (1u128 << 77).div_ceil(15_625);
+    const { assert!(FACTOR < 1 << 64, "in two words") };
+    const HIGH: u64 = (FACTOR >> 32) as u64;
+    const LOW: u64 = FACTOR as u64 & u32::MAX as u64;
+    let x = dividend >> 6;
+    let (high, low) = (x >> 32, x & u32::MAX as u64);
+    let carried = (low * LOW >> 32) + low * HIGH;
+    let middle = high * LOW + (carried & u32::MAX as u64);
+    (high * HIGH + (carried >> 32) + (middle >> 32)) >> 13
+}
+
 /// A divisor of so many bits leaves a rest to which a digit of so many can be appended.
 const DIGITS_DIVISOR: u32 = 20;
 const DIGIT: u32 = 32 - DIGITS_DIVISOR;
@@ -243,6 +260,14 @@ mod tests {
                 let exact = i128::from(dividend).checked_div(i128::from(divisor)).unwrap_or(0);
                 let saturated = exact.min(i64::MAX.into());
                 prop_assert_eq!(i128::from(quotient(dividend, divisor)), saturated, "{} {}", dividend, divisor);
+            }
+        }
+
+        #[test]
+        fn a_millionth_is_the_one_that_a_division_gives(dividend in 0..=i64::MAX as u64, shift in 0u32..64) {
+            let near = dividend / 1_000_000 * 1_000_000;
+            for dividend in [dividend, dividend >> shift, near, near.saturating_sub(1), near + 1] {
+                prop_assert_eq!(per_million(dividend), dividend / 1_000_000, "{}", dividend);
             }
         }
 

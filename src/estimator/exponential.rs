@@ -48,13 +48,16 @@ fn keep(step: Duration, time_constant: Duration) -> Share {
 /// `e^(-x)` for `x` in [0, ln 2), both in 32 fraction bits: the Taylor series by Horner's rule. The first term left out
 /// is (ln 2)¹²/12! = 2.6e-11.
 fn exp_of_minus(x: u64) -> u64 {
-    let product = |a: u64, b: u64| a.saturating_mul(b) >> 32;
-    INVERSES.iter().fold(ONE, |sum, inverse| ONE.saturating_sub(product(product(x, sum), *inverse)))
+    // Of two factors in 32 fraction bits; one that is 1 does not fit its word.
+    let product = |a: u64, b: u64| if b >= ONE { a } else { a.wrapping_mul(b) >> 32 };
+    let sum =
+        INVERSES.iter().fold(ONE, |sum, inverse| ONE.saturating_sub(product(x, sum).wrapping_mul(*inverse) >> 32));
+    ONE.saturating_sub(product(x, sum))
 }
 
-/// 1/11 to 1/1 in 32 fraction bits.
-const INVERSES: [u64; 11] =
-    [ONE / 11, ONE / 10, ONE / 9, ONE / 8, ONE / 7, ONE / 6, ONE / 5, ONE / 4, ONE / 3, ONE / 2, ONE];
+/// 1/11 to 1/2 in 32 fraction bits.
+const INVERSES: [u64; 10] =
+    [ONE / 11, ONE / 10, ONE / 9, ONE / 8, ONE / 7, ONE / 6, ONE / 5, ONE / 4, ONE / 3, ONE / 2];
 
 /// `x / 2^bits`, to nearest.
 #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // x <= 2³² and bits >= 2
