@@ -189,14 +189,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     pub fn tick(&mut self, now: Instant) -> Answer {
         let now = self.monotonic(now);
         let target = self.target();
-        let before = target.and_then(|index| self.estimator.read(index, now));
-        let was_off = matches!(self.mode, Mode::Holdover { .. });
+        let before = match self.mode {
+            Mode::Holdover { .. } => target.and_then(|index| self.estimator.read(index, now)),
+            _ => None,
+        };
         self.estimator.update(now, &self.peers);
         let reading = target.and_then(|index| self.estimator.read(index, now));
 
         let facts = self.facts(now, target, reading.is_some());
         self.mode = self.mode.next(&facts, now);
-        if let (true, Mode::Cooperative, Some(before), Some(after)) = (was_off, self.mode, before, reading)
+        if let (Mode::Cooperative, Some(before), Some(after)) = (self.mode, before, reading)
             && self.config.prediction.model.smooth
         {
             self.controller.blend_from(before, after);
@@ -217,9 +219,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.controller.correct(acceleration);
         let command = self.outbox.command(&self.config, acceleration, speed, self.mode, limited);
         let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
-        let mut frames = Vec::new();
-        self.send(now, &command, estimate.as_ref(), last, target, &mut frames);
-        Answer { command, mode: self.mode, estimate, frames }
+        let mut answer = Answer { command, mode: self.mode, estimate, frames: Vec::new() };
+        self.send(now, &command, answer.estimate.as_ref(), last, target, &mut answer.frames);
+        answer
     }
 
     fn monotonic(&mut self, now: Instant) -> Instant {

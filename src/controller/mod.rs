@@ -134,11 +134,11 @@ impl Controller {
         target: Option<(Reading, Option<Distance>)>,
     ) -> Acceleration {
         let length = target.and_then(|(_, length)| length);
-        let stride = match self.stride.get() {
-            Some((same, same_length, stride)) if same == *driver && same_length == length => stride,
-            _ => driver.over(config.period, length, &config.prediction.model),
-        };
-        self.stride.set((*driver, length, stride));
+        let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
+        if !self.stride.as_ref().is_some_and(is_same) {
+            self.stride.set((*driver, length, driver.over(config.period, length, &config.prediction.model)));
+        }
+        let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
         let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
         if !config.prediction.model.limits {

@@ -74,6 +74,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         if horizon.is_empty() || !self.model.endless {
             return;
         }
+        if horizon.len() == self.length && self.length > 1 && present.wrapping_sub(horizon.first()) == 1 {
+            // What every quiet tick comes to.
+            let end = horizon.last().wrapping_add(1);
+            return horizon.turn(self.stride.take(horizon.tip(), self.ahead_at(end)));
+        }
         let (last, state) = (horizon.last(), horizon.tip());
         let end = present.saturating_add(steps(self.length)).saturating_sub(1);
         if end.saturating_sub(last) > steps(STEPS) {
@@ -83,11 +88,6 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
         while horizon.first() < present && horizon.len() > 1 {
             horizon.drop_first();
-        }
-        if end == last.saturating_add(1) {
-            // What every quiet tick comes to.
-            horizon.push(self.stride.take(state, self.ahead_at(end)));
-            return;
         }
         let anchor = *horizon.anchor();
         self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);

@@ -195,6 +195,20 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.tip = state;
     }
 
+    /// Drops the first step and adds one at the far end; for a horizon of at least two.
+    pub(super) fn turn(&mut self, state: State) {
+        let (far, second) = (self.place(self.len), self.place(1));
+        if let (Some(old), Some(new)) = (self.steps.get(self.head), self.steps.get(second)) {
+            self.base = self.base.ahead(new.position.ahead_of(old.position));
+        }
+        if let Some(step) = self.steps.get_mut(far) {
+            *step = Step { position: state.position, speed: state.speed };
+        }
+        self.head = second;
+        self.first = self.first.wrapping_add(1); // of 2⁶³ steps of a millisecond or more
+        self.tip = state;
+    }
+
     /// Lets `take` add steps after the last one, up to so many and as far as the ring is not full and does not turn: from the
     /// state at the last step to the one at its own last step, and how many it took. How many those were; none of an empty
     /// horizon.
