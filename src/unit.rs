@@ -185,8 +185,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The task of one period: always answers, and takes bounded time. A `now` before the last one is counted and taken as
     /// the last one.
-    #[inline(never)]
+    #[inline(always)] // so that the answer is made where it is wanted, and not copied there
     pub fn tick(&mut self, now: Instant) -> Answer {
+        let mut answer = Answer { command: Command::NONE, mode: Mode::Standby, estimate: None, frames: Vec::new() };
+        self.answer(now, &mut answer);
+        answer
+    }
+
+    #[inline(never)]
+    fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let now = self.monotonic(now);
         let target = self.target();
         let before = match self.mode {
@@ -217,11 +224,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ => (demand, false),
         };
         self.controller.correct(acceleration);
-        let command = self.outbox.command(&self.config, acceleration, speed, self.mode, limited);
-        let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
-        let mut answer = Answer { command, mode: self.mode, estimate, frames: Vec::new() };
-        self.send(now, &command, answer.estimate.as_ref(), last, target, &mut answer.frames);
-        answer
+        answer.command = self.outbox.command(&self.config, acceleration, speed, self.mode, limited);
+        answer.mode = self.mode;
+        answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
+        self.send(now, &answer.command, answer.estimate.as_ref(), last, target, &mut answer.frames);
     }
 
     fn monotonic(&mut self, now: Instant) -> Instant {

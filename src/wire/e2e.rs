@@ -80,7 +80,7 @@ pub const fn next(counter: u8) -> u8 {
 
 fn crc(data_id: u16, bytes: [u8; 7]) -> u8 {
     let [low, high] = data_id.to_le_bytes();
-    bytes.into_iter().fold(step(step(low) ^ high), |crc, byte| step(crc ^ byte))
+    bytes.iter().fold(step(step(low) ^ high), |crc, byte| step(crc ^ byte))
 }
 
 /// One byte through the CRC register.

@@ -206,15 +206,21 @@ impl Field {
     #[inline(always)]
     #[must_use]
     pub fn with_bound<Q: Quantity>(&self, payload: Payload, bound: Option<Q>) -> Payload {
-        let steps = bound.map(|bound| bound.to_steps_up(self.per_unit)).filter(|steps| *steps <= self.max);
-        self.with_raw(payload, steps.or(self.none).unwrap_or(self.max))
+        self.with_steps(payload, bound.and_then(|bound| self.bound_steps(bound)))
     }
 
-    /// Whether the field can say this bound, rounded up.
+    /// The bound in steps, rounded up, if the field can say that.
     #[inline(always)]
     #[must_use]
-    pub fn holds_bound<Q: Quantity>(&self, bound: Q) -> bool {
-        bound.to_steps_up(self.per_unit) <= self.max
+    pub fn bound_steps<Q: Quantity>(&self, bound: Q) -> Option<i64> {
+        Some(bound.to_steps_up(self.per_unit)).filter(|steps| *steps <= self.max)
+    }
+
+    /// With so many steps, or the code for none.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_steps(&self, payload: Payload, steps: Option<i64>) -> Payload {
+        self.with_raw(payload, steps.or(self.none).unwrap_or(self.max))
     }
 }
 
