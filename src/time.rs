@@ -7,7 +7,7 @@
 //! `(reference - 12.0072 s, reference + 1.1 s]` ([`Stamp::unwrap_near`]). A modem must therefore drop what is older than
 //! 12 s; the unit refuses what is older than its own limit, which is less.
 
-use crate::fixed::{FineSecondsFormat, SecondsFormat, divide, quotient, ratio, saturate_i32};
+use crate::fixed::{FineSecondsFormat, SecondsFormat, divide, per_million, quotient, saturate_i32};
 use crate::units::{FineSeconds, Seconds};
 
 /// A span of time in microseconds, signed.
@@ -70,15 +70,24 @@ impl Duration {
     #[must_use]
     #[inline(never)]
     pub const fn seconds(self) -> Seconds {
-        Seconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, SecondsFormat::FRAC_NBITS)))
+        Seconds::from_bits(word(self.0, SecondsFormat::FRAC_NBITS))
     }
 
     /// As a factor for accelerations, saturating at ±2 s.
     #[must_use]
     #[inline(never)]
     pub const fn fine_seconds(self) -> FineSeconds {
-        FineSeconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, FineSecondsFormat::FRAC_NBITS)))
+        FineSeconds::from_bits(word(self.0, FineSecondsFormat::FRAC_NBITS))
     }
+}
+
+/// Microseconds as a word of seconds with so many fraction bits (at most 30), to nearest, ties away from zero, saturating.
+const fn word(micros: i64, fraction: u32) -> i32 {
+    // An hour is beyond the end of every word, and its own word within 2⁶² millionths.
+    let magnitude = micros.unsigned_abs();
+    let magnitude = if magnitude > u32::MAX as u64 { u32::MAX as u64 } else { magnitude };
+    let word = per_million(magnitude.wrapping_shl(fraction).wrapping_add(500_000)).cast_signed();
+    saturate_i32(if micros < 0 { word.wrapping_neg() } else { word })
 }
 
 /// An instant of the unit's own monotonic clock, in microseconds since it started.

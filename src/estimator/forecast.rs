@@ -156,6 +156,10 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     /// and from there on all in one go.
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
+        // What lies before the predecessor's first step is made once for all the steps that are.
+        let begins = self.ahead.filter(|_| self.delay.is_none()).map_or(from, Horizon::first);
+        let approach =
+            self.ahead.filter(|_| from.saturating_add(1) < begins).and_then(|ahead| ahead.approach(self.grid));
         while index < end {
             let next = index.saturating_add(1);
             let left = usize::try_from(end.saturating_sub(index)).unwrap_or(0);
@@ -174,7 +178,14 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
                 Some(done) if done > 0 => index = index.saturating_add(steps(done)),
                 _ => {
                     index = next;
-                    state = self.stride.take(state, self.ahead_at(index));
+                    let ahead = match &approach {
+                        Some(approach) if index < begins => {
+                            let reading = approach.at(self.grid.time_of(index));
+                            Some((reading.position.ring(), reading.speed))
+                        }
+                        _ => self.ahead_at(index),
+                    };
+                    state = self.stride.take(state, ahead);
                     filling.put(index, state);
                     continue;
                 }
