@@ -9,7 +9,7 @@ use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
-use crate::wire::curve::Curve;
+use crate::wire::curve::{Curve, Run};
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 
@@ -137,15 +137,22 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             let position = origin.ahead(way);
             State { position, speed, acceleration, demand: acceleration, rests: Rests::NONE }
         };
-        let mut walk = curve.walk(after, self.grid.step);
-        filling.put(first, at(walk.next()?));
+        let mut runs = curve.runs(after, self.grid.step);
+        let mut run = following(&mut runs)?;
+        filling.put(first, at(run.next()?));
         // Apart from a horizon longer than the ring, that is all of them.
-        filling.horizon.run(STEPS, |mut tip, out| {
+        filling.horizon.run(STEPS, |mut tip, mut out| {
             let mut done = 0usize;
-            for (step, reading) in out.iter_mut().zip(&mut walk) {
-                tip = at(reading);
-                *step = Step { position: tip.position, speed: tip.speed };
-                done = done.saturating_add(1);
+            while let Some((now, later)) = out.split_at_mut_checked(run.len().min(out.len())) {
+                for (step, reading) in now.iter_mut().zip(&mut run) {
+                    tip = at(reading);
+                    *step = Step { position: tip.position, speed: tip.speed };
+                }
+                (done, out) = (done.saturating_add(now.len()), later);
+                match following(&mut runs) {
+                    Some(next) if !out.is_empty() => run = next,
+                    _ => break,
+                }
             }
             (tip, done)
         });
@@ -236,6 +243,12 @@ impl<const STEPS: usize> Filling<'_, STEPS> {
     fn absolute(&self, state: &State) -> Position {
         self.anchor.position.ahead(state.position.ahead_of(self.anchor.position.ring()))
     }
+}
+
+/// The next run. Apart, because making one is large, and is asked for in two places.
+#[inline(never)]
+fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
+    runs.next()
 }
 
 /// A number of steps as a difference of indices.
