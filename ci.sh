@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test cross c package)
+steps=(fmt lint doc test cross firmware c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -21,7 +21,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   lint      no warning of the compiler or of clippy; unsafe code only in src/board/, at the edge of holdover-c and in tests/embedded/
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
-  cross     core and firmware for a Cortex-M4F, and what they take of its memory
+  cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
+  firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
   c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
   package   the package that would be published builds by itself and holds what it should
 
@@ -36,6 +37,7 @@ skip() {
 
 step_fmt() {
     cargo fmt --all --check
+    cargo fmt --all --check --manifest-path tests/embedded/Cargo.toml
 }
 
 step_lint() {
@@ -69,6 +71,15 @@ step_cross() {
     local bin sizes unit
     bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
     PATH=$bin:$PATH
+    # No target is privileged in the core: without an FPU, without a wide multiply, another instruction set.
+    local other
+    for other in thumbv6m-none-eabi thumbv8m.main-none-eabihf riscv32imac-unknown-none-elf; do
+        if PATH=$(scripts/install-target.sh "$other"):$PATH; then
+            cargo build --locked --release --target "$other" --lib
+        else
+            skip "no standard library for $other can be had on this machine"
+        fi
+    done
     cargo build --locked --release --target "$target" --lib
     cargo build --locked --release --target "$target" --bin holdover-ecu
     # The host's binutils read any ELF file. A linker for the host is always there, and they with it.
@@ -87,6 +98,10 @@ step_cross() {
     printf '  %-28s %7d of at most 65536\n' 'OnboardUnit<8, 8, 400>' "$unit"
     [ "$unit" -le 65536 ]
     cargo clippy --locked --release --target "$target" -- -D warnings
+}
+
+step_firmware() {
+    scripts/firmware.sh
 }
 
 step_c() {

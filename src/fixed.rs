@@ -205,34 +205,45 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
     if (dividend < 0) != (divisor < 0) { magnitude.wrapping_neg() } else { magnitude }
 }
 
-/// `dividend / divisor`, 0 for a divisor of 0. The divisors of the core are nearly all below 2²⁰ (a second is 10⁶ µs); for
-/// these it takes four 32-bit divisions by hand, digit by digit, which are an instruction each on a Cortex-M3 and up.
+/// `dividend / divisor`, 0 for a divisor of 0. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for
+/// these it takes five 32-bit divisions by hand, which are an instruction each on a Cortex-M3 and up: the upper word, and the
+/// lower one byte by byte. A rest is below the divisor, which leaves room for the next byte.
 #[must_use]
 #[inline(never)]
-#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // every step says how many bits there are
+#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the words, and checked
 pub const fn divide(dividend: u64, divisor: u64) -> u64 {
-    if divisor >= 1 << DIGITS_DIVISOR {
+    let small = divisor as u32;
+    if divisor >= 1 << 24 || small == 0 {
         return match dividend.checked_div(divisor) {
             Some(quotient) => quotient,
             None => 0,
         };
     }
-    let small = divisor as u32;
-    if small == 0 {
-        return 0;
-    }
-    let first = (dividend >> (3 * DIGIT)) as u32; // 28 bits
-    let second = (first % small) << DIGIT | (dividend >> (2 * DIGIT)) as u32 & NINES; // 20 and 12 bits, as are the others
-    let third = (second % small) << DIGIT | (dividend >> DIGIT) as u32 & NINES;
-    let fourth = (third % small) << DIGIT | dividend as u32 & NINES;
-    let low = ((third / small) << DIGIT) | (fourth / small);
-    ((first / small) as u64) << (3 * DIGIT) | ((second / small) as u64) << (2 * DIGIT) | low as u64
+    let (high, low) = ((dividend >> 32) as u32, dividend as u32);
+    let first = high % small << 8 | low >> 24;
+    let second = first % small << 8 | low >> 16 & 0xFF;
+    let third = second % small << 8 | low >> 8 & 0xFF;
+    let fourth = third % small << 8 | low & 0xFF;
+    let below = first / small << 24 | second / small << 16 | third / small << 8 | fourth / small;
+    ((high / small) as u64) << 32 | below as u64
 }
 
-/// A divisor of so many bits leaves a rest to which a digit of so many can be appended.
-const DIGITS_DIVISOR: u32 = 20;
-const DIGIT: u32 = 32 - DIGITS_DIVISOR;
-const NINES: u32 = (1 << DIGIT) - 1;
+/// `dividend / 10⁶` for a dividend below 2⁶³, by multiplying: `10⁶ = 2⁶·5⁶`, and a product with `⌈2⁷⁷/5⁶⌉`, which is off by
+/// less than 1, is off by less than `2⁵⁷/2⁷⁷` of a quotient whose fraction is at most `1 - 1/5⁶`.
+#[must_use]
+#[inline(never)]
+#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴
+pub const fn per_million(dividend: u64) -> u64 {
+    const FACTOR: u128 = (1u128 << 77).div_ceil(15_625);
+    const { assert!(FACTOR < 1 << 64, "in two words") };
+    const HIGH: u64 = (FACTOR >> 32) as u64;
+    const LOW: u64 = FACTOR as u64 & u32::MAX as u64;
+    let x = dividend >> 6;
+    let (high, low) = (x >> 32, x & u32::MAX as u64);
+    let carried = (low * LOW >> 32) + low * HIGH;
+    let middle = high * LOW + (carried & u32::MAX as u64);
+    (high * HIGH + (carried >> 32) + (middle >> 32)) >> 13
+}
 
 #[cfg(test)]
 mod tests {
@@ -242,10 +253,19 @@ mod tests {
     proptest! {
         #[test]
         fn a_quotient_is_the_one_that_64_bits_give(dividend: i64, divisor: i64, shift in 0u32..64) {
-            for (dividend, divisor) in [(dividend, divisor >> shift), (dividend >> shift, divisor % 1_048_577)] {
+            let near = [(dividend, divisor % 1_048_577), (dividend, divisor % 16_777_217)];
+            for (dividend, divisor) in near.into_iter().chain([(dividend, divisor >> shift), (dividend >> shift, divisor % 1_048_577)]) {
                 let exact = i128::from(dividend).checked_div(i128::from(divisor)).unwrap_or(0);
                 let saturated = exact.min(i64::MAX.into());
                 prop_assert_eq!(i128::from(quotient(dividend, divisor)), saturated, "{} {}", dividend, divisor);
+            }
+        }
+
+        #[test]
+        fn a_millionth_is_the_one_that_a_division_gives(dividend in 0..=i64::MAX as u64, shift in 0u32..64) {
+            let near = dividend / 1_000_000 * 1_000_000;
+            for dividend in [dividend, dividend >> shift, near, near.saturating_sub(1), near + 1] {
+                prop_assert_eq!(per_million(dividend), dividend / 1_000_000, "{}", dividend);
             }
         }
 

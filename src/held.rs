@@ -7,7 +7,7 @@
 /// Like `Option`, with a layout that says where `Nothing` is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[repr(u8)] // a tag of its own in front of the value; the tag of `Nothing` is 0
+#[repr(u32)] // a tag of its own in front of the value, a whole word, so that words are copied; that of `Nothing` is 0
 pub enum Held<T> {
     /// There is none.
     #[default]

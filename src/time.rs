@@ -1,11 +1,13 @@
 //! Time as an argument: instants of the unit's own clock, durations, GNSS time, and the rule that unwraps V2X stamps.
 //!
+//! The sums are not inlined: they saturate in 64 bits, stand in hundreds of places, and would be a tenth of an ECU's image.
+//!
 //! Nothing here reads a clock. [`Instant`] and [`GnssTime`] are microseconds in 64 bits and never wrap in practice;
 //! a [`Stamp`] is GNSS time modulo 2¹⁷ · 0.1 ms = 13.1072 s, and is unwrapped to the only instant inside
 //! `(reference - 12.0072 s, reference + 1.1 s]` ([`Stamp::unwrap_near`]). A modem must therefore drop what is older than
 //! 12 s; the unit refuses what is older than its own limit, which is less.
 
-use crate::fixed::{FineSecondsFormat, SecondsFormat, divide, quotient, ratio, saturate_i32};
+use crate::fixed::{FineSecondsFormat, SecondsFormat, divide, per_million, quotient, saturate_i32};
 use crate::units::{FineSeconds, Seconds};
 
 /// A span of time in microseconds, signed.
@@ -45,33 +47,47 @@ impl Duration {
 
     /// Sum, saturating.
     #[must_use]
+    #[inline(never)]
     pub const fn plus(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
 
     /// Difference, saturating.
     #[must_use]
+    #[inline(never)]
     pub const fn minus(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }
 
     /// A multiple, saturating.
     #[must_use]
+    #[inline(never)]
     pub const fn times(self, factor: i64) -> Self {
         Self(self.0.saturating_mul(factor))
     }
 
     /// As a factor for speeds, saturating at ±4 s.
     #[must_use]
+    #[inline(never)]
     pub const fn seconds(self) -> Seconds {
-        Seconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, SecondsFormat::FRAC_NBITS)))
+        Seconds::from_bits(word(self.0, SecondsFormat::FRAC_NBITS))
     }
 
     /// As a factor for accelerations, saturating at ±2 s.
     #[must_use]
+    #[inline(never)]
     pub const fn fine_seconds(self) -> FineSeconds {
-        FineSeconds::from_bits(saturate_i32(ratio(self.0, 1_000_000, FineSecondsFormat::FRAC_NBITS)))
+        FineSeconds::from_bits(word(self.0, FineSecondsFormat::FRAC_NBITS))
     }
+}
+
+/// Microseconds as a word of seconds with so many fraction bits (at most 30), to nearest, ties away from zero, saturating.
+const fn word(micros: i64, fraction: u32) -> i32 {
+    // An hour is beyond the end of every word, and its own word within 2⁶² millionths.
+    let magnitude = micros.unsigned_abs();
+    let magnitude = if magnitude > u32::MAX as u64 { u32::MAX as u64 } else { magnitude };
+    let word = per_million(magnitude.wrapping_shl(fraction).wrapping_add(500_000)).cast_signed();
+    saturate_i32(if micros < 0 { word.wrapping_neg() } else { word })
 }
 
 /// An instant of the unit's own monotonic clock, in microseconds since it started.
@@ -97,6 +113,7 @@ impl Instant {
 
     /// That much later (earlier if negative), saturating at the clock's start and end.
     #[must_use]
+    #[inline(never)]
     pub const fn plus(self, duration: Duration) -> Self {
         Self(self.0.saturating_add_signed(duration.0))
     }
@@ -109,6 +126,7 @@ impl Instant {
 
     /// How much later this instant is than the other (negative if it is earlier), saturating.
     #[must_use]
+    #[inline(never)]
     pub const fn since(self, earlier: Self) -> Duration {
         Duration(if self.0 >= earlier.0 {
             saturate(self.0.wrapping_sub(earlier.0))

@@ -166,6 +166,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// The named cause for which the frame, or the message that it completes, is refused. It is counted, and nothing else
     /// is changed by it but the end-to-end state of its identifier.
+    #[inline(never)] // neither door is to hold the stack of the other
     pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Refusal> {
         if !self.is_started() {
             return Ok(Reception::Foreign);
@@ -189,18 +190,28 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The task of one period: always answers, and takes bounded time. A `now` before the last one is counted and taken as
     /// the last one.
+    #[inline(always)] // so that the answer is made where it is wanted, and not copied there
     pub fn tick(&mut self, now: Instant) -> Answer {
+        let mut answer = Answer { command: Command::NONE, mode: Mode::Standby, estimate: None, frames: Vec::new() };
+        self.answer(now, &mut answer);
+        answer
+    }
+
+    #[inline(never)]
+    fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let now = self.monotonic(now);
         self.coordinate(now);
         let target = self.target();
-        let before = target.and_then(|index| self.estimator.read(index, now));
-        let was_off = matches!(self.mode, Mode::Holdover { .. });
+        let before = match self.mode {
+            Mode::Holdover { .. } => target.and_then(|index| self.estimator.read(index, now)),
+            _ => None,
+        };
         self.estimator.update(now, &self.peers);
         let reading = target.and_then(|index| self.estimator.read(index, now));
 
         let facts = self.facts(now, target, reading.is_some());
         self.mode = self.mode.next(&facts, now);
-        if let (true, Mode::Cooperative, Some(before), Some(after)) = (was_off, self.mode, before, reading)
+        if let (Mode::Cooperative, Some(before), Some(after)) = (self.mode, before, reading)
             && self.config.prediction.model.smooth
         {
             self.controller.blend_from(before, after);
@@ -218,11 +229,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ => (demand, false),
         };
         self.controller.correct(acceleration);
-        let command = self.outbox.command(&self.config, acceleration, ego.as_ref(), self.mode, limited);
-        let estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
-        let mut frames = Vec::new();
-        self.send(now, &command, estimate.as_ref(), last, target, &mut frames);
-        Answer { command, mode: self.mode, estimate, frames }
+        answer.command = self.outbox.command(&self.config, acceleration, ego.as_ref(), self.mode, limited);
+        answer.mode = self.mode;
+        answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
+        self.send(now, &answer.command, answer.estimate.as_ref(), last, target, &mut answer.frames);
     }
 
     fn monotonic(&mut self, now: Instant) -> Instant {

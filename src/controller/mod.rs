@@ -54,6 +54,7 @@ pub struct Controller {
     demand: Acceleration,
     blend: Blend,
     keep: Share,
+    period: FineSeconds,
     /// The step of the law that was driven by last, which is made of a driver and a length.
     stride: Held<(Driver, Option<Distance>, Stride)>,
 }
@@ -80,13 +81,19 @@ const SPEED_LIMIT_TIME: i64 = 2;
 impl Controller {
     /// Not started: all zero.
     pub(crate) const fn idle() -> Self {
-        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: Share::ZERO, stride: Held::Nothing }
+        Self {
+            demand: Acceleration::ZERO,
+            blend: Blend::NONE,
+            keep: Share::ZERO,
+            period: FineSeconds::ZERO,
+            stride: Held::Nothing,
+        }
     }
 
     /// At rest.
     #[must_use]
     pub fn new(period: Duration) -> Self {
-        Self { demand: Acceleration::ZERO, blend: Blend::NONE, keep: keep_over(period), stride: Held::Nothing }
+        Self { keep: keep_over(period), period: period.fine_seconds(), ..Self::idle() }
     }
 
     /// The demand in force.
@@ -134,11 +141,11 @@ impl Controller {
         target: Option<(Reading, Option<Distance>)>,
     ) -> Acceleration {
         let length = target.and_then(|(_, length)| length);
-        let stride = match self.stride.get() {
-            Some((same, same_length, stride)) if same == *driver && same_length == length => stride,
-            _ => driver.over(config.period, length, &config.prediction.model),
-        };
-        self.stride.set((*driver, length, stride));
+        let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
+        if !self.stride.as_ref().is_some_and(is_same) {
+            self.stride.set((*driver, length, driver.over(config.period, length, &config.prediction.model)));
+        }
+        let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
         let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
         if !config.prediction.model.limits {
@@ -147,7 +154,7 @@ impl Controller {
         // The law's own limit on jerk does not hold where the last demand was outside the law's limits: emergency braking is
         // let off as fast as it is built up, what the driver left is led over as comfort wants it.
         let jerk = config.envelope.map_or(config.limits.jerk, |envelope| envelope.jerk.max(config.limits.jerk));
-        self.slewed_by(jerk, config, demand)
+        self.slewed_by(jerk, demand)
     }
 
     /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.
@@ -162,11 +169,11 @@ impl Controller {
     }
 
     fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {
-        self.slewed_by(config.limits.jerk, config, wish)
+        self.slewed_by(config.limits.jerk, wish)
     }
 
-    fn slewed_by(&self, jerk: Jerk, config: &Config, wish: Acceleration) -> Acceleration {
-        let slew = jerk.over(config.period.fine_seconds());
+    fn slewed_by(&self, jerk: Jerk, wish: Acceleration) -> Acceleration {
+        let slew = jerk.over(self.period);
         wish.limited(self.demand.minus(slew), self.demand.plus(slew))
     }
 }

@@ -102,7 +102,9 @@ impl Memory {
         // Speeds and accelerations have other formats, but the same word times a share; from 23 to 25 bits is a factor of 4.
         let correction = Acceleration::from_bits(off).share(self.shares.0).to_bits();
         let change = Acceleration::from_bits(saturate_i32(i64::from(off).saturating_mul(4))).share(self.shares.1);
-        self.state = State { speed: expected.plus(Speed::from_bits(correction)), ..next };
+        // The actuators' model is of a vehicle that does not drive backwards, whatever the measurement says.
+        let speed = expected.plus(Speed::from_bits(correction)).max(Speed::ZERO);
+        self.state = State { speed, ..next };
         self.disturbance = self.disturbance.plus(change).limited(LARGEST.negated(), LARGEST);
     }
 }

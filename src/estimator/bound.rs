@@ -12,7 +12,7 @@
 //! Products stay below 2⁶³: speeds are at most 65.534e6, the times for which they change at most 6.6e8 (0.1 m/s² up to
 //! that speed), all times are cut at an hour.
 
-use crate::fixed::quotient;
+use crate::fixed::{per_million, quotient};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::intent::Limits;
@@ -69,29 +69,32 @@ struct End {
 }
 
 impl End {
-    /// After braking for `micros`, rounded down.
+    /// After braking for `micros`, rounded down. Whether it has come to rest by then, `micros >= ⌈v/a⌉`, needs no division.
     fn braked(self, micros: i64, braking: Acceleration) -> Self {
         let braking = micro_up(braking.to_bits(), 25).max(1);
-        let to_rest = ceil(self.speed.saturating_mul(MICRO), braking);
-        if micros >= to_rest {
+        let could_lose = braking.saturating_mul(micros);
+        if could_lose >= self.speed.saturating_mul(MICRO) {
             // v²/2a: speeds below 2²⁶ squared stay below 2⁵².
             let way = floor(self.speed.saturating_mul(self.speed), braking.saturating_mul(2));
             return Self { position: self.position.saturating_add(way), speed: 0 };
         }
-        let lost = ceil(braking.saturating_mul(micros), MICRO).min(self.speed);
-        let way = floor(self.speed.saturating_mul(2).saturating_sub(lost).saturating_mul(micros), 2 * MICRO);
+        let lost = millionths_up(could_lose).min(self.speed);
+        let way = millionths(self.speed.saturating_mul(2).saturating_sub(lost).saturating_mul(micros)) / 2;
         Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
     }
 
     /// After accelerating for `micros` up to the top speed, rounded up.
     fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
         let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
-        let to_top = ceil(TOP_SPEED.saturating_sub(self.speed).max(0).saturating_mul(MICRO), acceleration);
-        let rising = micros.min(to_top);
-        let gained = ceil(acceleration.saturating_mul(rising), MICRO);
-        let way = ceil(self.speed.saturating_mul(2).saturating_add(gained).saturating_mul(rising), 2 * MICRO);
+        let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).saturating_mul(MICRO);
+        // The top speed is reached after ⌈gain/a⌉, which is divided out only if that is before the end.
+        let rises_on = acceleration.saturating_mul(micros.saturating_sub(1)) < to_gain;
+        let rising = if rises_on { micros } else { micros.min(ceil(to_gain, acceleration)) };
+        let gained = millionths_up(acceleration.saturating_mul(rising));
+        let twice = self.speed.saturating_mul(2).saturating_add(gained).saturating_mul(rising);
+        let way = half_up(millionths_up(twice));
         let speed = self.speed.saturating_add(gained).min(TOP_SPEED.max(self.speed));
-        let rest = ceil(speed.saturating_mul(micros.saturating_sub(rising)), MICRO);
+        let rest = millionths_up(speed.saturating_mul(micros.saturating_sub(rising)));
         Self { position: self.position.saturating_add(way).saturating_add(rest), speed }
     }
 }
@@ -222,7 +225,24 @@ fn micro_position(position: Position) -> (i64, i64) {
 
 /// Millionths as a word with `fraction` bits, rounded down.
 const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
-    floor(micros.saturating_mul(1i64.wrapping_shl(fraction)), MICRO)
+    millionths(micros.saturating_mul(1i64.wrapping_shl(fraction)))
+}
+
+/// A millionth, rounded down.
+const fn millionths(x: i64) -> i64 {
+    // Of what is negative: the magnitude less one, as ⌊-x/n⌋ = -⌊(x-1)/n⌋ - 1; its complement is that magnitude.
+    let sign = x >> 63;
+    per_million((x ^ sign).cast_unsigned()).cast_signed() ^ sign
+}
+
+/// A millionth, rounded up.
+const fn millionths_up(x: i64) -> i64 {
+    millionths(x.saturating_neg()).saturating_neg()
+}
+
+/// Half, rounded up.
+const fn half_up(x: i64) -> i64 {
+    x.saturating_add(1) >> 1
 }
 
 /// Quotient rounded down, for a positive divisor.

@@ -28,6 +28,9 @@ impl<const PEERS: usize> Chain<PEERS> {
         let mut places = order.iter_mut();
         for circle in [false, true] {
             for _ in 0..PEERS {
+                if places.len() == 0 {
+                    break; // nearly always after the first time around
+                }
                 for index in 0..PEERS {
                     let is_placed = placed.get(index).copied().unwrap_or(true);
                     let is_free = ahead

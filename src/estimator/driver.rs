@@ -181,7 +181,7 @@ impl Stride {
     }
 
     /// The state at the end of the step.
-    #[inline(always)]
+    #[inline(never)] // where there are many steps, `run` takes them
     #[must_use]
     pub fn take(&self, state: State, ahead: Option<(RingPosition, Speed)>) -> State {
         self.actuator.drive(state, self.demand(&state, ahead, Acceleration::MAX))

@@ -47,14 +47,26 @@ fn keep(step: Duration, time_constant: Duration) -> Share {
 
 /// `e^(-x)` for `x` in [0, ln 2), both in 32 fraction bits: the Taylor series by Horner's rule. The first term left out
 /// is (ln 2)¹²/12! = 2.6e-11.
+#[allow(clippy::cast_possible_truncation)] // halves of products; ln 2 is below 1
 fn exp_of_minus(x: u64) -> u64 {
-    let product = |a: u64, b: u64| a.saturating_mul(b) >> 32;
-    INVERSES.iter().fold(ONE, |sum, inverse| ONE.saturating_sub(product(product(x, sum), *inverse)))
+    let product = |a: u32, b: u32| (u64::from(a).wrapping_mul(u64::from(b)) >> 32) as u32;
+    let x = x as u32;
+    // Each sum is 1 less what is subtracted from it, and only that fits a word.
+    let times_sum = |less: u32| if less == 0 { x } else { product(x, less.wrapping_neg()) };
+    let less = INVERSES.iter().fold(0, |less, inverse| product(times_sum(less), *inverse));
+    ONE.saturating_sub(u64::from(times_sum(less)))
 }
 
-/// 1/11 to 1/1 in 32 fraction bits.
-const INVERSES: [u64; 11] =
-    [ONE / 11, ONE / 10, ONE / 9, ONE / 8, ONE / 7, ONE / 6, ONE / 5, ONE / 4, ONE / 3, ONE / 2, ONE];
+/// 1/11 to 1/2 in 32 fraction bits.
+#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // in const
+const INVERSES: [u32; 10] = {
+    let (mut inverses, mut place) = ([0; 10], 0);
+    while place < inverses.len() {
+        inverses[place] = (ONE / (11 - place as u64)) as u32;
+        place += 1;
+    }
+    inverses
+};
 
 /// `x / 2^bits`, to nearest.
 #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // x <= 2³² and bits >= 2

@@ -4,12 +4,12 @@
 use super::actuator::{Rests, State};
 use super::delay::adjusted;
 use super::driver::{Driver, Stride};
-use super::horizon::{Anchor, Grid, Horizon};
+use super::horizon::{Anchor, Grid, Horizon, Step};
 use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
-use crate::wire::curve::Curve;
+use crate::wire::curve::{Curve, Run};
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::intent::Intent;
 
@@ -74,6 +74,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         if horizon.is_empty() || !self.model.endless {
             return;
         }
+        if horizon.len() == self.length && self.length > 1 && present.wrapping_sub(horizon.first()) == 1 {
+            // What every quiet tick comes to.
+            let end = horizon.last().wrapping_add(1);
+            return horizon.turn(self.stride.take(horizon.tip(), self.ahead_at(end)));
+        }
         let (last, state) = (horizon.last(), horizon.tip());
         let end = present.saturating_add(steps(self.length)).saturating_sub(1);
         if end.saturating_sub(last) > steps(STEPS) {
@@ -83,11 +88,6 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
         while horizon.first() < present && horizon.len() > 1 {
             horizon.drop_first();
-        }
-        if end == last.saturating_add(1) {
-            // What every quiet tick comes to.
-            horizon.push(self.stride.take(state, self.ahead_at(end)));
-            return;
         }
         let anchor = *horizon.anchor();
         self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);
@@ -133,20 +133,40 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let after = self.grid.time_of(first).since(anchor.at);
         let origin = anchor.position.ring();
         let acceleration = knots.knots.last()?.acceleration;
-        let mut last = None;
-        for (index, (way, speed)) in (first..).zip(curve.walk(after, self.grid.step)) {
-            let state =
-                State { position: origin.ahead(way), speed, acceleration, demand: acceleration, rests: Rests::NONE };
-            filling.put(index, state);
-            last = Some((index, state));
-        }
-        last
+        let at = |(way, speed)| {
+            let position = origin.ahead(way);
+            State { position, speed, acceleration, demand: acceleration, rests: Rests::NONE }
+        };
+        let mut runs = curve.runs(after, self.grid.step);
+        let mut run = following(&mut runs)?;
+        filling.put(first, at(run.next()?));
+        // Apart from a horizon longer than the ring, that is all of them.
+        filling.horizon.run(STEPS, |mut tip, mut out| {
+            let mut done = 0usize;
+            while let Some((now, later)) = out.split_at_mut_checked(run.len().min(out.len())) {
+                for (step, reading) in now.iter_mut().zip(&mut run) {
+                    tip = at(reading);
+                    *step = Step { position: tip.position, speed: tip.speed };
+                }
+                (done, out) = (done.saturating_add(now.len()), later);
+                match following(&mut runs) {
+                    Some(next) if !out.is_empty() => run = next,
+                    _ => break,
+                }
+            }
+            (tip, done)
+        });
+        Some((filling.horizon.last(), filling.horizon.tip()))
     }
 
     /// Steps from an index to the end of the horizon: one by one until the horizon has begun and its predecessor's has,
     /// and from there on all in one go.
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
+        // What lies before the predecessor's first step is made once for all the steps that are.
+        let begins = self.ahead.filter(|_| self.delay.is_none()).map_or(from, Horizon::first);
+        let approach =
+            self.ahead.filter(|_| from.saturating_add(1) < begins).and_then(|ahead| ahead.approach(self.grid));
         while index < end {
             let next = index.saturating_add(1);
             let left = usize::try_from(end.saturating_sub(index)).unwrap_or(0);
@@ -165,7 +185,14 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
                 Some(done) if done > 0 => index = index.saturating_add(steps(done)),
                 _ => {
                     index = next;
-                    state = self.stride.take(state, self.ahead_at(index));
+                    let ahead = match &approach {
+                        Some(approach) if index < begins => {
+                            let reading = approach.at(self.grid.time_of(index));
+                            Some((reading.position.ring(), reading.speed))
+                        }
+                        _ => self.ahead_at(index),
+                    };
+                    state = self.stride.take(state, ahead);
                     filling.put(index, state);
                     continue;
                 }
@@ -175,7 +202,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// The predecessor at a step; nobody if it is out of reach.
-    #[inline(always)]
+    #[inline(never)]
     fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
         let ahead = self.ahead?;
         if let Some(delay) = self.delay {
@@ -204,7 +231,6 @@ struct Filling<'a, const STEPS: usize> {
 }
 
 impl<const STEPS: usize> Filling<'_, STEPS> {
-    #[inline(always)]
     fn put(&mut self, index: i64, state: State) {
         if !self.horizon.is_empty() {
             self.horizon.push(state);
@@ -217,6 +243,12 @@ impl<const STEPS: usize> Filling<'_, STEPS> {
     fn absolute(&self, state: &State) -> Position {
         self.anchor.position.ahead(state.position.ahead_of(self.anchor.position.ring()))
     }
+}
+
+/// The next run. Apart, because making one is large, and is asked for in two places.
+#[inline(never)]
+fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
+    runs.next()
 }
 
 /// A number of steps as a difference of indices.

@@ -5,7 +5,7 @@
 //! and between steps, a reading is the cubic that meets both positions and both speeds.
 
 use super::actuator::{Rests, State};
-use super::interpolation::between;
+use super::interpolation::{Approach, Cubic};
 use crate::fixed::quotient;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, RingPosition, Speed};
@@ -182,7 +182,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
     }
 
     /// Adds the next step at the far end; a full ring drops its first step.
-    #[inline(always)]
+    #[inline(never)]
     pub fn push(&mut self, state: State) {
         if self.len == STEPS {
             self.drop_first();
@@ -192,6 +192,20 @@ impl<const STEPS: usize> Horizon<STEPS> {
             *step = Step { position: state.position, speed: state.speed };
             self.len = self.len.wrapping_add(1); // below STEPS
         }
+        self.tip = state;
+    }
+
+    /// Drops the first step and adds one at the far end; for a horizon of at least two.
+    pub(super) fn turn(&mut self, state: State) {
+        let (far, second) = (self.place(self.len), self.place(1));
+        if let (Some(old), Some(new)) = (self.steps.get(self.head), self.steps.get(second)) {
+            self.base = self.base.ahead(new.position.ahead_of(old.position));
+        }
+        if let Some(step) = self.steps.get_mut(far) {
+            *step = Step { position: state.position, speed: state.speed };
+        }
+        self.head = second;
+        self.first = self.first.wrapping_add(1); // of 2⁶³ steps of a millisecond or more
         self.tip = state;
     }
 
@@ -268,26 +282,19 @@ impl<const STEPS: usize> Horizon<STEPS> {
             (Some(before), Some(after)) => {
                 let from = self.reading(before);
                 let way = after.position.ahead_of(before.position);
-                Some(between(from, way, after.speed, at.since(time), grid.step))
+                Some(Cubic::new(from, way, after.speed, grid.step).at(at.since(time)))
             }
-            (None, _) if index < self.first => self.before_first(at, grid),
+            (None, _) if index < self.first => Some(self.approach(grid)?.at(at)),
             _ => self.held(index),
         }
     }
 
-    /// Between the anchor and the first step, or before the anchor.
-    fn before_first(&self, at: Instant, grid: &Grid) -> Option<Reading> {
+    /// What there is before the first step.
+    pub(super) fn approach(&self, grid: &Grid) -> Option<Approach> {
         let first = self.nth(0)?;
         let Anchor { at: start, position, speed, .. } = self.anchor;
-        let from = Reading { position, speed };
-        let since = at.since(start);
-        if since < Duration::ZERO {
-            // At most the age of a sample; a second's product fits the format, longer ones saturate at 4 s.
-            return Some(Reading { position: position.ahead(speed.over(since.seconds())), speed });
-        }
-        let whole = grid.time_of(self.first).since(start);
         let way = self.base.ahead_of(position);
-        Some(between(from, way, first.speed, since, whole))
+        Some(Approach::new(start, Reading { position, speed }, way, first.speed, grid.time_of(self.first).since(start)))
     }
 
     /// The step nearest to an index among those there are.

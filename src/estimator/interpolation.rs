@@ -3,36 +3,87 @@
 
 use super::horizon::Reading;
 use crate::fixed::{mul_hi, ratio, saturate_i32, shl_saturating};
-use crate::time::Duration;
+use crate::time::{Duration, Instant};
 use crate::units::{Distance, Speed};
 
-/// The cubic Hermite reading `after` into an interval of length `whole`, from `from` over a way of `way` to `end_speed`.
+/// The cubic Hermite curve of an interval, ready to be read many times.
 ///
 /// With `s = after/whole`, `w` the way, `a` and `b` the ways at the two ends' speeds:
 /// `r = s [ a + s ( 3w - 2a - b + s (a + b - 2w) ) ]`, `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`, taken as
-/// the two ends' speeds mixed plus the bend. Times outside the interval are taken at its ends; the speed is not negative.
-#[must_use]
-pub fn between(from: Reading, way: Distance, end_speed: Speed, after: Duration, whole: Duration) -> Reading {
-    if after <= Duration::ZERO {
-        return from;
+/// the two ends' speeds mixed plus the bend.
+#[derive(Clone, Copy, Debug)]
+pub struct Cubic {
+    from: Reading,
+    way: Distance,
+    end_speed: Speed,
+    whole: Duration,
+    /// `a`.
+    line: Distance,
+    /// `3w - 2a - b`.
+    square: Distance,
+    /// `a + b - 2w`.
+    cubic: Distance,
+}
+
+impl Cubic {
+    /// From a reading over a way to an end speed, in this time.
+    #[must_use]
+    pub fn new(from: Reading, way: Distance, end_speed: Speed, whole: Duration) -> Self {
+        let seconds = whole.seconds();
+        let (line, end) = (from.speed.over(seconds), end_speed.over(seconds));
+        let cubic = line.plus(end).minus(way).minus(way);
+        Self { from, way, end_speed, whole, line, square: way.minus(line).minus(cubic), cubic }
     }
-    if after >= whole {
-        return Reading { position: from.position.ahead(way), speed: end_speed };
+
+    /// The reading so long after its start. Times outside the interval are taken at its ends; the speed is not negative.
+    #[must_use]
+    pub fn at(&self, after: Duration) -> Reading {
+        let Self { from, way, end_speed, whole, line, square, cubic } = *self;
+        if after <= Duration::ZERO {
+            return from;
+        }
+        if after >= whole {
+            return Reading { position: from.position.ahead(way), speed: end_speed };
+        }
+        // s in 31 bits, below 1.
+        let s = saturate_i32(ratio(after.as_micros(), whole.as_micros(), 31));
+        let share = |d: Distance| Distance::from_bits(shl_saturating::<1>(mul_hi(d.to_bits(), s)));
+        let position = share(line.plus(share(square.plus(share(cubic)))));
+        // dr/dt = [ a + s (2 square + 3 s cubic) ] / whole
+        let bend = share(square.plus(square).plus(share(cubic.plus(cubic).plus(cubic))));
+        // 20 to 23 fraction bits is a factor of 8; per second instead of per microsecond one of 1e6.
+        let bend = i64::from(bend.to_bits()).saturating_mul(8_000_000);
+        let bend_speed = Speed::from_bits(saturate_i32(ratio(bend, whole.as_micros(), 0)));
+        Reading { position: from.position.ahead(position), speed: from.speed.plus(bend_speed).max(Speed::ZERO) }
     }
-    // s in 31 bits, below 1.
-    let s = saturate_i32(ratio(after.as_micros(), whole.as_micros(), 31));
-    let seconds = whole.seconds();
-    let (w, a, b) = (way, from.speed.over(seconds), end_speed.over(seconds));
-    let cubic = a.plus(b).minus(w).minus(w);
-    let square = w.minus(a).minus(cubic);
-    let share = |d: Distance| Distance::from_bits(shl_saturating::<1>(mul_hi(d.to_bits(), s)));
-    let position = share(a.plus(share(square.plus(share(cubic)))));
-    // dr/dt = [ a + s (2 square + 3 s cubic) ] / whole
-    let bend = share(square.plus(square).plus(share(cubic.plus(cubic).plus(cubic))));
-    // 20 to 23 fraction bits is a factor of 8; per second instead of per microsecond one of 1e6.
-    let bend = i64::from(bend.to_bits()).saturating_mul(8_000_000);
-    let bend_speed = Speed::from_bits(saturate_i32(ratio(bend, whole.as_micros(), 0)));
-    Reading { position: from.position.ahead(position), speed: from.speed.plus(bend_speed).max(Speed::ZERO) }
+}
+
+/// Where a vehicle is before the first step of its horizon: between the state that the horizon starts from and that step, and
+/// before that state.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach {
+    start: Instant,
+    curve: Cubic,
+}
+
+impl Approach {
+    /// From a state at an instant over a way to a speed, in this time.
+    #[must_use]
+    pub fn new(start: Instant, from: Reading, way: Distance, end_speed: Speed, whole: Duration) -> Self {
+        Self { start, curve: Cubic::new(from, way, end_speed, whole) }
+    }
+
+    /// The reading at an instant: before the state, from there back at constant speed.
+    #[must_use]
+    pub fn at(&self, at: Instant) -> Reading {
+        let since = at.since(self.start);
+        if since >= Duration::ZERO {
+            return self.curve.at(since);
+        }
+        // At most the age of a sample; a second's product fits the format, longer ones saturate at 4 s.
+        let Reading { position, speed } = self.curve.from;
+        Reading { position: position.ahead(speed.over(since.seconds())), speed }
+    }
 }
 
 #[cfg(test)]
@@ -52,13 +103,8 @@ mod tests {
             let from = Reading { position: Position::ZERO, speed: speed(v(0.0)) };
             for share in 0..=20 {
                 let after = whole * share / 20;
-                let reading = between(
-                    from,
-                    metres(r(h)),
-                    speed(v(h)),
-                    Duration::from_micros(after),
-                    Duration::from_micros(whole),
-                );
+                let curve = Cubic::new(from, metres(r(h)), speed(v(h)), Duration::from_micros(whole));
+                let reading = curve.at(Duration::from_micros(after));
                 let t = after as f64 * 1e-6;
                 assert!((reading.position.get().to_num::<f64>() - r(t)).abs() < 1e-5, "{whole} {share}");
                 let tolerance = 2e-6 + 8e-6 / h; // the ways at both ends are rounded to a micrometre each

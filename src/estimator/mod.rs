@@ -158,7 +158,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Brings every peer's horizon up to now.
     pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) {
         let present = self.grid.at_or_before(now);
-        let correction = core::mem::take(&mut self.correction).get();
+        let correction = match &self.correction {
+            Held::Nothing => None, // as in nearly every tick, and then nothing is copied
+            Held::Value(_) => core::mem::take(&mut self.correction).get(),
+        };
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
@@ -206,10 +209,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return };
         // The horizon is taken out of the array's borrow together with the one that it is computed from.
         let (horizon, ahead) = match ahead {
-            Some(Ahead::Peer(other)) => match horizons.get_disjoint_mut([index, other]) {
-                Ok([horizon, other]) => (Some(horizon), Some(&*other)),
-                Err(_) => (horizons.get_mut(index), None),
-            },
+            Some(Ahead::Peer(other)) => pair(horizons, index, other),
             Some(Ahead::Own) => (horizons.get_mut(index), Some(&*own)),
             None => (horizons.get_mut(index), None),
         };
@@ -280,6 +280,15 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             Predecessor::Station(station) => peers.index_of(station).filter(|other| *other != index).map(Ahead::Peer),
             Predecessor::None | Predecessor::Unknown => None,
         }
+    }
+}
+
+/// One of many to be changed, and another one.
+fn pair<T>(all: &mut [T], one: usize, other: usize) -> (Option<&mut T>, Option<&T>) {
+    match all.split_at_mut_checked(one.max(other)) {
+        Some((low, high)) if one < other => (low.get_mut(one), high.first()),
+        Some((low, high)) => (high.first_mut(), low.get(other)),
+        None => (None, None),
     }
 }
 

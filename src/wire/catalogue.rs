@@ -5,11 +5,10 @@
 //! data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
 //! which the CRC is one to one, so a frame that strays to another identifier of the block never passes.
 
-use super::bits::Payload;
 use super::e2e::Limits;
 use super::field::{Field, Place};
+use super::index;
 use super::{Slot, command, ego_intent, estimate, geo, horizon, intent, motion, range_sensor, route, status, sync};
-use crate::health::Refusal;
 
 /// Identifiers that the catalogue takes up, from the base on.
 pub const BLOCK: u16 = 0xC0;
@@ -138,6 +137,19 @@ pub enum Content {
     Said(Speaker, About),
 }
 
+impl Content {
+    /// Whether every slot has one.
+    #[must_use]
+    pub const fn is_per_slot(self) -> bool {
+        matches!(self, Self::Said(Speaker::Peer, _))
+    }
+
+    /// The offset for this slot, from that of slot 0.
+    pub(super) const fn offset_for(self, first: u16, slot: Slot) -> u16 {
+        first.wrapping_add(if self.is_per_slot() { SLOT_STRIDE.wrapping_mul(slot.0 as u16) } else { 0 })
+    }
+}
+
 /// One line of the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
@@ -165,7 +177,7 @@ impl Line {
     /// Whether every slot has one.
     #[must_use]
     pub const fn is_per_slot(&self) -> bool {
-        matches!(self.content, Content::Said(Speaker::Peer, _))
+        self.content.is_per_slot()
     }
 
     /// What its receiver tolerates.
@@ -180,29 +192,10 @@ impl Line {
         self.fields.iter().find(|field| field.place == Place::Selector)
     }
 
-    /// Which part of its message a frame is.
-    #[must_use]
-    pub fn part_of(&self, payload: Payload) -> u8 {
-        self.selector().map_or(0, |selector| selector.byte(payload))
-    }
-
-    /// Whether every field of the frame holds a value that may stand in it.
-    ///
-    /// # Errors
-    /// `Range` if one does not.
-    pub fn check(&self, payload: Payload) -> Result<(), Refusal> {
-        let part = self.part_of(payload);
-        let holds = |field: &Field| match field.place {
-            Place::Part(of) if of != part => true,
-            _ => field.accepts(field.raw(payload)),
-        };
-        if self.fields.iter().all(holds) { Ok(()) } else { Err(Refusal::Range) }
-    }
-
     /// Its offset for this slot (slot 0 where there are none).
     #[must_use]
     pub const fn offset_for(&self, slot: Slot) -> u16 {
-        self.offset.wrapping_add(if self.is_per_slot() { SLOT_STRIDE.wrapping_mul(slot.0 as u16) } else { 0 })
+        self.content.offset_for(self.offset, slot)
     }
 }
 
@@ -304,25 +297,14 @@ pub static CATALOGUE: [Line; LINES] = [
 /// The line of an offset, its place in the catalogue, and its slot (0 where there are none).
 #[must_use]
 pub fn find(offset: u16) -> Option<(usize, &'static Line, Slot)> {
-    let (first, slot) = match offset.checked_sub(PEERS_OFFSET) {
-        Some(beyond) => (PEERS_OFFSET.wrapping_add(beyond % SLOT_STRIDE), beyond / SLOT_STRIDE),
-        None => (offset, 0),
-    };
-    let (place, line) = CATALOGUE.iter().enumerate().find(|(_, line)| line.offset == first)?;
-    Some((place, line, Slot(u8::try_from(slot).ok()?)))
-}
-
-/// The line of a content, and its place in the catalogue; some contents have none (the vehicle does not tell its unit
-/// its intent this way).
-#[must_use]
-pub fn find_content(content: Content) -> Option<(usize, &'static Line)> {
-    CATALOGUE.iter().enumerate().find(|(_, line)| line.content == content)
+    let (place, slot) = index::place_of(offset)?;
+    Some((place, CATALOGUE.get(place)?, slot))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::bits::FIRST_BIT;
+    use crate::wire::bits::{FIRST_BIT, Payload};
 
     #[test]
     fn offsets_ascend_and_stay_inside_the_block() {

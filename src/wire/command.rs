@@ -48,6 +48,17 @@ pub struct Command {
     pub tick: u8,
 }
 
+impl Command {
+    /// Before anything was commanded.
+    pub(crate) const NONE: Self = Self {
+        acceleration: Acceleration::ZERO,
+        effort: Effort::Force(0),
+        mode: ModeCode::Standby,
+        limited: false,
+        tick: 0,
+    };
+}
+
 /// Names of the modes.
 const MODES: &[(i64, &str)] = &[(0, "standby"), (1, "cooperative"), (2, "holdover"), (3, "fallback"), (4, "fault")];
 

@@ -276,51 +276,48 @@ impl Curve {
     /// Way and speed on a uniform grid (steps of at least 1 ms), from this time after the motion's stamp (or the stamp,
     /// if it is earlier) to the horizon's end.
     pub fn walk(&self, first: Duration, step: Duration) -> impl Iterator<Item = (Distance, Speed)> + use<> {
-        Walk {
-            pieces: self.pieces(),
-            piece: Piece::NOTHING,
-            next: first.as_micros().max(0),
-            step: step.as_micros().max(SHORTEST),
-            left: 0,
-            share: 0,
-            share_step: 0,
-        }
+        self.runs(first, step).flatten()
+    }
+
+    /// The same, piece by piece.
+    pub(crate) fn runs(&self, first: Duration, step: Duration) -> impl Iterator<Item = Run> + use<> {
+        let (mut next, step) = (first.as_micros().max(0), step.as_micros().max(SHORTEST));
+        self.pieces().filter_map(move |(start, piece)| {
+            let passed = next.saturating_sub(start);
+            let until_end = piece.micros.saturating_sub(passed);
+            if until_end < 0 {
+                return None;
+            }
+            let readings = quotient(until_end, step).saturating_add(1);
+            next = next.saturating_add(readings.saturating_mul(step));
+            let left = usize::try_from(readings).unwrap_or(usize::MAX);
+            Some(Run { share: piece.share_of(passed), share_step: piece.share_of(step), left, piece })
+        })
     }
 }
 
-/// See [`Curve::walk`]: within a piece, a step is one addition and [`Piece::at_share`].
-struct Walk<Pieces> {
-    pieces: Pieces,
+/// The readings that lie in one piece: each is one addition and [`Piece::at_share`].
+pub(crate) struct Run {
     piece: Piece,
-    /// Time of the first reading that lies beyond the piece.
-    next: i64,
-    step: i64,
-    /// Readings left in the piece.
-    left: u32,
+    left: usize,
     share: i32,
     share_step: i32,
 }
 
-impl<Pieces: Iterator<Item = (i64, Piece)>> Iterator for Walk<Pieces> {
+impl Run {
+    /// How many readings are left.
+    pub(crate) const fn len(&self) -> usize {
+        self.left
+    }
+}
+
+impl Iterator for Run {
     type Item = (Distance, Speed);
 
-    #[inline]
+    #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
-        while self.left == 0 {
-            let (start, piece) = self.pieces.next()?;
-            let passed = self.next.saturating_sub(start);
-            let until_end = piece.micros.saturating_sub(passed);
-            if until_end >= 0 {
-                let readings = quotient(until_end, self.step).saturating_add(1);
-                self.left = u32::try_from(readings).unwrap_or(u32::MAX);
-                self.next = self.next.saturating_add(readings.saturating_mul(self.step));
-                self.share = piece.share_of(passed);
-                self.share_step = piece.share_of(self.step);
-                self.piece = piece;
-            }
-        }
+        self.left = self.left.checked_sub(1)?;
         let reading = self.piece.at_share(self.share);
-        self.left = self.left.wrapping_sub(1); // was not 0
         self.share = self.share.wrapping_add(self.share_step); // beyond 1 it is not read any more
         Some(reading)
     }

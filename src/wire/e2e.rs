@@ -79,7 +79,8 @@ pub const fn next(counter: u8) -> u8 {
 }
 
 fn crc(data_id: u16, bytes: [u8; 7]) -> u8 {
-    data_id.to_le_bytes().into_iter().chain(bytes).fold(0, |crc, byte| step(crc ^ byte))
+    let [low, high] = data_id.to_le_bytes();
+    bytes.iter().fold(step(step(low) ^ high), |crc, byte| step(crc ^ byte))
 }
 
 /// One byte through the CRC register.

@@ -3,6 +3,7 @@
 use super::bits::Payload;
 use super::field::{Field, TAG};
 use super::motion::{self, WirePosition, position_of};
+use crate::fixed::quotient;
 use crate::health::Refusal;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
@@ -57,22 +58,20 @@ impl TargetEstimate {
     /// end does not fit is not told at all.
     #[must_use]
     pub fn encode(&self) -> [Payload; 2] {
-        let ends = self.ends.filter(|ends| {
-            BEHIND.holds_bound(ends.behind)
-                && AHEAD.holds_bound(ends.ahead)
-                && SLOWER.holds_bound(ends.slower)
-                && FASTER.holds_bound(ends.faster)
+        let ends = self.ends.and_then(|ends| {
+            let slow_and_fast = (SLOWER.bound_steps(ends.slower)?, FASTER.bound_steps(ends.faster)?);
+            Some((BEHIND.bound_steps(ends.behind)?, AHEAD.bound_steps(ends.ahead)?, slow_and_fast))
         });
         let a = TAG.with_raw(Payload::EMPTY, i64::from(self.tag & 3));
         let a = POSITION.with_raw(a, i64::from(self.position.mm()));
         let a = SPEED.with(a, self.speed);
-        let a = FASTER.with_bound(a, ends.map(|ends| ends.faster));
+        let a = FASTER.with_steps(a, ends.map(|(_, _, (_, faster))| faster));
         let b = TAG.with_raw(Payload::EMPTY, i64::from(self.tag & 3));
-        let steps = self.age.as_micros().saturating_add(AGE_STEP_MICROS.saturating_sub(1)).div_euclid(AGE_STEP_MICROS);
+        let steps = quotient(self.age.as_micros().saturating_add(AGE_STEP_MICROS.saturating_sub(1)), AGE_STEP_MICROS);
         let b = AGE.with_raw(b, steps);
-        let b = BEHIND.with_bound(b, ends.map(|ends| ends.behind));
-        let b = AHEAD.with_bound(b, ends.map(|ends| ends.ahead));
-        let b = SLOWER.with_bound(b, ends.map(|ends| ends.slower));
+        let b = BEHIND.with_steps(b, ends.map(|(behind, _, _)| behind));
+        let b = AHEAD.with_steps(b, ends.map(|(_, ahead, _)| ahead));
+        let b = SLOWER.with_steps(b, ends.map(|(_, _, (slower, _))| slower));
         [a, b]
     }
 

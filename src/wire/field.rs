@@ -108,7 +108,7 @@ impl Field {
     }
 
     /// The raw value.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_wrap)] // a field has at most 52 bits
     pub const fn raw(&self, payload: Payload) -> i64 {
@@ -120,7 +120,7 @@ impl Field {
     }
 
     /// With the raw value, limited to what is a value; the code for none passes too.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_sign_loss)] // two's complement is what stands on the wire
     pub const fn with_raw(&self, payload: Payload, raw: i64) -> Payload {
@@ -137,7 +137,7 @@ impl Field {
     }
 
     /// The raw value of a field of at most 8 bits.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // of at most 8 bits
     pub const fn byte(&self, payload: Payload) -> u8 {
@@ -145,7 +145,7 @@ impl Field {
     }
 
     /// The raw value of a field of at most 32 bits, unsigned.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // of at most 32 bits
     pub const fn word(&self, payload: Payload) -> u32 {
@@ -163,27 +163,28 @@ impl Field {
     }
 
     /// The quantity.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn get<Q: Quantity>(&self, payload: Payload) -> Q {
         Q::from_steps(self.raw(payload), self.per_unit)
     }
 
     /// With the quantity, to the nearest step, limited to the field's range.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn with<Q: Quantity>(&self, payload: Payload, quantity: Q) -> Payload {
         self.with_raw(payload, quantity.to_steps(self.per_unit).min(self.max).max(self.min))
     }
 
     /// With the quantity, rounded up, limited to the field's range.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn with_up<Q: Quantity>(&self, payload: Payload, quantity: Q) -> Payload {
         self.with_raw(payload, quantity.to_steps_up(self.per_unit).min(self.max).max(self.min))
     }
 
     /// The quantity, if there is one.
+    #[inline(always)] // the whole field would be passed, with its names
     #[must_use]
     pub fn get_known<Q: Quantity>(&self, payload: Payload) -> Option<Q> {
         let raw = self.raw(payload);
@@ -191,6 +192,7 @@ impl Field {
     }
 
     /// With the quantity, rounded to the nearest step, or the code for none.
+    #[inline(always)]
     #[must_use]
     pub fn with_known<Q: Quantity>(&self, payload: Payload, quantity: Option<Q>) -> Payload {
         match quantity {
@@ -201,18 +203,24 @@ impl Field {
 
     /// With the bound, rounded up. A bound that is not known, or is wider than the field can say, becomes the code for
     /// none: a bound on the wire is never tighter than the one that was meant.
+    #[inline(always)]
     #[must_use]
     pub fn with_bound<Q: Quantity>(&self, payload: Payload, bound: Option<Q>) -> Payload {
-        match bound.filter(|bound| self.holds_bound(*bound)) {
-            Some(bound) => self.with_up(payload, bound),
-            None => self.with_raw(payload, self.none.unwrap_or(self.max)),
-        }
+        self.with_steps(payload, bound.and_then(|bound| self.bound_steps(bound)))
     }
 
-    /// Whether the field can say this bound, rounded up.
+    /// The bound in steps, rounded up, if the field can say that.
+    #[inline(always)]
     #[must_use]
-    pub fn holds_bound<Q: Quantity>(&self, bound: Q) -> bool {
-        bound.to_steps_up(self.per_unit) <= self.max
+    pub fn bound_steps<Q: Quantity>(&self, bound: Q) -> Option<i64> {
+        Some(bound.to_steps_up(self.per_unit)).filter(|steps| *steps <= self.max)
+    }
+
+    /// With so many steps, or the code for none.
+    #[inline(always)]
+    #[must_use]
+    pub fn with_steps(&self, payload: Payload, steps: Option<i64>) -> Payload {
+        self.with_raw(payload, steps.or(self.none).unwrap_or(self.max))
     }
 }
 

@@ -17,6 +17,7 @@ pub mod field;
 pub mod frame;
 pub mod geo;
 pub mod horizon;
+mod index;
 pub mod intent;
 pub mod load;
 pub mod motion;

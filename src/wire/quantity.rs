@@ -18,12 +18,8 @@ pub trait Quantity: Copy + PartialOrd {
     /// To the nearest step.
     fn to_steps(self, per_unit: i64) -> i64;
 
-    /// To the smallest number of steps that is not below the quantity.
-    #[must_use]
-    fn to_steps_up(self, per_unit: i64) -> i64 {
-        let nearest = self.to_steps(per_unit);
-        if Self::from_steps(nearest, per_unit) < self { nearest.saturating_add(1) } else { nearest }
-    }
+    /// To the smallest number of steps that is not below the quantity: `from_steps` of one less is.
+    fn to_steps_up(self, per_unit: i64) -> i64;
 }
 
 /// `steps / per_unit` as a word with so many fraction bits. Fields have at most 32 bits and formats at most 30 fraction
@@ -44,6 +40,22 @@ fn steps(word: i32, per_unit: i64, fraction: u32) -> i64 {
     if product < 0 { magnitude.saturating_neg() } else { magnitude }
 }
 
+/// How many `1/per_unit` a word is, so that [`word`] of it is not below. Whether it would be below needs no division:
+/// `⌊(n·2^f + p/2)/p⌋ < w` is `n·2^f + p/2 < w·p`, and where the dividend is negative `⌈(n·2^f - p/2)/p⌉ < w` is
+/// `n·2^f - p/2 <= (w - 1)·p`.
+fn steps_up(bits: i32, per_unit: i64, fraction: u32) -> i64 {
+    let nearest = steps(bits, per_unit, fraction);
+    let scaled = nearest.wrapping_shl(fraction); // about the product below, so it fits
+    let product = i64::from(bits).saturating_mul(per_unit);
+    let half = per_unit / 2;
+    let is_below = if scaled < 0 {
+        scaled.saturating_sub(half) <= product.saturating_sub(per_unit)
+    } else {
+        scaled.saturating_add(half) < product
+    };
+    nearest.saturating_add(i64::from(is_below))
+}
+
 macro_rules! quantity {
     ($($name:ident: $format:ty),*) => {$(
         impl Quantity for $name {
@@ -55,6 +67,11 @@ macro_rules! quantity {
             #[inline]
             fn to_steps(self, per_unit: i64) -> i64 {
                 steps(self.to_bits(), per_unit, <$format>::FRAC_NBITS)
+            }
+
+            #[inline]
+            fn to_steps_up(self, per_unit: i64) -> i64 {
+                steps_up(self.to_bits(), per_unit, <$format>::FRAC_NBITS)
             }
         }
     )*};
@@ -98,6 +115,21 @@ mod tests {
             let bits = raw as i32 * 8191;
             assert_eq!(Speed::from_bits(bits).to_steps(500), Speed::from_bits(bits).to_multiple_of(500));
             assert_eq!(Gain::from_bits(bits).to_steps(1000), Gain::from_bits(bits).to_multiple_of(1000));
+        }
+    }
+
+    #[test]
+    fn rounding_up_takes_one_step_more_where_the_nearest_number_of_steps_is_below() {
+        let nearest_or_more = |speed: Speed, per_unit| {
+            let nearest = speed.to_steps(per_unit);
+            if Speed::from_steps(nearest, per_unit) < speed { nearest + 1 } else { nearest }
+        };
+        for per_unit in [1, 2, 3, 5, 10, 20, 50, 500, 1000, 4096, 1 << 23, 10_000_000] {
+            let ends = [i32::MIN, i32::MIN + 1, i32::MAX - 1, i32::MAX];
+            for bits in (-2_000_000_000..2_000_000_000).step_by(1_999_993).chain(-2_000..2_000).chain(ends) {
+                let speed = Speed::from_bits(bits);
+                assert_eq!(speed.to_steps_up(per_unit), nearest_or_more(speed, per_unit), "{bits} {per_unit}");
+            }
         }
     }
 

@@ -8,13 +8,14 @@ use embedded_can::{Frame, Id};
 
 use super::assembly::Assembly;
 use super::bits::Payload;
-use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, Line, Node, PEERS_OFFSET, Speaker};
+use super::catalogue::{self, ABOUTS, About, BaseId, Content, LIMITS, LINES, Node, PEERS_OFFSET, Speaker};
 use super::command::Command;
 use super::e2e::Check;
 use super::ego_intent::EgoIntent;
 use super::estimate::TargetEstimate;
 use super::geo::GeoPosition;
 use super::horizon::{KNOTS, Knots};
+use super::index::{self, Entry};
 use super::intent::Intent;
 use super::motion::Motion;
 use super::range_sensor::RangeSample;
@@ -133,11 +134,11 @@ impl<const PEERS: usize> Receiver<PEERS> {
     pub fn receive(&mut self, frame: &impl Frame) -> Result<Received, Refusal> {
         let Id::Standard(id) = frame.id() else { return Ok(Received::Foreign) };
         let Some(offset) = self.base.offset_of(id.as_raw()) else { return Ok(Received::Foreign) };
-        let Some((place, line, slot)) = catalogue::find(offset) else { return Ok(Received::Foreign) };
-        if !self.role.hears(line.sender) {
+        let Some((place, entry, slot)) = index::find(offset) else { return Ok(Received::Foreign) };
+        if !self.role.hears(entry.sender) {
             return Ok(Received::Foreign);
         }
-        if line.is_per_slot() && usize::from(slot.0) >= PEERS {
+        if entry.content.is_per_slot() && usize::from(slot.0) >= PEERS {
             return Err(Refusal::UnknownSlot);
         }
         let data: &[u8; 8] = match (frame.is_remote_frame(), frame.data().try_into()) {
@@ -145,15 +146,15 @@ impl<const PEERS: usize> Receiver<PEERS> {
             _ => return Err(Refusal::Length),
         };
         let data_id = catalogue::data_id(offset);
-        self.check_of(place, line, slot)?.receive(line.limits(), data_id, data)?;
+        self.check_of(place, entry, slot)?.receive(&LIMITS, data_id, data)?;
         let payload = Payload::from_bytes(*data);
-        line.check(payload)?;
-        Ok(self.assemble(line, slot, payload)?.map_or(Received::Pending, Received::Whole))
+        entry.check(payload)?;
+        Ok(self.assemble(entry, slot, payload)?.map_or(Received::Pending, Received::Whole))
     }
 
-    fn check_of(&mut self, place: usize, line: &Line, slot: Slot) -> Result<&mut Check, Refusal> {
-        let check = if line.is_per_slot() {
-            let about = usize::from(line.offset.saturating_sub(PEERS_OFFSET));
+    fn check_of(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut Check, Refusal> {
+        let check = if entry.content.is_per_slot() {
+            let about = usize::from(entry.offset.saturating_sub(PEERS_OFFSET));
             self.peers.get_mut(usize::from(slot.0)).and_then(|peer| peer.checks.get_mut(about))
         } else {
             self.checks.get_mut(place)
@@ -161,10 +162,10 @@ impl<const PEERS: usize> Receiver<PEERS> {
         check.ok_or(Refusal::UnknownSlot)
     }
 
-    fn assemble(&mut self, line: &Line, slot: Slot, payload: Payload) -> Result<Option<Message>, Refusal> {
-        let (part, tag) = (line.part_of(payload), super::field::TAG.byte(payload));
+    fn assemble(&mut self, entry: &Entry, slot: Slot, payload: Payload) -> Result<Option<Message>, Refusal> {
+        let (part, tag) = (entry.part_of(payload), super::field::TAG.byte(payload));
         let whole = [payload];
-        Ok(match line.content {
+        Ok(match entry.content {
             Content::Sync => Some(Message::Sync(Sync::decode(&whole))),
             Content::FollowUp => Some(Message::FollowUp(FollowUp::decode(&whole))),
             Content::Command => Some(Message::Command(Command::decode(&whole))),

@@ -7,7 +7,8 @@
 //! [`Intent`]: super::intent::Intent
 
 use super::bits::Payload;
-use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, Line, PEERS_OFFSET, Speaker};
+use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, PEERS_OFFSET, Speaker};
+use super::index::{self, Entry};
 use super::{Frame, Message, Said, Slot, e2e};
 
 /// Why a message was not sent.
@@ -104,10 +105,10 @@ impl<const PEERS: usize> Sender<PEERS> {
         payloads: &[Payload],
         emit: &mut impl FnMut(Frame),
     ) -> Result<(), Unsent> {
-        let (place, line) = catalogue::find_content(content).ok_or(Unsent::NoLine)?;
-        let offset = line.offset_for(slot);
+        let (place, entry) = index::find_content(content).ok_or(Unsent::NoLine)?;
+        let offset = entry.offset_for(slot);
         let id = self.base.plus(offset);
-        let counter = self.counter(place, line, slot)?;
+        let counter = self.counter(place, entry, slot)?;
         for payload in payloads {
             emit(Frame { id, data: e2e::protect(payload.to_bytes(), catalogue::data_id(offset), *counter) });
             *counter = e2e::next(*counter);
@@ -115,12 +116,12 @@ impl<const PEERS: usize> Sender<PEERS> {
         Ok(())
     }
 
-    fn counter(&mut self, place: usize, line: &Line, slot: Slot) -> Result<&mut u8, Unsent> {
-        if line.is_per_slot() {
+    fn counter(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut u8, Unsent> {
+        if entry.content.is_per_slot() {
             if u16::from(slot.0) >= catalogue::SLOTS {
                 return Err(Unsent::UnknownSlot);
             }
-            let about = usize::from(line.offset.saturating_sub(PEERS_OFFSET));
+            let about = usize::from(entry.offset.saturating_sub(PEERS_OFFSET));
             let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Unsent::UnknownSlot)?;
             peer.counters.get_mut(about).ok_or(Unsent::NoLine)
         } else {

@@ -11,7 +11,9 @@ unsafe extern "C" {
     static mut __sheap: u32;
 }
 
-fn pointer() -> usize {
+/// Where the stack is now.
+#[inline(always)]
+pub fn pointer() -> usize {
     let pointer: usize;
     // SAFETY: reads the stack pointer and nothing else.
     unsafe { asm!("mov {}, sp", out(reg) pointer, options(nomem, nostack, preserves_flags)) };
@@ -22,9 +24,9 @@ fn bottom() -> usize {
     (&raw mut __sheap) as usize
 }
 
-/// Paints what is free, and returns where the stack is now.
+/// Paints what is free.
 #[inline(never)]
-pub fn paint() -> usize {
+pub fn paint() {
     let top = pointer() - SPARE;
     let mut word = bottom();
     while word < top {
@@ -33,7 +35,6 @@ pub fn paint() -> usize {
         unsafe { (word as *mut u32).write_volatile(PAINT) };
         word += 4;
     }
-    top + SPARE
 }
 
 /// Bytes used below a place since the paint.

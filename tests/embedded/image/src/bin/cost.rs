@@ -55,6 +55,8 @@ struct Worst {
     receive: u32,
     frames: u32,
     received: u32,
+    /// Where the stack was when a tick began.
+    top: usize,
 }
 
 struct Bench<'a, const PEERS: usize> {
@@ -102,7 +104,10 @@ impl<const PEERS: usize> Bench<'_, PEERS> {
             }
             // A tick begins some microseconds after its step, and then everything is read between two steps.
             let now = at.plus(Duration::from_micros(3));
-            let (answer, count) = counter.count(|| unit.tick(now));
+            let (answer, count) = counter.count(|| {
+                worst.top = stack::pointer();
+                unit.tick(now)
+            });
             let place = match (second, phase) {
                 (Second::Usual, 0) => &mut worst.send,
                 (Second::Usual, 1..=4 | 6..=9) => &mut worst.quiet,
@@ -125,7 +130,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
     for steps in [50, 100, 400] {
         let mut config = Config::car(EGO);
         config.prediction.horizon = Duration::from_millis(10 * (steps - 2));
-        let from = stack::paint();
+        stack::paint();
         let (started, count) = counter.count(|| unit.start(&config));
         assert!(started.is_ok());
         hprintln!("start {} {} {}", PEERS, steps, count);
@@ -148,7 +153,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
             ("late", worst.late),
             ("receive", worst.receive),
             ("receive-mean", worst.received / worst.frames),
-            ("stack", stack::depth(from) as u32),
+            ("stack", stack::depth(worst.top) as u32),
         ] {
             hprintln!("{} {} {} {}", name, PEERS, steps, count);
         }

@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# firmware.sh: the firmware builds in every form, nothing in it can panic, it ticks in the emulator, a replayed log gives the
+# same frames as on this host, and what it costs is no more than it was. `./ci.sh firmware` runs it.
+# Exit code 77: something that it needs is not there, and cannot be had.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+ecu=thumbv7em-none-eabihf
+small=thumbv6m-none-eabi
+built=${CARGO_TARGET_DIR:-target}
+work=$built/firmware
+export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
+
+skip() {
+    echo "SKIPPED: $*"
+    exit 77
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
+need() {
+    command -v "$1" >/dev/null && return
+    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
+}
+
+need qemu-system-arm qemu-system-arm
+need arm-none-eabi-nm binutils-arm-none-eabi
+bin=$(scripts/install-target.sh $ecu) || skip "no standard library for $ecu can be had on this machine"
+bin=$(scripts/install-target.sh $small) || skip "no standard library for $small can be had on this machine"
+PATH=$bin:$PATH
+mkdir -p "$work"
+
+firmware() {
+    cargo build --locked --quiet --profile firmware --target $ecu --bin holdover-ecu "$@"
+}
+
+emulate() {
+    timeout "${seconds:-60}" qemu-system-arm -nographic -monitor none "$@"
+}
+
+echo "-- the image in its forms"
+for features in bxcan log bxcan,log ''; do
+    cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$features" -- -D warnings
+    firmware --features "$features"
+    size -A "$built/$ecu/firmware/holdover-ecu" | awk -v features="${features:-none}" '
+        $1 == ".vector_table" || $1 == ".text" || $1 == ".rodata" || $1 == ".data" { flash += $2 }
+        $1 == ".data" || $1 == ".bss" || $1 == ".uninit" { ram += $2 }
+        END { printf "  features %-10s flash %6d  static RAM %6d\n", features, flash, ram }'
+done
+image=$built/$ecu/firmware/holdover-ecu
+# The idle unit is zero throughout. A field whose nothing is not zero would put the whole unit into flash as well.
+arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
+    echo "the static UNIT does not lie in .bss: a field of the idle unit is not zero in memory (src/held.rs)"
+    exit 1
+}
+
+echo "-- no panic in the image, from its start on"
+firmware --features no-panic
+echo "  linked: nothing reaches the panic handler"
+if RUSTFLAGS='--cfg seeded_panic' firmware --features no-panic --target-dir "$work/seeded" 2>"$work/seeded.txt"; then
+    echo "the check does not work: an image with a panic in it was linked"
+    exit 1
+fi
+grep -q 'undefined symbol: the_firmware_can_panic' "$work/seeded.txt" || {
+    echo "the image with a panic in it failed for another reason:"
+    cat "$work/seeded.txt"
+    exit 1
+}
+echo "  and with a panic put in, not linked"
+
+echo "-- the image in the emulator, for 5 s"
+firmware # the one without features again
+# A frame of ours that is too short; the unit has to count it, in the page of `Health` for cause 0.
+{ sleep 1; printf 't480100\r'; sleep 4; } | seconds=5 emulate -M netduinoplus2 -serial stdio -kernel "$image" \
+    >"$work/serial.txt" 2>/dev/null || [ $? = 124 ]
+tr '\r' '\n' <"$work/serial.txt" | awk '
+    /^t[0-9A-F]+$/ { frames++ }
+    # MotionCommand every 10 ms; Health every 100 ms, page after page, the cause in bits 12 to 19 and its count behind it.
+    /^t4828/ { commands++ }
+    /^t498/ && substr($0, 8, 1) == "0" && substr($0, 11, 1) == "0" && substr($0, 10, 1) == "1" { counted = 1 }
+    END {
+        printf "  %d frames, %d of them commands; the short frame is %s\n", frames, commands, counted ? "counted" : "not counted"
+        exit !(commands > 300 && commands < 560 && counted)
+    }'
+
+echo "-- a log replayed, against this host"
+cd tests/embedded
+cargo build --locked --quiet --release -p holdover-log
+holdover_log=$PWD/${CARGO_TARGET_DIR:-target}/release/holdover-log
+replays=$PWD/${CARGO_TARGET_DIR:-target}/replay
+mkdir -p "$replays"
+"$holdover_log" record "$replays" | sed 's/^/  /'
+while read -r target machine host; do
+    cargo build --locked --quiet --profile firmware --target "$target" --bin replay
+    program=$PWD/${CARGO_TARGET_DIR:-target}/$target/firmware/replay
+    rm -f "$replays/sent.bin"
+    (cd "$replays" && emulate -M "$machine" -serial none -semihosting-config enable=on,target=native -kernel "$program")
+    printf '  %s on %s: ' "$target" "$machine"
+    "$holdover_log" compare "$replays/$host" "$replays/sent.bin"
+done <<TEXT
+$ecu netduinoplus2 host-8-8-400.bin
+$small microbit host-3-4-150.bin
+TEXT
+
+echo "-- what it costs, in instructions and bytes"
+./cost.sh
