@@ -19,56 +19,17 @@ use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
 
+mod answer;
 mod caution;
 mod coordinate;
 mod inbox;
 mod outbox;
 mod range;
 
+pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
+
 /// A view of the range sensor older than this is not driven by.
 const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
-
-/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), route (2), status.
-pub const MAX_FRAMES: usize = 16;
-
-/// What became of a frame that was not refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Reception {
-    /// Not one of ours.
-    Foreign,
-    /// Part of a message whose other parts are still to come.
-    Pending,
-    /// A message was taken in.
-    Taken,
-}
-
-/// Where the target is now, as the unit believes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Estimate {
-    /// Position and speed at the tick.
-    pub reading: Reading,
-    /// Age of the newest sample that it rests on.
-    pub age: Duration,
-    /// Whether the link to the target is on.
-    pub link_on: bool,
-    /// What is certain of it at the tick.
-    pub bound: Option<Bound>,
-}
-
-/// The answer of one tick.
-#[derive(Clone, Debug)]
-pub struct Answer {
-    /// The command to the actuators.
-    pub command: Command,
-    /// The mode that it was computed in.
-    pub mode: Mode,
-    /// The estimate of the target, if there is one.
-    pub estimate: Option<Estimate>,
-    /// The frames to send, in this order.
-    pub frames: Vec<Frame, MAX_FRAMES>,
-}
 
 /// The onboard unit for up to `PEERS` peers with a history of `SAMPLES` samples each and horizons of up to `STEPS` steps.
 ///

@@ -1,0 +1,52 @@
+//! What the unit's two doors give back: what became of a frame, and the answer of a tick.
+
+use heapless::Vec;
+
+use crate::controller::Mode;
+use crate::estimator::Reading;
+use crate::estimator::bound::Bound;
+use crate::time::Duration;
+use crate::wire::Frame;
+use crate::wire::command::Command;
+
+/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), route (2), status.
+pub const MAX_FRAMES: usize = 16;
+
+/// What became of a frame that was not refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Reception {
+    /// Not one of ours.
+    Foreign,
+    /// Part of a message whose other parts are still to come.
+    Pending,
+    /// A message was taken in.
+    Taken,
+}
+
+/// Where the target is now, as the unit believes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Estimate {
+    /// Position and speed at the tick.
+    pub reading: Reading,
+    /// Age of the newest sample that it rests on.
+    pub age: Duration,
+    /// Whether the link to the target is on.
+    pub link_on: bool,
+    /// What is certain of it at the tick.
+    pub bound: Option<Bound>,
+}
+
+/// The answer of one tick.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The command to the actuators.
+    pub command: Command,
+    /// The mode that it was computed in.
+    pub mode: Mode,
+    /// The estimate of the target, if there is one.
+    pub estimate: Option<Estimate>,
+    /// The frames to send, in this order.
+    pub frames: Vec<Frame, MAX_FRAMES>,
+}
