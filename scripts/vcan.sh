@@ -130,7 +130,7 @@ install_packages() {
 run_in_uml() {
     local job lines=() number status kernel memory_in=/dev/shm
     job=$(mktemp -d)
-    trap 'rm -rf "$job"' EXIT
+    trap "rm -rf '$job'" EXIT
     for number in "${!serial[@]}"; do
         lines+=("ssl$number=tty:${serial[number]}")
         export "VCAN_SERIAL$number=/dev/ttyS$number"
@@ -153,7 +153,7 @@ run_in_uml() {
         rootflags=/ rw "init=$(realpath "$0")" "VCAN_JOB=$job" "uml_dir=$job" con=null con0=null,fd:1 con1=null,fd:3 \
         con2=null,fd:4 ssl=null "${lines[@]}" quiet </dev/null >"$job/log" 2>&1 &
     kernel=$!
-    trap 'kill $kernel 2>/dev/null || true; wait $kernel; exit 143' INT TERM
+    trap "kill $kernel 2>/dev/null || true; exit 143" INT TERM
     status=0
     wait "$kernel" || status=$?
     exec 3>&- 4>&-
