@@ -9,33 +9,29 @@ mod board;
 /// The shell around the unit. It holds no logic of its own: receive, tick, transmit.
 #[cfg(target_os = "none")]
 mod firmware {
-    use crate::board::{self, Arrivals, Board};
+    use crate::board::{self, Board};
     use embedded_hal::digital::OutputPin;
     use holdover::health::Incident;
     use holdover::wire::StationHash;
     use holdover::{Config, OnboardUnit};
 
-    type Unit = OnboardUnit<8, 8, 400>;
+    pub type Unit = OnboardUnit<8, 8, 400>;
 
     /// What an integrator calibrates.
     const CONFIG: Config = Config::car(StationHash(1));
 
-    #[cortex_m_rt::entry]
-    fn start() -> ! {
-        // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
-        static mut UNIT: Unit = Unit::idle();
-        static mut ARRIVALS: Arrivals = Arrivals::new();
-        let unit = UNIT;
-        let (Ok(()), Some(mut board)) = (unit.start(&CONFIG), Board::start(ARRIVALS)) else { board::stop() };
+    /// Called by the board when it has started.
+    pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {
+        let (Ok(()), Some(mut board)) = (unit.start(&CONFIG), board) else { board::stop() };
         unit.note(Incident::Restart, board.restarts);
         let mut log = crate::log::Log::new();
         loop {
-            while let Some((at, frame)) = board.inbox.next() {
+            while let Some((at, frame)) = board.receive() {
                 // A refusal is counted in the unit, and its Health message tells.
                 log.received(unit.receive(at, &frame));
             }
             if let Some(now) = board.tick() {
-                for (incident, times) in board.outbox.incidents() {
+                for (incident, times) in board.incidents() {
                     unit.note(incident, times);
                 }
                 let Ok(()) = board.busy.set_high();
@@ -45,7 +41,7 @@ mod firmware {
                 let Ok(()) = board.busy.set_low();
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.outbox.push(frame);
+                    board.send(frame);
                 }
                 board.watchdog.feed();
             }
@@ -89,8 +85,6 @@ mod log {
         }
     }
 
-    #[cfg(feature = "log")]
-    use defmt_semihosting as _;
     #[cfg(feature = "log")]
     defmt::timestamp!("{=u64:us}", crate::board::now().as_micros());
 }
