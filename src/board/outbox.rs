@@ -8,6 +8,17 @@ use holdover::health::Incident;
 /// Frames that may wait: twice what one tick sends at most.
 const CAPACITY: usize = 32;
 
+/// What became of the oldest frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// There is none.
+    Nothing,
+    /// The port has taken it.
+    Taken,
+    /// The port takes none now.
+    Full,
+}
+
 /// A queue of the port's frames.
 pub struct Outbox<F> {
     waiting: Deque<F, CAPACITY>,
@@ -26,23 +37,19 @@ impl<F: Frame> Outbox<F> {
         self.dropped = self.dropped.saturating_add(u32::from(!queued));
     }
 
-    /// Gives the port the oldest frame; whether it took one.
-    pub fn pass(&mut self, port: &mut impl Port<Frame = F>) -> bool {
-        let Some(frame) = self.waiting.front_mut() else { return false };
+    /// Gives the port the oldest frame.
+    pub fn pass(&mut self, port: &mut impl Port<Frame = F>) -> Pass {
+        let Some(frame) = self.waiting.front_mut() else { return Pass::Nothing };
         match port.transmit(frame) {
             // A frame that this one took the place of.
             Ok(Some(back)) => *frame = back,
-            Err(nb::Error::WouldBlock) => return false,
+            Err(nb::Error::WouldBlock) => return Pass::Full,
             result => {
                 self.dropped = self.dropped.saturating_add(u32::from(result.is_err()));
                 self.waiting.pop_front();
             }
         }
-        true
-    }
-
-    pub fn is_empty(&self) -> bool {
-        self.waiting.is_empty()
+        Pass::Taken
     }
 
     /// What was lost since the last call, and how often; to be called every period. Behind a port that left the bus nothing

@@ -4,9 +4,6 @@ use embedded_can::nb::Can;
 
 /// A CAN controller, or a serial CAN adapter.
 pub trait Port: Can {
-    /// Moves on what is being sent; whether something is left of it.
-    fn pump(&mut self) -> bool;
-
     /// Whether the controller has left the bus, after too many errors, since the last call. To be called every period: a
     /// controller that does not come back by itself is brought back by this.
     fn left_bus(&mut self) -> bool;

@@ -70,14 +70,14 @@ impl Select for Bxcan {
         let _ = can.enable_non_blocking();
         Self { can, was_off: false }
     }
-}
 
-impl Port for Bxcan {
     /// The mailboxes send by themselves.
     fn pump(&mut self) -> bool {
         false
     }
+}
 
+impl Port for Bxcan {
     /// An absence that begins and ends between two calls is not seen: it lasts 2.8 ms at least.
     fn left_bus(&mut self) -> bool {
         let is_off = CAN1_ESR.read() & BUS_OFF != 0;

@@ -20,7 +20,7 @@ mod watchdog;
 #[cfg(feature = "log")]
 pub use clock::now;
 
-use crate::board::outbox::Outbox;
+use crate::board::outbox::{Outbox, Pass};
 use crate::board::port::Port;
 use crate::firmware::{self, Unit};
 use clock::Ticks;
@@ -101,8 +101,14 @@ impl Board {
 
     /// Sends what can be sent, and sleeps if there is nothing else to do.
     pub fn idle(&mut self) {
-        while port::with(|port| self.outbox.pass(port)) == Some(true) {}
-        if port::with(Port::pump) == Some(true) || !self.outbox.is_empty() {
+        // One frame at a time, so that interrupts are off for no longer than one takes.
+        let full = loop {
+            match port::with(|port| self.outbox.pass(port)) {
+                Some(Pass::Taken) => {}
+                other => break other == Some(Pass::Full),
+            }
+        };
+        if full || port::with(Select::pump) == Some(true) {
             return;
         }
         // With interrupts off nothing can arrive between the question and the sleep, and what arrives in it ends it.

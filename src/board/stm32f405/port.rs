@@ -19,6 +19,8 @@ pub trait Select: Port + Sized {
     const INTERRUPT: i16;
     /// Puts it into operation.
     fn start(clocks: &Clocks) -> Self;
+    /// Moves on what is being sent; whether something is left of it.
+    fn pump(&mut self) -> bool;
 }
 
 /// A frame of the port that was selected.

@@ -72,9 +72,7 @@ impl Select for Slcan {
     fn start(clocks: &Clocks) -> Self {
         Self { serial: Serial::start(clocks), line: Line::new(), outgoing: Text::new() }
     }
-}
 
-impl Port for Slcan {
     fn pump(&mut self) -> bool {
         while let Some(&byte) = self.outgoing.last() {
             if !self.serial.write(byte) {
@@ -84,7 +82,9 @@ impl Port for Slcan {
         }
         false
     }
+}
 
+impl Port for Slcan {
     /// The adapter keeps the state of its bus to itself.
     fn left_bus(&mut self) -> bool {
         false
