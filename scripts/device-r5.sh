@@ -45,7 +45,7 @@ power_on='{"execute": "qmp_capabilities"}
 
 # One thread for all cores, because one processor is what user-mode Linux has. The four application cores stay off.
 exec qemu-system-aarch64 -accel tcg,thread=single,tb-size=16 -M xlnx-zcu102,canbus0=can0 -smp 5 -S \
-    -display none -audiodev none,id=none -global driver=xlnx.v-dp,property=audiodev,value=none -serial none -monitor none "${flash[@]}" \
+    -display none -audiodev none,id=none -serial none -monitor none "${flash[@]}" \
     -global 'xlnx-zynqmp.boot-cpu=rpu-cpu[0]' -device "loader,file=$image,cpu-num=4" \
     -object can-bus,id=can0 -object "can-host-socketcan,id=host,if=$can,canbus=can0" \
     -qmp stdio "$@" <<<"$power_on" >/dev/null

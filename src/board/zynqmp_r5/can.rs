@@ -44,7 +44,9 @@ pub mod offset {
 /// Bits of the control register.
 pub const RESET: u32 = 1 << 0;
 pub const ENABLE: u32 = 1 << 1;
-/// The status register's: the transmit queue (64 frames) is full.
+/// The status register's: the reset is over, and the controller can be set up.
+pub const CONFIGURING: u32 = 1 << 0;
+/// The transmit queue (64 frames) is full.
 pub const TRANSMIT_FULL: u32 = 1 << 10;
 /// The events'.
 pub const RECEIVED: u32 = 1 << 4;
@@ -95,6 +97,8 @@ impl<R: Registers> Controller<R> {
 
     /// From a reset onto the bus. The controller joins when that has been idle for a moment.
     fn join(&mut self) {
+        // A reset takes some of the controller's clocks, which are slower than the core's.
+        let _ = (0..1000).any(|_| self.registers.read(offset::STATUS) & CONFIGURING != 0);
         self.registers.write(offset::PRESCALER, QUANTUM);
         self.registers.write(offset::TIMING, BIT);
         self.registers.write(offset::FILTERS, 0);
