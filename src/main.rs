@@ -22,8 +22,13 @@ mod firmware {
 
     /// Called by the board when it has started.
     pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {
-        let (Ok(()), Some(mut board)) = (unit.start(&CONFIG), board) else { board::stop() };
+        let (Ok(()), Some(board)) = (unit.start(&CONFIG), board) else { board::stop() };
         unit.note(Incident::Restart, board.restarts);
+        drive(unit, board)
+    }
+
+    #[cfg(not(feature = "lock-step"))]
+    fn drive(unit: &mut Unit, mut board: Board) -> ! {
         let mut log = crate::log::Log::new();
         loop {
             while let Some((at, frame)) = board.receive() {
@@ -48,15 +53,44 @@ mod firmware {
             board.idle();
         }
     }
+
+    /// For hardware in the loop: the bus's time synchronisation ticks the unit, and the timer only feeds the watchdog, since
+    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's.
+    #[cfg(feature = "lock-step")]
+    fn drive(unit: &mut Unit, mut board: Board) -> ! {
+        let mut log = crate::log::Log::new();
+        let mut steps = holdover::LockStep::new();
+        let mut has_begun = false;
+        loop {
+            while let Some((_, frame)) = board.receive() {
+                let Ok(()) = board.busy.set_high();
+                let answer = steps.receive(unit, &frame);
+                let Ok(()) = board.busy.set_low();
+                let Some(answer) = answer else { continue };
+                has_begun = true;
+                log.ticked(answer.mode);
+                for frame in &answer.frames {
+                    board.send(frame);
+                }
+            }
+            if board.tick().is_some() {
+                for (incident, times) in board.incidents() {
+                    unit.note(incident, if has_begun { times } else { 0 });
+                }
+                board.watchdog.feed();
+            }
+            board.idle();
+        }
+    }
 }
 
 /// What goes into the log: refusals, and changes of the mode. Without the feature `log` nothing does, and nothing is left of
 /// this in the image.
 #[cfg(target_os = "none")]
 mod log {
-    use holdover::Reception;
     use holdover::controller::Mode;
-    use holdover::health::Refusal;
+    #[cfg(not(feature = "lock-step"))]
+    use holdover::{Reception, health::Refusal};
 
     pub struct Log {
         mode: Mode,
@@ -67,6 +101,7 @@ mod log {
             Self { mode: Mode::Standby }
         }
 
+        #[cfg(not(feature = "lock-step"))] // there the shell does not see what became of a frame
         pub fn received(&mut self, result: Result<Reception, Refusal>) {
             #[cfg(feature = "log")]
             if let Err(cause) = result {
