@@ -1,20 +1,25 @@
-//! Linker arguments of the firmware. They stand here and not in `.cargo/config.toml`, because a `RUSTFLAGS` from the
-//! environment replaces that file's flags without a word, and an image without `link.x` has no vector table.
+//! Linker arguments of the firmware, and the board that it is for, by the target. They stand here and not in
+//! `.cargo/config.toml`, because a `RUSTFLAGS` from the environment replaces that file's flags without a word, and an image
+//! without its linker script has no vector table.
 
-use std::{env, fs, path::PathBuf};
+use std::{env, path::PathBuf};
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
-    println!("cargo::rerun-if-changed=memory.x");
     // Set by the check that a panic is found.
     println!("cargo::rustc-check-cfg=cfg(seeded_panic)");
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("none") {
-        return;
-    }
-    // `link.x` of cortex-m-rt includes `memory.x` by name, so the linker has to find it beside its own files.
-    let out = PathBuf::from(env::var("OUT_DIR").expect("cargo sets OUT_DIR for build scripts"));
-    fs::copy("memory.x", out.join("memory.x")).expect("memory.x lies beside build.rs and OUT_DIR can be written");
-    println!("cargo::rustc-link-search={}", out.display());
+    println!("cargo::rustc-check-cfg=cfg(board, values(\"stm32f405\", \"zynqmp_r5\"))");
+    // The linker script: that of cortex-m-rt, which takes in our `memory.x`, or one of ours. The linker looks for either by
+    // its name.
+    let (board, ours) = match env::var("TARGET").as_deref() {
+        Ok("thumbv7em-none-eabihf") => ("stm32f405", "memory.x"),
+        Ok("armv7r-none-eabihf") => ("zynqmp_r5", "src/board/zynqmp_r5/link.x"),
+        _ => return,
+    };
+    let ours = PathBuf::from(env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR")).join(ours);
+    println!("cargo::rerun-if-changed={}", ours.display());
+    println!("cargo::rustc-cfg=board=\"{board}\"");
+    println!("cargo::rustc-link-search={}", ours.parent().expect("a file lies in a folder").display());
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
     if env::var_os("CARGO_FEATURE_LOG").is_some() {
         println!("cargo::rustc-link-arg-bins=-Tdefmt.x");

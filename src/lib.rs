@@ -35,6 +35,7 @@ pub mod estimator;
 pub mod fixed;
 pub mod health;
 mod held;
+pub mod lockstep;
 pub mod parameters;
 pub mod peers;
 pub mod time;
@@ -44,4 +45,5 @@ pub mod wire;
 
 pub use config::{Config, ConfigError};
 pub use coordination::MapError;
+pub use lockstep::LockStep;
 pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};

@@ -9,33 +9,34 @@ mod board;
 /// The shell around the unit. It holds no logic of its own: receive, tick, transmit.
 #[cfg(target_os = "none")]
 mod firmware {
-    use crate::board::{self, Arrivals, Board};
+    use crate::board::{self, Board};
     use embedded_hal::digital::OutputPin;
     use holdover::health::Incident;
     use holdover::wire::StationHash;
     use holdover::{Config, OnboardUnit};
 
-    type Unit = OnboardUnit<8, 8, 400>;
+    pub type Unit = OnboardUnit<8, 8, 400>;
 
     /// What an integrator calibrates.
     const CONFIG: Config = Config::car(StationHash(1));
 
-    #[cortex_m_rt::entry]
-    fn start() -> ! {
-        // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
-        static mut UNIT: Unit = Unit::idle();
-        static mut ARRIVALS: Arrivals = Arrivals::new();
-        let unit = UNIT;
-        let (Ok(()), Some(mut board)) = (unit.start(&CONFIG), Board::start(ARRIVALS)) else { board::stop() };
+    /// Called by the board when it has started.
+    pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {
+        let (Ok(()), Some(board)) = (unit.start(&CONFIG), board) else { board::stop() };
         unit.note(Incident::Restart, board.restarts);
+        drive(unit, board)
+    }
+
+    #[cfg(not(feature = "lock-step"))]
+    fn drive(unit: &mut Unit, mut board: Board) -> ! {
         let mut log = crate::log::Log::new();
         loop {
-            while let Some((at, frame)) = board.inbox.next() {
+            while let Some((at, frame)) = board.receive() {
                 // A refusal is counted in the unit, and its Health message tells.
                 log.received(unit.receive(at, &frame));
             }
             if let Some(now) = board.tick() {
-                for (incident, times) in board.outbox.incidents() {
+                for (incident, times) in board.incidents() {
                     unit.note(incident, times);
                 }
                 let Ok(()) = board.busy.set_high();
@@ -45,7 +46,36 @@ mod firmware {
                 let Ok(()) = board.busy.set_low();
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.outbox.push(frame);
+                    board.send(frame);
+                }
+                board.watchdog.feed();
+            }
+            board.idle();
+        }
+    }
+
+    /// For hardware in the loop: the bus's time synchronisation ticks the unit, and the timer only feeds the watchdog, since
+    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's.
+    #[cfg(feature = "lock-step")]
+    fn drive(unit: &mut Unit, mut board: Board) -> ! {
+        let mut log = crate::log::Log::new();
+        let mut steps = holdover::LockStep::new();
+        let mut has_begun = false;
+        loop {
+            while let Some((_, frame)) = board.receive() {
+                let Ok(()) = board.busy.set_high();
+                let answer = steps.receive(unit, &frame);
+                let Ok(()) = board.busy.set_low();
+                let Some(answer) = answer else { continue };
+                has_begun = true;
+                log.ticked(answer.mode);
+                for frame in &answer.frames {
+                    board.send(frame);
+                }
+            }
+            if board.tick().is_some() {
+                for (incident, times) in board.incidents() {
+                    unit.note(incident, if has_begun { times } else { 0 });
                 }
                 board.watchdog.feed();
             }
@@ -58,9 +88,9 @@ mod firmware {
 /// this in the image.
 #[cfg(target_os = "none")]
 mod log {
-    use holdover::Reception;
     use holdover::controller::Mode;
-    use holdover::health::Refusal;
+    #[cfg(not(feature = "lock-step"))]
+    use holdover::{Reception, health::Refusal};
 
     pub struct Log {
         mode: Mode,
@@ -71,6 +101,7 @@ mod log {
             Self { mode: Mode::Standby }
         }
 
+        #[cfg(not(feature = "lock-step"))] // there the shell does not see what became of a frame
         pub fn received(&mut self, result: Result<Reception, Refusal>) {
             #[cfg(feature = "log")]
             if let Err(cause) = result {
@@ -89,8 +120,6 @@ mod log {
         }
     }
 
-    #[cfg(feature = "log")]
-    use defmt_semihosting as _;
     #[cfg(feature = "log")]
     defmt::timestamp!("{=u64:us}", crate::board::now().as_micros());
 }

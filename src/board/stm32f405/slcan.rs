@@ -5,9 +5,10 @@
 //! same for remote frames, without data. Everything else (set-up commands, acknowledgements) is not for the unit.
 
 use super::clocks::Clocks;
-use super::frame::CanFrame;
-use super::port::Port;
+use super::port::Select;
 use super::serial::{self, Overrun, Serial};
+use crate::board::frame::CanFrame;
+use crate::board::port::Port;
 use embedded_can::nb::Can;
 use embedded_can::{Error, ErrorKind, ExtendedId, Frame, Id, StandardId};
 use heapless::Vec;
@@ -65,7 +66,7 @@ impl Can for Slcan {
     }
 }
 
-impl Port for Slcan {
+impl Select for Slcan {
     const INTERRUPT: i16 = serial::INTERRUPT;
 
     fn start(clocks: &Clocks) -> Self {
@@ -81,9 +82,11 @@ impl Port for Slcan {
         }
         false
     }
+}
 
+impl Port for Slcan {
     /// The adapter keeps the state of its bus to itself.
-    fn is_bus_off(&self) -> bool {
+    fn left_bus(&mut self) -> bool {
         false
     }
 }

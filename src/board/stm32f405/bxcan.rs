@@ -2,8 +2,9 @@
 //! linted; it has run on no chip, and the emulator has no model of it.
 
 use super::clocks::Clocks;
-use super::port::Port;
+use super::port::Select;
 use super::registers::{CAN1_ESR, CAN1_MCR, GPIOB_AFRH, GPIOB_MODER, RCC_AHB1ENR, RCC_APB1ENR};
+use crate::board::port::Port;
 use bxcan::filter::Mask32;
 use bxcan::{Can, Fifo, FilterOwner, Instance, Interrupt, RegisterBlock};
 use embedded_can::nb;
@@ -33,22 +34,25 @@ unsafe impl FilterOwner for Can1 {
 }
 
 /// The controller as a port.
-pub struct Bxcan(Can<Can1>);
+pub struct Bxcan {
+    can: Can<Can1>,
+    was_off: bool,
+}
 
 impl nb::Can for Bxcan {
     type Frame = bxcan::Frame;
     type Error = bxcan::OverrunError;
 
     fn transmit(&mut self, frame: &bxcan::Frame) -> ::nb::Result<Option<bxcan::Frame>, bxcan::OverrunError> {
-        nb::Can::transmit(&mut self.0, frame)
+        nb::Can::transmit(&mut self.can, frame)
     }
 
     fn receive(&mut self) -> ::nb::Result<bxcan::Frame, bxcan::OverrunError> {
-        nb::Can::receive(&mut self.0)
+        nb::Can::receive(&mut self.can)
     }
 }
 
-impl Port for Bxcan {
+impl Select for Bxcan {
     /// CAN1_RX0.
     const INTERRUPT: i16 = 20;
 
@@ -64,15 +68,21 @@ impl Port for Bxcan {
         can.enable_interrupt(Interrupt::Fifo0MessagePending);
         // It joins the bus when that has been idle for a moment; the unit does not wait for it.
         let _ = can.enable_non_blocking();
-        Self(can)
+        Self { can, was_off: false }
     }
 
     /// The mailboxes send by themselves.
     fn pump(&mut self) -> bool {
         false
     }
+}
 
-    fn is_bus_off(&self) -> bool {
-        CAN1_ESR.read() & BUS_OFF != 0
+impl Port for Bxcan {
+    /// An absence that begins and ends between two calls is not seen: it lasts 2.8 ms at least.
+    fn left_bus(&mut self) -> bool {
+        let is_off = CAN1_ESR.read() & BUS_OFF != 0;
+        let left = is_off && !self.was_off;
+        self.was_off = is_off;
+        left
     }
 }

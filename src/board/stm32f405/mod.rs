@@ -1,0 +1,150 @@
+//! The STM32F405, a Cortex-M4F: bytes or frames of a bus and the core's timer enter, frames with their time of arrival and
+//! ticks leave.
+//!
+//! Its CAN traffic goes over a serial CAN adapter on USART1 ([`slcan`]), or with the feature `bxcan` over the chip's own
+//! controller; both are `embedded-can`'s trait to the rest.
+
+#[cfg(feature = "bxcan")]
+mod bxcan;
+mod clock;
+mod clocks;
+mod pin;
+mod port;
+mod registers;
+#[cfg(not(feature = "bxcan"))]
+mod serial;
+#[cfg(not(feature = "bxcan"))]
+mod slcan;
+mod watchdog;
+
+#[cfg(feature = "log")]
+pub use clock::now;
+
+use crate::board::outbox::{Outbox, Pass};
+use crate::board::port::Port;
+use crate::firmware::{self, Unit};
+use clock::Ticks;
+use clocks::Clocks;
+use cortex_m::interrupt;
+use cortex_m::peripheral::{NVIC, Peripherals};
+use cortex_m_rt::exception;
+#[cfg(feature = "log")]
+use defmt_semihosting as _;
+use embedded_can::Frame;
+use holdover::health::Incident;
+use holdover::time::Instant;
+use pin::Pin;
+use port::{Arrivals, Inbox, PortFrame, Select};
+use watchdog::Watchdog;
+
+#[cfg(feature = "bxcan")]
+type Selected = bxcan::Bxcan;
+#[cfg(not(feature = "bxcan"))]
+type Selected = slcan::Slcan;
+
+/// Everything that the shell needs of the hardware.
+pub struct Board {
+    /// High while a tick runs.
+    pub busy: Pin,
+    /// To be fed by every finished tick.
+    pub watchdog: Watchdog,
+    /// How often the watchdog has restarted the unit.
+    pub restarts: u32,
+    inbox: Inbox,
+    outbox: Outbox<PortFrame>,
+    ticks: Ticks,
+}
+
+#[cortex_m_rt::entry]
+fn start() -> ! {
+    // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
+    static mut UNIT: Unit = Unit::idle();
+    static mut ARRIVALS: Arrivals = Arrivals::new();
+    firmware::run(UNIT, Board::start(ARRIVALS))
+}
+
+impl Board {
+    /// Starts everything. `None` if it was started before, or restarted too often to be trusted.
+    fn start(arrivals: &'static mut Arrivals) -> Option<Self> {
+        let peripherals = Peripherals::take()?;
+        let restarts = watchdog::restarts()?;
+        let clocks = Clocks::start();
+        let inbox = port::start(&clocks, arrivals);
+        clock::start(peripherals.SYST, clocks.core_hz);
+        // SAFETY: the port's interrupt has its handler, below, and nothing relies on its being off.
+        unsafe { NVIC::unmask(Number(Selected::INTERRUPT)) };
+        let (busy, watchdog) = (Pin::start(), Watchdog::start());
+        Some(Self { busy, watchdog, restarts, inbox, outbox: Outbox::new(), ticks: Ticks::new() })
+    }
+
+    /// The next frame, and when it arrived.
+    pub fn receive(&mut self) -> Option<(Instant, impl Frame + use<>)> {
+        self.inbox.next()
+    }
+
+    /// Takes a frame to be sent.
+    pub fn send(&mut self, frame: &impl Frame) {
+        self.outbox.push(frame);
+    }
+
+    /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
+    pub fn tick(&mut self) -> Option<Instant> {
+        self.ticks.next()
+    }
+
+    /// What was lost since the last call, and how often; to be called every period.
+    pub fn incidents(&mut self) -> [(Incident, u32); 4] {
+        let [overrun, receive] = port::lost();
+        let [transmit, bus_off] = self.outbox.lost(port::with(Port::left_bus) == Some(true));
+        [overrun, receive, transmit, bus_off]
+    }
+
+    /// Sends what can be sent, and sleeps if there is nothing else to do.
+    pub fn idle(&mut self) {
+        // One frame at a time, so that interrupts are off for no longer than one takes.
+        let full = loop {
+            match port::with(|port| self.outbox.pass(port)) {
+                Some(Pass::Taken) => {}
+                other => break other == Some(Pass::Full),
+            }
+        };
+        if full || port::with(Select::pump) == Some(true) {
+            return;
+        }
+        // With interrupts off nothing can arrive between the question and the sleep, and what arrives in it ends it.
+        interrupt::free(|_| {
+            if self.inbox.is_empty() && !self.ticks.is_due() {
+                cortex_m::asm::wfi();
+            }
+        });
+    }
+}
+
+/// The number of an interrupt.
+#[derive(Clone, Copy)]
+struct Number(i16);
+
+// SAFETY: the only one is the port's, which is a number of this chip's vector table and does not change.
+unsafe impl interrupt::InterruptNumber for Number {
+    fn number(self) -> u16 {
+        self.0 as u16
+    }
+}
+
+/// All interrupts and exceptions without a handler of their own: the port's, and what must never happen.
+#[exception]
+unsafe fn DefaultHandler(number: i16) {
+    if number == Selected::INTERRUPT {
+        port::interrupted();
+    } else {
+        stop();
+    }
+}
+
+/// Stops, with interrupts off, until the watchdog resets the chip; for good if it is not running yet.
+pub fn stop() -> ! {
+    interrupt::disable();
+    loop {
+        cortex_m::asm::nop();
+    }
+}

@@ -1,0 +1,165 @@
+//! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled. The controller sends again by
+//! itself what lost arbitration or was not acknowledged.
+
+use super::layout::Layout;
+use crate::board::frame::CanFrame;
+use crate::board::port::Port;
+use embedded_can::nb::Can;
+use embedded_can::{Error, ErrorKind};
+
+/// The controller's registers, or what a test puts in their place.
+pub trait Registers {
+    /// The word at a byte offset.
+    fn read(&self, offset: usize) -> u32;
+    /// Writes one.
+    fn write(&mut self, offset: usize, word: u32);
+}
+
+/// Their byte offsets.
+pub mod offset {
+    /// Reset and enable.
+    pub const CONTROL: usize = 0x00;
+    /// Nothing, sleep, loop back, or listen only.
+    pub const MODE: usize = 0x04;
+    /// The quantum, in periods of the controller's clock less one.
+    pub const PRESCALER: usize = 0x08;
+    /// Quanta of a bit.
+    pub const TIMING: usize = 0x0c;
+    /// What is so now.
+    pub const STATUS: usize = 0x18;
+    /// What has happened, until it is cleared.
+    pub const EVENTS: usize = 0x1c;
+    /// Which of that interrupts.
+    pub const INTERRUPTS: usize = 0x20;
+    /// Clears events.
+    pub const CLEAR: usize = 0x24;
+    /// The four words of a frame to send; the last one sends it.
+    pub const TRANSMIT: [usize; 4] = [0x30, 0x34, 0x38, 0x3c];
+    /// The four words of the oldest received frame; the last one takes it away.
+    pub const RECEIVE: [usize; 4] = [0x50, 0x54, 0x58, 0x5c];
+    /// Which acceptance filters are on; with none everything is received.
+    pub const FILTERS: usize = 0x60;
+}
+
+/// Bits of the control register.
+pub const RESET: u32 = 1 << 0;
+pub const ENABLE: u32 = 1 << 1;
+/// The status register's: the reset is over, and the controller can be set up.
+pub const CONFIGURING: u32 = 1 << 0;
+/// The transmit queue (64 frames) is full.
+pub const TRANSMIT_FULL: u32 = 1 << 10;
+/// The events'.
+pub const RECEIVED: u32 = 1 << 4;
+pub const OVERRUN: u32 = 1 << 6;
+pub const NOT_EMPTY: u32 = 1 << 7;
+pub const BUS_OFF: u32 = 1 << 9;
+
+/// 500 kbit/s from the 100 MHz that the boot loader gives the controller: quanta of 0.1 µs, 20 a bit, sampled after 17 (85 %).
+const QUANTUM: u32 = 10 - 1;
+/// Before and after the sample point, and how far a resynchronisation moves it; each less one.
+const BIT: u32 = (16 - 1) | (3 - 1) << 4 | (3 - 1) << 7;
+
+/// Periods to stay away after a bus-off. ISO 11898-1 asks for 128 times 11 bits, which are 2.8 ms. The calls of two periods can
+/// be closer together than that, if the first one is late; those of three cannot.
+const ABSENCE: u32 = 2;
+
+/// A frame came before there was room for it, and is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overrun;
+
+impl Error for Overrun {
+    fn kind(&self) -> ErrorKind {
+        ErrorKind::Overrun
+    }
+}
+
+/// The controller as a port.
+pub struct Controller<R> {
+    registers: R,
+    layout: Layout,
+    /// How many periods it still keeps away from the bus.
+    absent: u32,
+}
+
+impl<R: Registers> Controller<R> {
+    /// Puts it into operation.
+    pub fn start(registers: R, layout: Layout) -> Self {
+        let mut controller = Self { registers, layout, absent: 0 };
+        controller.leave();
+        controller.join();
+        controller
+    }
+
+    /// Resets the controller: it is off the bus, and its queues are empty.
+    fn leave(&mut self) {
+        self.registers.write(offset::CONTROL, RESET);
+    }
+
+    /// From a reset onto the bus. The controller joins when that has been idle for a moment.
+    fn join(&mut self) {
+        // A reset takes some of the controller's clocks, which are slower than the core's.
+        let _ = (0..1000).any(|_| self.registers.read(offset::STATUS) & CONFIGURING != 0);
+        self.registers.write(offset::PRESCALER, QUANTUM);
+        self.registers.write(offset::TIMING, BIT);
+        self.registers.write(offset::FILTERS, 0);
+        self.registers.write(offset::INTERRUPTS, 0);
+        self.registers.write(offset::MODE, 0);
+        self.registers.write(offset::CONTROL, ENABLE);
+    }
+}
+
+impl<R: Registers> Can for Controller<R> {
+    type Frame = CanFrame;
+    type Error = Overrun;
+
+    /// Queues a frame, behind those that were queued before it, whatever their identifiers.
+    fn transmit(&mut self, frame: &CanFrame) -> nb::Result<Option<CanFrame>, Overrun> {
+        if self.absent > 0 || self.registers.read(offset::STATUS) & TRANSMIT_FULL != 0 {
+            return Err(nb::Error::WouldBlock);
+        }
+        for (place, word) in offset::TRANSMIT.into_iter().zip(self.layout.words(frame)) {
+            self.registers.write(place, word);
+        }
+        Ok(None)
+    }
+
+    fn receive(&mut self) -> nb::Result<CanFrame, Overrun> {
+        loop {
+            let events = self.registers.read(offset::EVENTS);
+            if events & OVERRUN != 0 {
+                self.registers.write(offset::CLEAR, OVERRUN);
+                return Err(nb::Error::Other(Overrun));
+            }
+            if events & NOT_EMPTY == 0 {
+                return Err(nb::Error::WouldBlock);
+            }
+            let words = offset::RECEIVE.map(|place| self.registers.read(place));
+            // It is set again at once if there are more.
+            self.registers.write(offset::CLEAR, NOT_EMPTY | RECEIVED);
+            if let Some(frame) = self.layout.frame(words) {
+                return Ok(frame);
+            }
+        }
+    }
+}
+
+impl<R: Registers> Port for Controller<R> {
+    /// After a bus-off the controller has to be reset, and then it would join at once; so it is kept away for as long as a
+    /// node has to be. Its own queue is empty then, since what waited there has been overtaken.
+    fn left_bus(&mut self) -> bool {
+        if self.absent > 0 {
+            self.absent -= 1;
+            if self.absent == 0 {
+                self.join();
+            }
+            return false;
+        }
+        let left = self.registers.read(offset::EVENTS) & BUS_OFF != 0;
+        if left {
+            self.registers.write(offset::CLEAR, BUS_OFF);
+            self.leave();
+            self.absent = ABSENCE;
+        }
+        left
+    }
+}

@@ -1,0 +1,46 @@
+//! The time: the core's cycles enter, instants and ticks leave.
+
+use super::registers;
+use holdover::time::Instant;
+
+const TICK_MICROS: u64 = 10_000;
+
+/// The time since the start, and the ticks.
+pub struct Clock {
+    cycles_per_micro: u32,
+    /// The count at the last reading, and the cycles up to it that are not yet a microsecond.
+    seen: u32,
+    rest: u32,
+    micros: u64,
+    /// When the next period begins.
+    next: u64,
+}
+
+impl Clock {
+    pub fn start(cycles_per_micro: u32) -> Self {
+        registers::start_cycles();
+        Self { cycles_per_micro, seen: registers::cycles(), rest: 0, micros: 0, next: TICK_MICROS }
+    }
+
+    /// The time since the start, to a microsecond. To be called more often than the counter wraps (4 s), which the shell's
+    /// loop does.
+    pub fn now(&mut self) -> Instant {
+        let count = registers::cycles();
+        let passed = u64::from(count.wrapping_sub(self.seen)) + u64::from(self.rest);
+        let per_micro = u64::from(self.cycles_per_micro.max(1));
+        self.seen = count;
+        self.rest = (passed % per_micro) as u32;
+        self.micros = self.micros.wrapping_add(passed / per_micro);
+        Instant::from_micros(self.micros)
+    }
+
+    /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up
+    /// for.
+    pub fn tick(&mut self) -> Option<Instant> {
+        let now = self.now();
+        (self.micros >= self.next).then(|| {
+            self.next = (self.micros / TICK_MICROS + 1) * TICK_MICROS;
+            now
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! A real-time core of the ZynqMP, a Cortex-R5F: frames of its CAN controller and the core's cycles enter, frames with their
+//! time of arrival and ticks leave.
+//!
+//! The board is polled: nothing interrupts, and a frame's time of arrival is when the loop came to it, at most one tick's
+//! work late. Clocks, pins and memory are as the chip's boot loader leaves them, which always runs first. It runs in the
+//! emulator; on the chip it has not run.
+
+mod can;
+mod clock;
+mod layout;
+mod pin;
+mod registers;
+mod start;
+
+use super::frame::CanFrame;
+use super::outbox::{Outbox, Pass};
+use super::port::Port;
+use can::Controller;
+use clock::Clock;
+use embedded_can::Frame;
+use embedded_can::nb::Can;
+use holdover::health::Incident;
+use holdover::time::Instant;
+use layout::Layout;
+use pin::Pin;
+use registers::Block;
+
+#[cfg(feature = "log")]
+compile_error!("this board has no way out for a log; build without the feature `log`");
+
+/// Everything that the shell needs of the hardware.
+pub struct Board {
+    /// High while a tick runs.
+    pub busy: Pin,
+    /// To be fed by every finished tick.
+    pub watchdog: Watchdog,
+    /// How often the watchdog has restarted the unit.
+    pub restarts: u32,
+    port: Controller<Block>,
+    outbox: Outbox<CanFrame>,
+    overruns: u32,
+    clock: Clock,
+}
+
+impl Board {
+    /// Starts everything. The start-up code calls it once.
+    fn start() -> Option<Self> {
+        // The chip's real-time cores are numbers 0 and 1. The emulator's model counts the four application cores first; its
+        // CAN controller takes frames in another layout, its cycles are nanoseconds, and it has no pins.
+        let (layout, cycles_per_micro, pins) = match registers::core_number() {
+            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO)),
+            _ => (Layout::Model, 1000, None),
+        };
+        Some(Self {
+            busy: Pin::start(pins),
+            watchdog: Watchdog,
+            restarts: 0,
+            port: Controller::start(Block::CAN0, layout),
+            outbox: Outbox::new(),
+            overruns: 0,
+            clock: Clock::start(cycles_per_micro),
+        })
+    }
+
+    /// The next frame, and when it arrived.
+    pub fn receive(&mut self) -> Option<(Instant, impl Frame + use<>)> {
+        loop {
+            match self.port.receive() {
+                Ok(frame) => return Some((self.clock.now(), frame)),
+                Err(nb::Error::WouldBlock) => return None,
+                Err(nb::Error::Other(can::Overrun)) => self.overruns = self.overruns.saturating_add(1),
+            }
+        }
+    }
+
+    /// Takes a frame to be sent.
+    pub fn send(&mut self, frame: &impl Frame) {
+        self.outbox.push(frame);
+    }
+
+    /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
+    pub fn tick(&mut self) -> Option<Instant> {
+        self.clock.tick()
+    }
+
+    /// What was lost since the last call, and how often; to be called every period.
+    pub fn incidents(&mut self) -> [(Incident, u32); 3] {
+        let overruns = core::mem::take(&mut self.overruns);
+        let [transmit, bus_off] = self.outbox.lost(self.port.left_bus());
+        [(Incident::Overrun, overruns), transmit, bus_off]
+    }
+
+    /// Sends what can be sent. It never sleeps, since nothing would wake it.
+    pub fn idle(&mut self) {
+        while self.outbox.pass(&mut self.port) == Pass::Taken {}
+    }
+}
+
+/// There is none yet. On this chip a watchdog's bite goes to the platform management unit, whose firmware decides what it
+/// resets, so it belongs to whoever configures that.
+pub struct Watchdog;
+
+impl Watchdog {
+    /// A tick is finished.
+    pub fn feed(&mut self) {}
+}
+
+/// Stops for good; no interrupt is enabled.
+pub fn stop() -> ! {
+    loop {
+        core::hint::spin_loop();
+    }
+}
