@@ -280,17 +280,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn driver(&self) -> Driver {
         let law = &self.config.law;
         let wish = self.wish.get();
+        let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
         let aim = match self.association {
             Some((_, gains)) => Aim::Follow {
                 gain: gains.gain,
                 damping: gains.damping,
                 time_gap: wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap),
                 standstill: if self.config.prediction.model.standstill { self.standstill() } else { Distance::ZERO },
+                target_speed,
             },
-            None => Aim::Lead {
-                largest: law.free_road_acceleration,
-                target_speed: wish.map_or(law.target_speed, |wish| wish.target_speed),
-            },
+            None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
         };
         Driver::of_config(&self.config, aim)
     }

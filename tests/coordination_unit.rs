@@ -105,6 +105,36 @@ fn the_next_intersection_is_told_of_when_the_rear_has_left_the_first() {
 }
 
 #[test]
+fn beyond_the_last_intersection_nobody_who_comes_later_is_followed() {
+    let mut junction = settled(two(30.0, false));
+    let mut beyond = 0;
+    junction.run(25.0, |junction| {
+        let driver = &junction.drivers[1];
+        if driver.body.position > CROSSING + HALF + 4.8 + 1.2 {
+            beyond += 1;
+            assert_eq!((driver.follows(), driver.rig.unit.coordination().crossing()), (None, None));
+            assert!(driver.body.speed > 10.9);
+            for message in &driver.last.as_ref().unwrap().all {
+                let Message::Own(Said::Route(route)) = message else { continue };
+                assert_eq!((route.intersection, route.predecessor), (5, Predecessor::None));
+            }
+        }
+    });
+    assert!(beyond > 500 && junction.drivers[0].body.position > 230.0);
+}
+
+#[test]
+fn far_behind_a_target_it_drives_little_faster_than_it_wants() {
+    let mut junction = settled(two(100.0, false));
+    let (mut fastest, mut followed): (f64, bool) = (0.0, false);
+    junction.run(12.0, |junction| {
+        fastest = fastest.max(junction.drivers[0].body.speed);
+        followed |= junction.drivers[0].follows() == Some(2);
+    });
+    assert!(followed && fastest > 12.0 && fastest < 13.3, "{fastest}");
+}
+
+#[test]
 fn a_vehicle_that_only_says_where_on_the_globe_it_is_goes_first() {
     let mut junction = two(-10.0, false);
     junction.drivers[1].says_route = false;

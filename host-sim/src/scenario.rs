@@ -58,6 +58,14 @@ pub struct Leader {
     pub motion: Option<Motion>,
 }
 
+impl Leader {
+    /// The speed that its followers want on a free road: its own; behind a recorded drive, more than a road vehicle drives.
+    #[must_use]
+    pub fn followers_target_speed_mps(&self) -> f64 {
+        if self.motion.is_some() { 50.0 } else { self.target_speed_mps }
+    }
+}
+
 /// A vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {

@@ -133,7 +133,12 @@ impl<'a> World<'a> {
             let is_recorded = index == 0 && scenario.leader.motion.is_some();
             let machine = Machine::new(described.kind, described.plant_lag_s, &described.difference);
             let plant = Plant::cruising(machine, state.position_m, state.speed_mps);
-            let wish = wish(index.checked_sub(1), !is_recorded, scenario.leader.target_speed_mps, described.time_gap_s);
+            let wish = wish(
+                index.checked_sub(1),
+                !is_recorded,
+                scenario.leader.followers_target_speed_mps(),
+                described.time_gap_s,
+            );
             let clock_offset_us = clock_offset(seed, index);
             let sensors = Sensors::new(described, seed, index);
             vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us, sensors)?);

@@ -43,6 +43,7 @@ impl Row {
             length_m: self.length_m,
             standstill_m: self.standstill_m,
             target_speed_mps: self.target_speed_mps,
+            catch_up_mps: f64::INFINITY,
             time_gap_s: self.time_gap_s,
             gain: self.gain,
             damping_s: self.damping_s,

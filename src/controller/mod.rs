@@ -161,7 +161,7 @@ impl Controller {
     fn cruise(&self, config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
         let Seen { gain, damping, time_gap } = CRUISE;
         let time_gap = time_gap.max(config.law.time_gap);
-        let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill);
+        let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
         let wish = law.wish(ego, ahead.position.ring(), ahead.speed);
         let limits = config.limits;
         let capped = wish.min(speed_cap(config.law.max_speed, ego.speed));

@@ -31,7 +31,13 @@ fn leads(config: &Config, target_mm_per_s: i32) -> Course {
 /// Behind a vehicle of 4.8 m, whose front bumper is that far ahead.
 fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
     let law = &config.law;
-    let aim = Aim::Follow { gain: law.gain, damping: law.damping, time_gap: law.time_gap, standstill: law.standstill };
+    let aim = Aim::Follow {
+        gain: law.gain,
+        damping: law.damping,
+        time_gap: law.time_gap,
+        standstill: law.standstill,
+        target_speed: Speed::from_mm_per_s(40_000),
+    };
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law { driver: Driver::of_config(config, aim), target: Some((reading, Some(Distance::from_mm(4_800)))) }
 }

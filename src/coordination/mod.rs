@@ -11,7 +11,7 @@
 //!   nearest one ahead on the ego's own leg, at this intersection or another, is the *lane predecessor*. Of the two the ego
 //!   follows the one that asks for more caution. Where the choice changes, both ask for the same, so that it costs no jump.
 //! * *Until when:* a vehicle is at an intersection until its rear has left the conflict area, and arrives at the next one then.
-//!   Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
+//!   Beyond the last one it is in no order any more, but goes on saying where it is. Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
 
 pub mod axis;
 pub mod map;
@@ -104,7 +104,7 @@ pub struct Coordination<const PEERS: usize> {
     itinerary: Option<&'static Itinerary>,
     /// Where the path begins on the ego's axis.
     tie: Held<Position>,
-    /// Which crossing is next.
+    /// Which crossing is next; as many as there are: none.
     current: usize,
     registration: Held<Registration>,
     axes: [Axis; PEERS],
@@ -164,6 +164,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
     #[must_use]
     pub fn crossing(&self) -> Option<&'static Crossing> {
         self.itinerary?.crossings.get(self.current)
+    }
+
+    /// The crossing that the ego tells the others of: the next one, or the last one for as long as it has not set out anew.
+    #[must_use]
+    pub fn named(&self) -> Option<&'static Crossing> {
+        self.crossing().or_else(|| self.itinerary?.crossings.last())
     }
 
     /// When the ego arrived there.
@@ -239,12 +245,13 @@ impl<const PEERS: usize> Coordination<PEERS> {
         let (Some(itinerary), Some(_)) = (self.itinerary, self.tie.get()) else { return };
         while let Some(crossing) = itinerary.crossings.get(self.current) {
             let Some(point) = self.crossing_point(crossing) else { return };
-            let has_left = front.ahead(length.negated()) >= point.ahead(crossing.intersection.half);
-            if !has_left || self.current.saturating_add(1) >= itinerary.crossings.len() {
+            if front.ahead(length.negated()) < point.ahead(crossing.intersection.half) {
                 break;
             }
             self.current = self.current.saturating_add(1);
-            self.registration.clear();
+            if self.crossing().is_some() {
+                self.registration.clear();
+            }
         }
         if self.registration.as_ref().is_none() {
             self.registration.set(Registration { arrival, since: now });

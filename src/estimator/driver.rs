@@ -35,6 +35,8 @@ pub enum Aim {
         time_gap: Seconds,
         /// `s_0`.
         standstill: Distance,
+        /// `v_∞`.
+        target_speed: Speed,
     },
 }
 
@@ -74,6 +76,7 @@ impl Driver {
                 damping: intent.damping,
                 time_gap: intent.time_gap,
                 standstill: if model.standstill { intent.standstill } else { Distance::ZERO },
+                target_speed: intent.target_speed,
             },
         };
         Self { aim, lag: micros(intent.lag), limits: intent.limits }
@@ -97,9 +100,10 @@ impl Driver {
         let course = match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
-            Aim::Follow { gain, damping, time_gap, standstill } => {
+            Aim::Follow { gain, damping, time_gap, standstill, target_speed } => {
                 let spacing = length_ahead.unwrap_or(DEFAULT_LENGTH).plus(standstill);
-                Course::Follow(Follower::over(step, gain, damping, time_gap, spacing))
+                let catch_up = model.limits.then(|| catch_up(target_speed));
+                Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
             }
         };
         let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
@@ -107,6 +111,11 @@ impl Driver {
         let model = if matches!(course, Course::Fade) { &fading } else { model };
         Stride { course, actuator: Actuator::over(step, lag, &self.limits, model) }
     }
+}
+
+/// The speed with which a follower catches up: a fifth more than it wants on a free road.
+fn catch_up(target_speed: Speed) -> Speed {
+    target_speed.plus(Speed::from_bits(target_speed.to_bits() / 5))
 }
 
 const fn micros(lag: FineSeconds) -> Duration {

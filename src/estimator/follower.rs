@@ -14,7 +14,14 @@
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
 //! ```
 //!
-//! so that no division is left in the step. Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
+//! so that no division is left in the step. Eq. 5 has no free road: far behind, it would accelerate without end. So what it asks
+//! for beside its own speed is never less than it is at the speed `v_c` with which the follower catches up,
+//!
+//! ```text
+//! (r - r_p) + (l + s_0) + γ (v - v_p) >= -(t_g + δt) v_c,   which makes   u <= K (t_g + δt) (v_c - v).
+//! ```
+//!
+//! Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
 
 use super::actuator::State;
 use crate::fixed::saturate_i32;
@@ -31,19 +38,31 @@ pub struct Follower {
     half_gap: Seconds,
     damping: Seconds,
     spacing: Distance,
+    /// `-(t_g + δt) v_c`.
+    farthest: Distance,
 }
 
 impl Follower {
     /// With gains `k` and `γ`, time gap `t_g` and spacing `l + s_0` (its predecessor's length and its own standstill
-    /// distance), over steps of this length.
+    /// distance), over steps of this length; catches up with at most `catch_up`, if that is given.
     #[must_use]
-    pub fn over(step: Duration, gain: Gain, damping: Seconds, time_gap: Seconds, spacing: Distance) -> Self {
+    pub fn over(
+        step: Duration,
+        gain: Gain,
+        damping: Seconds,
+        time_gap: Seconds,
+        spacing: Distance,
+        catch_up: Option<Speed>,
+    ) -> Self {
         let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
+        let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
+        let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
         Self {
             gain: semi_implicit(gain, damping, time_gap, step).negated(),
-            half_gap: Seconds::from_bits(saturate_i32(gap >> 1)),
+            half_gap,
             damping,
             spacing,
+            farthest: half.plus(half).negated(),
         }
     }
 
@@ -52,12 +71,9 @@ impl Follower {
     #[must_use]
     pub fn wish(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
         let half = state.speed.over(self.half_gap);
-        let error = state
-            .position
-            .ahead_of(ahead)
-            .plus(self.spacing)
-            .plus(half.plus(half)) // `QDADD`
-            .plus(state.speed.minus(ahead_speed).over(self.damping));
+        let behind =
+            state.position.ahead_of(ahead).plus(self.spacing).plus(state.speed.minus(ahead_speed).over(self.damping));
+        let error = behind.max(self.farthest).plus(half.plus(half)); // `QDADD`
         error.times(self.gain)
     }
 }
@@ -126,12 +142,31 @@ mod tests {
     fn at_the_desired_gap_and_the_same_speed_there_is_nothing_to_wish() {
         let step = Duration::from_millis(10);
         let (time_gap, spacing) = (Seconds::from_millis(1000), Distance::from_mm(6800));
-        let law = Follower::over(step, Gain::from_milli(500), Seconds::from_millis(2000), time_gap, spacing);
+        let law = Follower::over(step, Gain::from_milli(500), Seconds::from_millis(2000), time_gap, spacing, None);
         let speed = Speed::from_mm_per_s(11_000);
         let state = State { speed, ..State::default() };
         // At the end of the step the predecessor is one step further.
         let ahead = Position::ZERO.ring().ahead(spacing).ahead(speed.over(time_gap)).ahead(speed.over(step.seconds()));
         assert!(law.wish(&state, ahead, speed).to_bits().abs() < 1 << 10);
+    }
+
+    #[test]
+    fn far_behind_it_catches_up_and_no_faster() {
+        let (step, time_gap, spacing) =
+            (Duration::from_millis(10), Seconds::from_millis(1000), Distance::from_mm(6_800));
+        let (gain, damping) = (Gain::from_milli(500), Seconds::from_millis(2000));
+        let catch_up = Speed::from_mm_per_s(13_000);
+        let over = |catch_up| Follower::over(step, gain, damping, time_gap, spacing, catch_up);
+        for (mm_per_s, is_faster) in [(12_900, true), (13_000, false), (13_100, false)] {
+            let state = State { speed: Speed::from_mm_per_s(mm_per_s), ..State::default() };
+            let ahead = Position::from_mm(400_000).ring();
+            let wish = over(Some(catch_up)).wish(&state, ahead, Speed::from_mm_per_s(11_000));
+            // K = 0.5/1.015 and t_g + δt = 1.01.
+            let exact = 0.5 / 1.015 * 1.01 * f64::from(13_000 - mm_per_s);
+            assert!((f64::from(wish.to_mm_per_s2()) - exact).abs() < 1.0, "{mm_per_s} {wish:?}");
+            assert_eq!(wish > Acceleration::ZERO, is_faster);
+            assert!(over(None).wish(&state, ahead, state.speed) > Acceleration::from_mm_per_s2(60_000));
+        }
     }
 
     #[test]

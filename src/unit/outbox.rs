@@ -177,8 +177,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Every other time, the way to the next crossing point, from where the ego was at the motion's stamp.
     fn send_route(&mut self, tag: u8, ego: &Sample, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        let (Some(crossing), Some(registration)) = (self.coordination.crossing(), self.coordination.registration())
-        else {
+        let (Some(crossing), Some(registration)) = (self.coordination.named(), self.coordination.registration()) else {
             return;
         };
         let Some(point) = self.coordination.crossing_point(crossing) else { return };

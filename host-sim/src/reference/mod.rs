@@ -20,6 +20,8 @@ pub const FREE_EXPONENT: i32 = 4;
 pub const STOPPING_TARGET_SPEED_MPS: f64 = 0.1;
 /// Time constant with which the acceleration of a vehicle without a law fades.
 pub const FADING_S: f64 = 2.0;
+/// A follower catches up with at most so many times the speed that it wants on a free road.
+pub const CATCH_UP: f64 = 1.2;
 
 /// A vehicle's state on the lane at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +56,8 @@ pub struct Parameters {
     pub standstill_m: f64,
     /// Speed wanted on a free road, `v_∞`.
     pub target_speed_mps: f64,
+    /// Speed with which it catches up, `v_c`; infinite: as fast as the law has it.
+    pub catch_up_mps: f64,
     /// Desired time gap, `t_g`.
     pub time_gap_s: f64,
     /// Gain `α k` in 1/s².
@@ -96,6 +100,7 @@ impl From<&HeardIntent> for Parameters {
             length_m: intent.length_m,
             standstill_m: intent.standstill_m,
             target_speed_mps: intent.target_speed_mps,
+            catch_up_mps: CATCH_UP * intent.target_speed_mps,
             time_gap_s: intent.time_gap_s,
             gain: intent.gain,
             damping_s: intent.damping_s,
@@ -115,6 +120,7 @@ impl Parameters {
         let unlimited = 1e9;
         Self {
             standstill_m: 0.0,
+            catch_up_mps: f64::INFINITY,
             lag_s: 0.0,
             acceleration_mps2: unlimited,
             braking_mps2: unlimited,
@@ -146,7 +152,8 @@ pub fn demand_follow(state: &State, ahead: &Ahead, law: &Parameters, step_s: f64
     let spacing_m = position_m - ahead.position_m + ahead.length_m + law.standstill_m;
     let wanted_mps = (state.speed_mps - kappa * (spacing_m - law.damping_s * ahead.speed_mps))
         / (1.0 + kappa * (law.time_gap_s + law.damping_s));
-    (wanted_mps - state.speed_mps) / step_s
+    let free = law.gain * (law.time_gap_s + step_s) / (1.0 + kappa * (law.time_gap_s + law.damping_s));
+    ((wanted_mps - state.speed_mps) / step_s).min(free * (law.catch_up_mps - state.speed_mps))
 }
 
 /// The demand within the law's limits on acceleration and, from the last demand on, on jerk. Where the two ranges do

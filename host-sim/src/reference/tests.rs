@@ -11,6 +11,7 @@ fn law() -> Parameters {
         length_m: 4.8,
         standstill_m: 2.0,
         target_speed_mps: 11.0,
+        catch_up_mps: f64::INFINITY,
         time_gap_s: 1.0,
         gain: 1.0,
         damping_s: 2.0,
@@ -96,6 +97,19 @@ fn equation_13_holds_with_the_demanded_speed_put_back_in() {
         let closed = (law.time_gap_s + step_s) * speed + law.damping_s * (speed - speed_ahead) - gap + 2.0;
         near(demand, -share * closed, 1e-10);
     }
+}
+
+#[test]
+fn far_behind_the_speed_to_catch_up_with_is_approached_and_held() {
+    let law = Parameters { catch_up_mps: 13.2, ..law() };
+    let mut state = moving(5.0, 0.0);
+    for _ in 0..6_000 {
+        let ahead = Ahead { position_m: state.position_m + 300.0, speed_mps: 11.0, length_m: 4.8 };
+        let demand = limited(demand_follow(&state, &ahead, &law, STEP_S), state.demand_mps2, &law, STEP_S);
+        state = actuated(&state, demand, law.lag_s, STEP_S, Trapezoid);
+        assert!(state.speed_mps < 13.3);
+    }
+    near(state.speed_mps, 13.2, 1e-3);
 }
 
 #[test]
