@@ -244,7 +244,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedTransmitOverflow, c"refused: transmit_overflow"),
     (Status::RefusedBusOff, c"refused: bus_off"),
     (Status::RefusedRestart, c"refused: restart"),
-    (Status::RefusedOffRoute, c"refused: off the route"),
+    (Status::RefusedOffRoute, c"refused: off_route"),
     (Status::RefusedOverlooked, c"counted: overlooked"),
 ];
 
