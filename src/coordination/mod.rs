@@ -86,6 +86,8 @@ pub(crate) struct Present {
     pub heard: Instant,
     /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
     pub has_left: bool,
+    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there.
+    pub is_far_behind: bool,
     /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
     pub lane: Option<Side>,
 }
@@ -287,8 +289,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         let arrival = self.registration.get().map(|registration| registration.arrival);
         let ego = Entry { arrival, ..ego };
         let mut given_way = None;
-        for Present { index, entry, heard, .. } in present.iter().filter(|other| other.lane != Some(Side::Behind)) {
-            let overlooks = order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
+        for Present { index, entry, heard, is_far_behind, .. } in present.iter().filter(|other| other.lane != Some(Side::Behind)) {
+            let overlooks = !is_far_behind && order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
             // What was said before the ego could be heard of does not count.
             let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
             if self.is_lasting(*index, *heard, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {

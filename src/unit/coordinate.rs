@@ -166,7 +166,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let has_left = self.has_left(rear);
                 let side = if reading.position > front { Side::Ahead } else { Side::Behind };
                 let lane = self.coordination.is_on_lane(standing).then_some(side);
-                let _ = present.push(Present { index, entry, heard: standing.heard, has_left, lane }); // as many as slots
+                let is_far_behind = self.is_far_behind(&reading, front);
+                let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
             if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
@@ -219,6 +220,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let reading = self.estimator.read(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         Some((reading, reading.position.ahead(length.negated())))
+    }
+
+    /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it has to be to follow it over the crossing.
+    fn is_far_behind(&self, peer: &Reading, front: Position) -> bool {
+        let Some(crossing) = self.coordination.crossing() else { return false };
+        let half = crossing.intersection.half;
+        let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
+        front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.config.law.time_gap))
     }
 
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.

@@ -331,7 +331,7 @@ impl<'a> Traffic<'a> {
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane.stops.iter().map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m));
+        let crossings = lane.stops.iter().map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
         vehicle
             .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
             .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;

@@ -3,8 +3,8 @@
 //! First comes whom the unit says it follows. On a route, next are the stations that name an intersection which the unit has
 //! still to cross: the one that it comes to first before the next one, there those ahead before those behind, and of these
 //! the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
-//! them; then everyone else. A station that names an intersection which is not on the way, or that has long crossed by
-//! another leg, does not matter at all.
+//! them; then everyone else. For a unit on a route, a station that names no intersection of the way that is left, or that
+//! has long crossed by another leg, does not matter at all: the unit could not tell where on its lane it is.
 
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
@@ -53,20 +53,20 @@ impl Rank {
     }
 }
 
-/// An intersection ahead: its number in messages and the way to it from the one that the unit comes to first.
+/// An intersection ahead: its number in messages and the way to it from where the unit sets out, in metres.
 pub type Ahead = (u8, f64);
 
 /// What the unit says of itself.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    /// The intersections of the unit's way, each with the way along it.
+    /// The intersections of the unit's way, each with the way to it.
     crossings: Vec<Ahead>,
     route: Option<Route>,
     followed: Option<StationHash>,
 }
 
 impl Course {
-    /// A way through those intersections, each with the way along it to the crossing point.
+    /// A way through those intersections.
     #[must_use]
     pub fn through(crossings: Vec<Ahead>) -> Self {
         Self { crossings, ..Self::default() }
@@ -99,21 +99,22 @@ impl Course {
             return Rank::Followed;
         }
         let chain = steps.map_or(Rank::Other, Rank::OnChain);
-        match (self.route, route) {
-            (Some(own), Some((other, way_m))) => self.meets(&own, &other, way_m).unwrap_or(match chain {
-                Rank::Other => Rank::Irrelevant,
-                chain => chain,
-            }),
-            _ => chain,
+        if self.crossings.is_empty() {
+            return chain;
         }
+        let meets = route.and_then(|(other, way_m)| self.meets(&other, way_m));
+        meets.unwrap_or(if chain == Rank::Other { Rank::Irrelevant } else { chain })
     }
 
-    fn meets(&self, own: &Route, other: &Route, way_m: f64) -> Option<Rank> {
+    fn meets(&self, other: &Route, way_m: f64) -> Option<Rank> {
         let place = |id: u8| self.crossings.iter().position(|(named, _)| *named == id);
-        let here = place(own.intersection)?;
+        // Before the unit says where it is, it is where it set out.
+        let here = self.route.map_or(Some(0), |own| place(own.intersection))?;
+        let here_m = self.route.map_or(self.crossings[0].1, |own| own.distance.get().to_num());
         let there = place(other.intersection).filter(|there| *there >= here)?;
-        let own_m = own.distance.get().to_num::<f64>() + self.crossings[there].1 - self.crossings[here].1;
-        let has_gone = way_m < -CLEAR_M && (other.leg != own.leg || there != here);
+        let own_m = here_m + self.crossings[there].1 - self.crossings[here].1;
+        let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
+        let has_gone = way_m < -CLEAR_M && !is_on_lane;
         (!has_gone).then(|| Rank::Meets {
             after: there - here,
             behind: way_m > own_m,
