@@ -161,6 +161,11 @@ impl Channel {
         record.note(at_s, delays)
     }
 
+    /// Forgets all links of a vehicle that has gone.
+    pub fn forget(&mut self, vehicle: usize) {
+        self.links.retain(|link, _| link.from != vehicle && link.to != vehicle);
+    }
+
     /// What happened on a link; `None` if nothing was ever sent over it.
     #[must_use]
     pub fn link(&self, link: Link) -> Option<&LinkRecord> {

@@ -36,7 +36,8 @@ impl Point {
 }
 
 /// Metres that a step of 1e-7° is worth to the north and to the east.
-fn step_m(latitude_deg: f64) -> (f64, f64) {
+#[must_use]
+pub fn step_m(latitude_deg: f64) -> (f64, f64) {
     let (axis, e2) = WGS84;
     let step = 1e-7_f64.to_radians();
     let (sine, cosine) = latitude_deg.to_radians().sin_cos();

@@ -6,6 +6,7 @@ pub mod bus;
 pub mod candump;
 pub mod channel;
 pub mod cli;
+pub mod corridor;
 pub mod error;
 pub mod evaluate;
 pub mod figures;

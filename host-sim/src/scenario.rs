@@ -4,8 +4,8 @@
 //! explains all of them. What stands in a [`Scenario`] has been checked: whoever uses one need not check again.
 
 mod draw;
-mod envelope;
-mod keys;
+pub(crate) mod envelope;
+pub(crate) mod keys;
 mod plant;
 mod sensors;
 mod start;

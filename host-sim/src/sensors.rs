@@ -6,7 +6,7 @@ use holdover::units::{Distance, Speed};
 use holdover::wire::range_sensor::RangeSample;
 use rand_chacha::ChaCha8Rng;
 
-use crate::scenario::{RangeSensor, Vehicle};
+use crate::scenario::{Accuracy, RangeSensor, Vehicle};
 use crate::streams::{Purpose, stream, unit};
 use crate::vehicle::{distance, speed};
 
@@ -45,6 +45,16 @@ impl Sensors {
             position_accuracy: distance(described.accuracy.position_m),
             speed_accuracy: speed(described.accuracy.speed_mps),
             range: described.range_sensor.map(|sensor| (sensor, generator())),
+        }
+    }
+
+    /// Those of a vehicle that knows its own motion so well, and sees nobody.
+    #[must_use]
+    pub fn blind(accuracy: Accuracy) -> Self {
+        Self {
+            position_accuracy: distance(accuracy.position_m),
+            speed_accuracy: speed(accuracy.speed_mps),
+            range: None,
         }
     }
 

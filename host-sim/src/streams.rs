@@ -24,6 +24,8 @@ pub enum Purpose {
     ClockOffset(u32),
     /// Errors of the range sensor of the vehicle with that index.
     RangeSensor(u32),
+    /// Arrivals by the road with that index, and what is drawn of those who arrive.
+    Arrivals(u32),
 }
 
 /// The generator for that purpose under that seed.
@@ -35,6 +37,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::BusFaults(vehicle) => (3, vehicle),
         Purpose::ClockOffset(vehicle) => (4, vehicle),
         Purpose::RangeSensor(vehicle) => (5, vehicle),
+        Purpose::Arrivals(road) => (6, road),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

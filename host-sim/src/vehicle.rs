@@ -3,6 +3,7 @@
 
 use std::io;
 
+use holdover::coordination::{Itinerary, MapError};
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
 use holdover::wire::command::Effort;
@@ -15,7 +16,8 @@ use holdover::{Config, ConfigError, OnboardUnit};
 
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
-use crate::modem::{PEERS, Relay, Transmitter, V2xMessage};
+use crate::corridor::road::Road;
+use crate::modem::{Course, PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
 
@@ -28,20 +30,22 @@ pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
 /// Cycle of the time base, in seconds.
 const SYNC_EVERY_S: f64 = 0.5;
+/// Cycle of the position on the globe, in seconds.
+const LOCATE_EVERY_S: f64 = 0.1;
 /// Cycle of the driver's wish, in seconds.
 const WISH_EVERY_S: f64 = 0.1;
 
 /// GNSS time at the start of every run, in microseconds: some moment, with all digits in use.
 pub const EPOCH_US: u64 = 1_465_000_123_456_700;
 
-/// The station of the vehicle with that index.
+/// The station of the vehicle with that index. Stations repeat after 255 vehicles, when the first of them is long gone.
 #[must_use]
-#[allow(clippy::cast_possible_truncation)] // fewer vehicles than hashes
+#[allow(clippy::cast_possible_truncation)] // up to 255
 pub const fn station(index: usize) -> StationHash {
-    StationHash(index as u8 + 1)
+    StationHash((index % 255) as u8 + 1)
 }
 
-/// The vehicle of a station.
+/// The vehicle of a station, in a run of up to 255 vehicles.
 #[must_use]
 pub const fn index_of(station: StationHash) -> Option<usize> {
     (station.0 as usize).checked_sub(1)
@@ -58,6 +62,15 @@ pub fn gnss(at_s: f64) -> GnssTime {
 #[allow(clippy::cast_possible_truncation)] // runs last a day at most
 pub fn micros(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64
+}
+
+/// Where on the globe a vehicle drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Its road.
+    pub road: Road,
+    /// What its odometer shows where the road begins.
+    pub odometer_m: f64,
 }
 
 /// A vehicle of a run.
@@ -83,6 +96,7 @@ pub struct Vehicle {
     wish: EgoIntent,
     clock_offset_us: u64,
     sensors: Sensors,
+    ground: Option<Ground>,
     sender: Sender<0>,
     relay: Relay,
     listener: Receiver<PEERS>,
@@ -122,6 +136,7 @@ impl Vehicle {
             wish,
             clock_offset_us,
             sensors,
+            ground: None,
             sender: Sender::new(config.base_id),
             relay: Relay::new(config.base_id),
             listener: Receiver::new(config.base_id, Role::Modem),
@@ -132,6 +147,21 @@ impl Vehicle {
             tag: 0,
             synced: 0,
         })
+    }
+
+    /// Sets out on a way through intersections, whose numbers stand in `course`: from now on it knows where on the globe it is.
+    ///
+    /// # Errors
+    /// What the unit finds wrong with the map.
+    pub fn set_out(
+        &mut self,
+        ground: Ground,
+        itinerary: &'static Itinerary,
+        course: Course,
+    ) -> Result<(), MapError> {
+        self.ground = Some(ground);
+        self.relay.set_out(course);
+        self.unit.set_out(itinerary)
     }
 
     /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
@@ -172,6 +202,11 @@ impl Vehicle {
     /// The bus's.
     pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
         self.sense(at_s)?;
+        if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
+            let way_m = self.plant.position_m - ground.odometer_m;
+            let place = ground.road.said(way_m, self.tag, gnss(at_s).stamp());
+            self.put(at_s, &Message::Ego(Said::Geo(place)))?;
+        }
         if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
             && let Some(seen) = self.sensors.look(self.plant.position_m, self.plant.speed_mps, ahead)
         {
@@ -183,6 +218,26 @@ impl Vehicle {
         if is_due(at_s, SYNC_EVERY_S, period_s) {
             self.synchronise(at_s)?;
         }
+        Ok(())
+    }
+
+    /// The time before it appears, as every real unit knows it: it has power and ticks, its time base and its sensors
+    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. It ends before
+    /// the tick at `until_s`, with the vehicle where it was.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn warm_up(&mut self, until_s: f64, period_s: f64, ticks: u32) -> io::Result<()> {
+        let (start_m, engages) = (self.plant.position_m, self.engaged);
+        self.engaged = false;
+        for tick in (1..=ticks).rev() {
+            let before_s = f64::from(tick) * period_s;
+            self.plant.position_m = start_m - self.plant.speed_mps * before_s;
+            self.speak(until_s - before_s, period_s, None)?;
+            self.tick(until_s - before_s)?;
+        }
+        self.plant.position_m = start_m;
+        self.engaged = engages;
         Ok(())
     }
 
@@ -254,7 +309,10 @@ impl Vehicle {
         self.estimate = None;
         while let Some((_, frame)) = self.harness.receive(now)? {
             match self.listener.receive(&frame) {
-                Ok(Received::Whole(Message::Own(said))) => self.transmitter.take(&said),
+                Ok(Received::Whole(Message::Own(said))) => {
+                    self.transmitter.take(&said);
+                    self.relay.take(&said);
+                }
                 Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
                 Ok(Received::Whole(Message::Command(command))) => {
                     self.command_mps2 = command.acceleration.get().to_num();
@@ -265,6 +323,12 @@ impl Vehicle {
             }
         }
         Ok(self.transmitter.broadcast())
+    }
+
+    /// Drives it by another acceleration than its unit's command, as far as its body can.
+    pub fn override_with(&mut self, wanted_mps2: f64) {
+        self.command_mps2 = wanted_mps2;
+        self.effort = self.unit.config().body.effort(acceleration(wanted_mps2), speed(self.plant.speed_mps));
     }
 
     fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {

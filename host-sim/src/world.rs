@@ -6,8 +6,6 @@
 //! move on to the next tick under the commands. So a message sent without delay at t is used in the next tick, as on
 //! real buses; a microsecond goes by before it is on the bus there.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 use std::io;
 
 use holdover::config::Envelope;
@@ -20,8 +18,7 @@ use crate::baseline::Baseline;
 use crate::baseline::paper::Paper;
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
-use crate::channel::{Channel, Link};
-use crate::modem::V2xMessage;
+use crate::channel::Channel;
 use crate::observer::Observer;
 use crate::plant::{Machine, Plant};
 use crate::scenario::Scenario;
@@ -29,8 +26,10 @@ use crate::sensors::Sensors;
 use crate::streams::{Purpose, stream, unit};
 use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
 
+mod air;
 mod tick;
 
+pub use air::{Air, Arrived};
 pub use tick::{Bounds, TargetBelief, Tick};
 
 /// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
@@ -78,38 +77,11 @@ impl Measured {
     }
 }
 
-/// A message on its way.
-struct Flight {
-    arrives_us: i64,
-    number: u64,
-    to: usize,
-    message: V2xMessage,
-}
-
-impl PartialEq for Flight {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-impl Eq for Flight {}
-impl PartialOrd for Flight {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Flight {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        (self.arrives_us, self.number).cmp(&(other.arrives_us, other.number))
-    }
-}
-
 /// The world.
 pub struct World<'a> {
     scenario: &'a Scenario,
     vehicles: Vec<Vehicle>,
-    channel: Channel,
-    flights: BinaryHeap<Reverse<Flight>>,
-    sent: u64,
+    air: Air,
     observer: Observer,
     /// Listens where the measuring vehicle's unit does.
     tap: MemoryNode,
@@ -147,9 +119,7 @@ impl<'a> World<'a> {
         let leader_start_m = vehicles[0].plant.position_m;
         Ok(Self {
             scenario,
-            channel: Channel::new(&scenario.channel, seed),
-            flights: BinaryHeap::new(),
-            sent: 0,
+            air: Air::new(&scenario.channel, seed),
             observer: Observer::new(BaseId::DEFAULT),
             tap: vehicles[measured.by].listen(),
             log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
@@ -198,32 +168,16 @@ impl<'a> World<'a> {
             }
         }
         trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
-        trace.channel = self.channel;
+        trace.channel = self.air.into_channel();
         Ok(trace)
     }
 
-    /// The time before the run, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. It ends when
-    /// the own messages, which go out from the first tick on, are due at time 0.
+    /// The time before the run; it ends when the own messages, which go out from the first tick on, are due at time 0.
     fn warm_up(&mut self) -> io::Result<()> {
         let period_s = self.scenario.period_s;
-        let messages = (WARM_UP_S * self.scenario.message_rate_hz).ceil();
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
-        let ticks = (messages / self.scenario.message_rate_hz / period_s - 1e-9).ceil() as u32;
         self.place_recorded_leader(0.0);
-        for vehicle in &mut self.vehicles {
-            let (start_m, engages) = (vehicle.plant.position_m, vehicle.engaged);
-            vehicle.engaged = false;
-            for tick in (1..=ticks).rev() {
-                let at_s = -f64::from(tick) * period_s;
-                vehicle.plant.position_m = start_m + vehicle.plant.speed_mps * at_s;
-                vehicle.speak(at_s, period_s, None)?;
-                vehicle.tick(at_s)?;
-            }
-            vehicle.plant.position_m = start_m;
-            vehicle.engaged = engages;
-        }
-        Ok(())
+        let ticks = warm_up_ticks(self.scenario.message_rate_hz, period_s);
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.warm_up(0.0, period_s, ticks))
     }
 
     fn tick(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
@@ -242,7 +196,8 @@ impl<'a> World<'a> {
             ticks.push(Tick::of(vehicle));
         }
         for (from, message) in broadcasts {
-            self.broadcast(at_s, from, message);
+            let others = (0..self.vehicles.len()).filter(|to| *to != from);
+            self.air.broadcast(at_s, from, others, message);
         }
         for vehicle in self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged) {
             vehicle.plant.drive(vehicle.effort, self.scenario.period_s);
@@ -264,25 +219,10 @@ impl<'a> World<'a> {
 
     /// Everything that has arrived by now, in the order of arrival.
     fn deliver(&mut self, at_s: f64) -> io::Result<()> {
-        let now_us = crate::vehicle::micros(at_s);
-        while self.flights.peek().is_some_and(|Reverse(flight)| flight.arrives_us <= now_us) {
-            let Some(Reverse(flight)) = self.flights.pop() else { break };
-            #[allow(clippy::cast_precision_loss)]
-            let arrives_s = flight.arrives_us as f64 * 1e-6;
-            self.vehicles[flight.to].hear(arrives_s, &flight.message)?;
+        while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
+            self.vehicles[to].hear(at_s, &message)?;
         }
         Ok(())
-    }
-
-    fn broadcast(&mut self, at_s: f64, from: usize, message: V2xMessage) {
-        for to in (0..self.vehicles.len()).filter(|to| *to != from) {
-            for arrives_s in self.channel.send(Link { from, to }, at_s) {
-                self.sent += 1;
-                // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
-                let arrives_us = crate::vehicle::micros(arrives_s).max(crate::vehicle::micros(at_s) + 1);
-                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
-            }
-        }
     }
 
     /// A leader on a recording is where the recording says.
@@ -297,9 +237,18 @@ impl<'a> World<'a> {
     }
 }
 
+/// The ticks of a warm-up: whole cycles of the messages.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
+pub fn warm_up_ticks(message_rate_hz: f64, period_s: f64) -> u32 {
+    let messages = (WARM_UP_S * message_rate_hz).ceil();
+    (messages / message_rate_hz / period_s - 1e-9).ceil() as u32
+}
+
 /// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-fn clock_offset(seed: u64, index: usize) -> u64 {
+#[must_use]
+pub fn clock_offset(seed: u64, index: usize) -> u64 {
     let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
     10_000_000 + (share * 1e9) as u64
 }

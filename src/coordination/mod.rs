@@ -86,6 +86,20 @@ pub(crate) struct Present {
     pub heard: Instant,
     /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
     pub has_left: bool,
+    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there.
+    pub is_far_behind: bool,
+    /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
+    pub lane: Option<Side>,
+}
+
+/// Which side of the ego on its own leg.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub(crate) enum Side {
+    /// It is ahead.
+    Ahead,
+    /// It is behind.
+    Behind,
 }
 
 /// The ego at its next crossing.
@@ -265,12 +279,21 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.reviewed.set(now);
         let Some(registration) = self.registration.get() else { return false };
         let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
+        // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
+        // is ahead takes the ego along. Or else three could wait for one another, two by the order and two on the leg.
+        let ahead = present.iter().filter(|other| other.lane == Some(Side::Ahead) && !other.has_left);
+        let after = ahead.filter_map(|other| other.entry.arrival).filter(|arrival| registration.arrival.is_before(*arrival));
+        if let Some(latest) = after.reduce(|a, b| if a.is_before(b) { b } else { a }) {
+            self.registration.set(Registration { arrival: latest.next(), ..registration });
+        }
+        let arrival = self.registration.get().map(|registration| registration.arrival);
+        let ego = Entry { arrival, ..ego };
         let mut given_way = None;
-        for Present { index, entry, heard, .. } in present {
-            let overlooks = order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
+        for Present { index, entry, heard, is_far_behind, .. } in present.iter().filter(|other| other.lane != Some(Side::Behind)) {
+            let overlooks = !is_far_behind && order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
             // What was said before the ego could be heard of does not count.
             let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
-            if self.is_lasting(*index, now, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
+            if self.is_lasting(*index, *heard, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
                 given_way = Some(entry);
             }
         }
@@ -283,7 +306,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         };
         let mut last: Option<(usize, Entry)> = None;
         self.choice.ahead = 0;
-        for Present { index, entry, has_left, .. } in present.iter().filter(|other| other.entry.is_before(&ego)) {
+        let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
+        for Present { index, entry, has_left, .. } in present.iter().filter(is_ahead) {
             self.choice.ahead |= bit(*index);
             if !has_left && last.is_none_or(|(_, last)| last.is_before(entry)) {
                 last = Some((*index, *entry));
@@ -300,13 +324,13 @@ impl<const PEERS: usize> Coordination<PEERS> {
         (self.choice.target, self.choice.lane) = (slot(target), slot(lane));
     }
 
-    /// Whether a slot has overlooked the ego for too long.
-    fn is_lasting(&mut self, index: usize, now: Instant, overlooks: bool) -> bool {
+    /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.
+    fn is_lasting(&mut self, index: usize, heard: Instant, overlooks: bool) -> bool {
         let Some(since) = self.overlooked.get_mut(index) else { return false };
         match (overlooks, since.get()) {
             (false, _) => since.clear(),
-            (true, None) => since.set(now),
-            (true, Some(begun)) => return now.since(begun) >= OVERLOOKED,
+            (true, None) => since.set(heard),
+            (true, Some(begun)) => return heard.since(begun) >= OVERLOOKED,
         }
         false
     }

@@ -37,6 +37,12 @@ impl Arrival {
         Self(self.0.wrapping_add(1) & ((1 << Self::BITS) - 1))
     }
 
+    /// Whether it is earlier than the other.
+    #[must_use]
+    pub fn is_before(self, other: Self) -> bool {
+        self.compare(other) == Ordering::Less
+    }
+
     fn compare(self, other: Self) -> Ordering {
         let ahead = self.0.wrapping_sub(other.0) & ((1 << Self::BITS) - 1);
         match ahead {

@@ -4,12 +4,12 @@
 use heapless::Vec;
 
 use super::OnboardUnit;
-use crate::coordination::{Arrival, Crossing, Entry, Itinerary, MapError, Present, Standing, standstill_behind};
+use crate::coordination::{Arrival, Crossing, Entry, Itinerary, MapError, Present, Side, Standing, standstill_behind};
 use crate::estimator::Reading;
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
-use crate::units::{Distance, Position};
+use crate::units::{Distance, Position, Seconds};
 use crate::wire::geo::GeoPosition;
 use crate::wire::motion::Motion;
 use crate::wire::route::Route;
@@ -164,7 +164,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             if self.coordination.is_here(standing) {
                 let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
                 let has_left = self.has_left(rear);
-                let _ = present.push(Present { index, entry, heard: standing.heard, has_left }); // as many as slots
+                let side = if reading.position > front { Side::Ahead } else { Side::Behind };
+                let lane = self.coordination.is_on_lane(standing).then_some(side);
+                let is_far_behind = self.is_far_behind(&reading, front);
+                let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
             if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
@@ -174,8 +177,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
-        let order = self.coordination.choice().order.map(usize::from);
-        let lane = lane.map(|(index, _)| index);
+        // Who was far ahead when it was heard last has got out of reach: nobody is ahead then as far as it matters.
+        let heeded = front.ahead(HEEDED).ahead(state.speed.over(HEEDED_TIME)).ahead(state.speed.over(HEEDED_TIME));
+        let is_heeded = |index: &usize| {
+            let track = self.peers.get(*index);
+            let silence = track.and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
+            silence <= self.config.link.holdover || self.rear(*index, now).is_some_and(|(_, rear)| rear <= heeded)
+        };
+        let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
+        let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let room =
             |index: &usize| self.rear(*index, now).map_or(i64::MAX, |(reading, rear)| self.asks(*index, reading, rear));
         let target = [order, lane].into_iter().flatten().min_by_key(room);
@@ -212,6 +222,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some((reading, reading.position.ahead(length.negated())))
     }
 
+    /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it has to be to follow it over the crossing.
+    fn is_far_behind(&self, peer: &Reading, front: Position) -> bool {
+        let Some(crossing) = self.coordination.crossing() else { return false };
+        let half = crossing.intersection.half;
+        let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
+        front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.config.law.time_gap))
+    }
+
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.
     fn has_left(&self, rear: Position) -> bool {
         let end = self
@@ -221,6 +239,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         end.is_some_and(|end| rear >= end)
     }
 }
+
+/// Who has been silent for longer than a holdover lasts, with its rear farther ahead than this and twice [`HEEDED_TIME`], is not
+/// followed. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on, which is less for
+/// any gains that are shipped.
+const HEEDED: Distance = Distance::from_mm(20_000);
+/// Half of the time, because the whole of it is beyond the format's 4 s.
+const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 
 /// A peer that told its route less than this ago is not placed by the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);

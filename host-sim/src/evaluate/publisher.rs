@@ -123,7 +123,7 @@ impl<'a> Publisher<'a> {
                 (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
             if is_by_law { intent } else { Intent { predecessor: Predecessor::Unknown, limits: PHYSICAL, ..intent } }
         });
-        Some(Published { sampled_us, message: V2xMessage { motion, intent, horizon: None } })
+        Some(Published { sampled_us, message: V2xMessage { motion, intent, horizon: None, route: None } })
     }
 }
 

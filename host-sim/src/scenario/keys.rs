@@ -37,7 +37,7 @@ impl Number {
 }
 
 /// A value and where it came from.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Found<T> {
     /// The value.
     pub value: T,
@@ -157,6 +157,22 @@ impl<'a> Section<'a> {
             Ok(Found { value: self.pair(number, pair.iter(), entry)?, line: self.line_of(entry) })
         });
         Ok(Some(Found { value: pairs.collect::<Result<_, _>>()?, line: self.line_of(value) }))
+    }
+
+    /// A list of two numbers, if given.
+    pub fn two(&mut self, number: &Number) -> Result<Option<Pair>, Error> {
+        let Some(value) = self.value(number.key) else { return Ok(None) };
+        let wrong = || self.mismatch(number.key, value, "a list of two numbers");
+        let array = value.get_ref().as_array().ok_or_else(wrong)?;
+        Ok(Some(Found { value: self.pair(number, array.iter(), value)?, line: self.line_of(value) }))
+    }
+
+    /// Words, if given; not none.
+    pub fn text(&mut self, key: &'static str) -> Result<Option<Found<String>>, Error> {
+        let Some(value) = self.value(key) else { return Ok(None) };
+        let words = value.get_ref().as_str().filter(|words| !words.trim().is_empty());
+        let words = words.ok_or_else(|| self.mismatch(key, value, "words in quotes"))?;
+        Ok(Some(Found { value: words.to_owned(), line: self.line_of(value) }))
     }
 
     /// A whole number, not negative, if given.

@@ -83,7 +83,9 @@ impl Tick {
 }
 
 impl TargetBelief {
-    fn of(estimate: &TargetEstimate, near_m: f64) -> Self {
+    /// As it stands on the bus of a vehicle that is near `near_m`.
+    #[must_use]
+    pub fn of(estimate: &TargetEstimate, near_m: f64) -> Self {
         let mps = |speed: Speed| speed.get().to_num::<f64>();
         let position_m: f64 = estimate.position.nearest_to(metres(near_m)).get().to_num();
         let speed_mps = mps(estimate.speed);

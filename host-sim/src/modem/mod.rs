@@ -1,9 +1,12 @@
 //! A vehicle's V2X modem: the unit's `Own*` frames enter and a message for the channel leaves; messages from the channel
 //! enter and `Peer*` frames on the vehicle's own bus leave, with that bus's own counters.
 //!
-//! *Slots:* a station keeps its slot until it has been silent for [`SLOT_REUSE_S`]. A station without a slot gets a free
-//! one, or else that of the station that has been silent longest, if that is long enough; otherwise it is not relayed,
-//! and counted. Whom the unit follows can therefore not be pushed out by others while it is heard.
+//! *Slots:* a station keeps its slot while nobody takes it. One without a slot gets a free one. If there is none, it takes
+//! that of the least relevant station ([`Rank`]), if it is more relevant itself; or if it is as relevant and that station has
+//! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
+//! less relevant one, and whom the unit follows is not pushed out at all, even by a silence. A slot that changes hands rests
+//! until nothing has been said in it for [`SLOT_REUSE_S`], because before that the unit takes the new station for a mistake.
+//! A station that cannot matter is not relayed even if there is room.
 //!
 //! *Intents* are relayed when a station gets its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
 //! eight peers fit the bus.
@@ -11,13 +14,21 @@
 use holdover::wire::horizon::Knots;
 use holdover::wire::intent::Intent;
 use holdover::wire::motion::Motion;
-use holdover::wire::{BaseId, Frame, Message, Said, Sender, Slot, StationHash};
+use holdover::wire::route::Route;
+use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
+
+mod relevance;
+
+pub use relevance::{Ahead, Course, Rank};
 
 /// Slots of the unit.
 pub const PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
+
+/// Where a station said it was is forgotten after so long.
+const FORGOTTEN_S: f64 = 10.0;
 
 /// Time between two relays of an intent that does not change.
 pub const INTENT_EVERY_S: f64 = 0.5;
@@ -31,6 +42,8 @@ pub struct V2xMessage {
     pub intent: Option<Intent>,
     /// Its horizon from that state, if it computed one.
     pub horizon: Option<Knots>,
+    /// Where it is on its route, if it has one.
+    pub route: Option<Route>,
 }
 
 /// What the unit said since the last broadcast.
@@ -39,6 +52,7 @@ pub struct Transmitter {
     motion: Option<Motion>,
     intent: Option<Intent>,
     horizon: Option<Knots>,
+    route: Option<Route>,
 }
 
 impl Transmitter {
@@ -48,7 +62,8 @@ impl Transmitter {
             Said::Motion(motion) => self.motion = Some(*motion),
             Said::Intent(intent) => self.intent = Some(*intent),
             Said::Horizon(knots) => self.horizon = Some(*knots),
-            Said::Geo(_) | Said::Route(_) => {}
+            Said::Route(route) => self.route = Some(*route),
+            Said::Geo(_) => {}
         }
     }
 
@@ -56,7 +71,8 @@ impl Transmitter {
     pub fn broadcast(&mut self) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
-        Some(V2xMessage { motion, intent: self.intent, horizon })
+        let route = self.route.take().filter(|route| route.tag == motion.tag);
+        Some(V2xMessage { motion, intent: self.intent, horizon, route })
     }
 }
 
@@ -64,8 +80,20 @@ impl Transmitter {
 #[derive(Clone, Copy, Debug)]
 struct Tenant {
     station: StationHash,
-    heard_s: f64,
+    /// When it was relayed last, or whoever had the slot before.
+    relayed_s: f64,
+    /// Nothing is relayed before.
+    from_s: f64,
     intent: Option<(Intent, f64)>,
+}
+
+/// Where a station was when it said so.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    station: StationHash,
+    route: Route,
+    speed_mps: f64,
+    at_s: f64,
 }
 
 /// The receiving side.
@@ -73,6 +101,8 @@ struct Tenant {
 pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
+    places: Vec<Placed>,
+    course: Course,
     turned_away: u64,
 }
 
@@ -80,7 +110,18 @@ impl Relay {
     /// On a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { sender: Sender::new(base), slots: vec![None; PEERS], turned_away: 0 }
+        let (slots, places) = (vec![None; PEERS], Vec::new());
+        Self { sender: Sender::new(base), slots, places, course: Course::default(), turned_away: 0 }
+    }
+
+    /// Lets it know the unit's way.
+    pub fn set_out(&mut self, course: Course) {
+        self.course = course;
+    }
+
+    /// Takes in one of the unit's own messages.
+    pub fn take(&mut self, said: &Said) {
+        self.course.take(said);
     }
 
     /// Messages that found no slot.
@@ -91,11 +132,23 @@ impl Relay {
 
     /// Puts a message that was heard at `at_s` on the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage, frames: &mut Vec<Frame>) {
-        let Some(slot) = self.slot_of(message.motion.station, at_s) else {
+        let station = message.motion.station;
+        self.place(at_s, message);
+        let rank = self.rank(station, at_s);
+        if rank == Rank::Irrelevant {
+            return;
+        }
+        let Some(slot) = self.slot_of(station, rank, at_s) else {
             self.turned_away += 1;
             return;
         };
-        let mut said = vec![Said::Motion(message.motion)];
+        match &mut self.slots[slot] {
+            Some(tenant) if at_s >= tenant.from_s - 1e-9 => tenant.relayed_s = at_s,
+            _ => return,
+        }
+        // The unit puts positions on its own axis by the route, so that has to be there first.
+        let mut said: Vec<Said> = message.route.map(Said::Route).into_iter().collect();
+        said.push(Said::Motion(message.motion));
         if let Some(intent) = message.intent.filter(|intent| self.is_intent_due(slot, intent, at_s)) {
             said.push(Said::Intent(intent));
         }
@@ -107,23 +160,61 @@ impl Relay {
         }
     }
 
-    fn slot_of(&mut self, station: StationHash, at_s: f64) -> Option<usize> {
+    /// Takes note of where a station says it is; what is older than a silence that a slot outlives is forgotten.
+    fn place(&mut self, at_s: f64, message: &V2xMessage) {
+        let Some(route) = message.route else { return };
+        let station = message.motion.station;
+        self.places.retain(|placed| placed.station != station && at_s - placed.at_s < FORGOTTEN_S);
+        let speed_mps = message.motion.speed.get().to_num();
+        self.places.push(Placed { station, route, speed_mps, at_s });
+    }
+
+    fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64) -> Option<usize> {
         let held = |tenant: &Option<Tenant>| tenant.is_some_and(|tenant| tenant.station == station);
-        let slot = self.slots.iter().position(held).or_else(|| self.free_slot(at_s))?;
-        match &mut self.slots[slot] {
-            Some(tenant) if tenant.station == station => tenant.heard_s = at_s,
-            free => *free = Some(Tenant { station, heard_s: at_s, intent: None }),
+        if let Some(slot) = self.slots.iter().position(held) {
+            return Some(slot);
         }
+        let (slot, from_s) = match self.slots.iter().position(Option::is_none) {
+            Some(free) => (free, at_s),
+            None => self.least_relevant(rank, at_s)?,
+        };
+        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, intent: None });
         Some(slot)
     }
 
-    fn free_slot(&self, at_s: f64) -> Option<usize> {
-        if let Some(free) = self.slots.iter().position(Option::is_none) {
-            return Some(free);
+    /// The slot of the least relevant station, of several the one silent for longest, if one of that rank may have it; and
+    /// from when on.
+    fn least_relevant(&self, rank: Rank, at_s: f64) -> Option<(usize, f64)> {
+        let tenants = self.slots.iter().enumerate().filter_map(|(slot, tenant)| Some((slot, (*tenant)?)));
+        let ranked = tenants.map(|(slot, tenant)| (slot, self.rank(tenant.station, at_s), tenant.relayed_s));
+        let (slot, least, relayed_s) =
+            ranked.reduce(|a, b| if b.1 > a.1 || b.1 == a.1 && b.2 < a.2 { b } else { a })?;
+        let rested_s = relayed_s + SLOT_REUSE_S;
+        let is_free = rank.displaces(least) || rank <= least && at_s >= rested_s - 1e-9;
+        is_free.then_some((slot, rested_s))
+    }
+
+    /// How much a station matters now, if it has gone on at its speed.
+    fn rank(&self, station: StationHash, at_s: f64) -> Rank {
+        let placed = self.places.iter().find(|placed| placed.station == station);
+        let way_m = |placed: &Placed| {
+            placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s)
+        };
+        self.course.rank(station, placed.map(|placed| (placed.route, way_m(placed))), self.steps_to(station))
+    }
+
+    /// How many steps up the chain of those who follow one another, from whom the unit follows, a station is.
+    fn steps_to(&self, station: StationHash) -> Option<usize> {
+        let mut next = self.course.followed()?;
+        for steps in 0..=PEERS {
+            if next == station {
+                return Some(steps);
+            }
+            let (intent, _) = self.slots.iter().flatten().find(|tenant| tenant.station == next)?.intent?;
+            let Predecessor::Station(ahead) = intent.predecessor else { return None };
+            next = ahead;
         }
-        let heard_s = |slot: &usize| self.slots[*slot].map_or(0.0, |tenant| tenant.heard_s);
-        let longest = (0..self.slots.len()).min_by(|a, b| heard_s(a).total_cmp(&heard_s(b)))?;
-        (at_s - heard_s(&longest) >= SLOT_REUSE_S - 1e-9).then_some(longest)
+        None
     }
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
@@ -158,7 +249,7 @@ mod tests {
             speed_accuracy: None,
             station: StationHash(station),
         };
-        V2xMessage { motion, intent, horizon: None }
+        V2xMessage { motion, intent, horizon: None, route: None }
     }
 
     fn intent(target_speed: i32) -> Intent {

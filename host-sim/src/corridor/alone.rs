@@ -1,0 +1,50 @@
+//! The reference that drives alone when the link to its target is lost: what is on the roads enters, the acceleration leaves.
+//!
+//! On its own road it has an ideal range sensor and an adaptive cruise control, the Intelligent Driver Model with the traffic's
+//! time gap. Nobody can be seen on a crossing road, so it stops before the conflict area of the next intersection and waits
+//! there until it hears again; unless it can no longer stop there.
+
+use super::description::Traffic;
+use super::network::Network;
+use super::traffic::Sighting;
+
+/// Largest acceleration of the model.
+const ACCELERATION_MPS2: f64 = 1.5;
+/// Comfortable braking of the model.
+const BRAKING_MPS2: f64 = 2.0;
+/// Who would have to brake harder than this to stop before the conflict area goes on.
+const HARDEST_MPS2: f64 = 4.0;
+/// How far before the conflict area the stop line is.
+const LINE_M: f64 = 1.0;
+
+/// The acceleration that it wants.
+#[must_use]
+pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic) -> f64 {
+    let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
+    let ahead = all.iter().filter(|other| other.road == own.road && other.way_m > own.way_m);
+    let ahead = ahead.min_by(|a, b| a.way_m.total_cmp(&b.way_m));
+    let behind = |gap_m: f64, speed_mps: f64, standstill_m: f64| {
+        let closing = own.speed_mps * (own.speed_mps - speed_mps) / (2.0 * (ACCELERATION_MPS2 * BRAKING_MPS2).sqrt());
+        let wanted_m = standstill_m + (own.speed_mps * traffic.time_gap_s + closing).max(0.0);
+        (wanted_m / gap_m.max(0.1)).powi(2)
+    };
+    let mut presses: f64 = 0.0;
+    if let Some(ahead) = ahead {
+        let gap_m = ahead.way_m - ahead.length_m - own.way_m;
+        presses = presses.max(behind(gap_m, ahead.speed_mps, traffic.standstill_m));
+    }
+    if let Some(gap_m) = to_stop_line(own, network) {
+        presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
+    }
+    (ACCELERATION_MPS2 * (free - presses)).max(-2.0 * HARDEST_MPS2)
+}
+
+/// The way to the stop line of the next intersection, if it can still stop there.
+fn to_stop_line(own: &Sighting, network: &Network) -> Option<f64> {
+    let lines = network.lanes[own.road]
+        .stops
+        .iter()
+        .map(|stop| stop.at_m - network.junctions[stop.intersection].half_m - LINE_M - own.way_m);
+    let gap_m = lines.filter(|gap_m| *gap_m >= 0.0).min_by(f64::total_cmp)?;
+    (own.speed_mps * own.speed_mps <= 2.0 * HARDEST_MPS2 * gap_m).then_some(gap_m)
+}

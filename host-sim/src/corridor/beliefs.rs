@@ -1,0 +1,170 @@
+//! How right the units are about their targets: who is where and what the units believe enter, tick by tick; position errors
+//! on the virtual lane leave, in three classes.
+//!
+//! A target's true place on the virtual lane is its own bumper if it drives on the same road, and otherwise as far before the
+//! crossing point as it is on its road. When a target's own association changes, what it will do changes with it, and
+//! nobody who heard it before could know: for [`CHANGED_S`] from then on the errors stand apart, and so do those of a unit
+//! that has heard nothing from the target since.
+
+use std::collections::BTreeMap;
+
+use holdover::wire::StationHash;
+
+use super::network::Network;
+use super::traffic::{Sighting, Watch};
+use crate::vehicle::station;
+
+/// For so long after a target's own association has changed, errors stand apart.
+pub const CHANGED_S: f64 = 1.0;
+
+/// Errors of one class.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Class {
+    /// Ticks.
+    pub count: u64,
+    /// Largest magnitude, and when and whose it was.
+    pub worst: Option<Worst>,
+    /// Sum of the squares.
+    pub squares: f64,
+}
+
+/// The largest error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// With its sign: believed minus true.
+    pub error_m: f64,
+    /// When.
+    pub at_s: f64,
+    /// Whose unit believed so.
+    pub by: usize,
+    /// Of whom.
+    pub target: usize,
+    /// How old what it had heard was.
+    pub age_s: f64,
+}
+
+impl Class {
+    fn add(&mut self, worst: Worst) {
+        self.count += 1;
+        self.squares += worst.error_m * worst.error_m;
+        if self.worst.is_none_or(|held| held.error_m.abs() < worst.error_m.abs()) {
+            self.worst = Some(worst);
+        }
+    }
+
+    /// The largest magnitude.
+    #[must_use]
+    pub fn max_m(&self) -> Option<f64> {
+        self.worst.map(|worst| worst.error_m.abs())
+    }
+
+    /// Root of the mean square.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // fewer ticks than 2⁵³
+    pub fn rms_m(&self) -> Option<f64> {
+        (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
+    }
+
+    /// Two classes together.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let worst = [self.worst, other.worst].into_iter().flatten();
+        Self {
+            count: self.count + other.count,
+            squares: self.squares + other.squares,
+            worst: worst.reduce(|a, b| if b.error_m.abs() > a.error_m.abs() { b } else { a }),
+        }
+    }
+}
+
+/// The classes.
+pub struct Beliefs<'a> {
+    network: &'a Network,
+    /// The target's own association has not changed of late.
+    pub settled: Class,
+    /// It has changed within the last [`CHANGED_S`].
+    pub changing: Class,
+    /// It has changed before that, and nothing has been heard from the target since.
+    pub unheard: Class,
+    /// Changes of whom somebody follows.
+    pub changes: u64,
+    /// Ticks at which what is certain did not hold the truth; in the first of the classes.
+    pub violations: u64,
+    /// Errors over time of the trips that are watched: `(time, error)`.
+    pub watched: BTreeMap<usize, Vec<(f64, f64)>>,
+    associations: BTreeMap<usize, (Option<StationHash>, f64)>,
+}
+
+impl<'a> Beliefs<'a> {
+    /// Nothing is known yet; errors over time are kept of the units of those trips.
+    #[must_use]
+    pub fn new(network: &'a Network, watched: &[usize]) -> Self {
+        Self {
+            network,
+            settled: Class::default(),
+            changing: Class::default(),
+            unheard: Class::default(),
+            changes: 0,
+            violations: 0,
+            watched: watched.iter().map(|trip| (*trip, Vec::new())).collect(),
+            associations: BTreeMap::new(),
+        }
+    }
+
+    /// Where a target truly is, on the axis of the way of the one that follows it.
+    fn truth(&self, own: &Sighting, target: &Sighting) -> Option<f64> {
+        if own.road == target.road {
+            return Some(target.way_m);
+        }
+        let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
+        let shared = |stop: &&super::network::Stop| stops.iter().any(|other| other.intersection == stop.intersection);
+        // Two roads that share several intersections run side by side: then it is about the next one.
+        let shared: Vec<_> = own_stops.iter().filter(shared).collect();
+        let is_ahead = |stop: &&&super::network::Stop| {
+            let half_m = self.network.junctions[stop.intersection].half_m;
+            own.way_m - own.length_m < stop.at_m + half_m
+        };
+        let stop = shared.iter().find(is_ahead).or(shared.last())?;
+        let other = stops.iter().find(|other| other.intersection == stop.intersection)?;
+        Some(stop.at_m - other.at_m + target.way_m)
+    }
+}
+
+impl Watch for Beliefs<'_> {
+    fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+        for own in sightings {
+            let known = self.associations.entry(own.trip).or_insert((own.followed, f64::NEG_INFINITY));
+            if known.0 != own.followed {
+                *known = (own.followed, at_s);
+                self.changes += 1;
+            }
+        }
+        for own in sightings {
+            let (Some(belief), Some(followed)) = (own.belief, own.followed) else { continue };
+            // A target that has left is not looked at any more.
+            let Some(target) = sightings.iter().find(|other| station(other.trip) == followed) else { continue };
+            let Some(truth_m) = self.truth(own, target) else { continue };
+            let error_m = belief.position_m - own.odometer_m - truth_m;
+            let worst = Worst { error_m, at_s, by: own.trip, target: target.trip, age_s: belief.age_s };
+            let changed_s = self.associations.get(&target.trip).map_or(f64::NEG_INFINITY, |known| known.1);
+            if at_s - changed_s < CHANGED_S {
+                self.changing.add(worst);
+            } else if at_s - belief.age_s < changed_s {
+                self.unheard.add(worst);
+            } else {
+                self.settled.add(worst);
+            }
+            let truth_m = truth_m + own.odometer_m;
+            if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
+                self.violations += 1;
+            }
+            if let Some(errors) = self.watched.get_mut(&own.trip) {
+                errors.push((at_s, error_m));
+            }
+        }
+    }
+
+    fn left(&mut self, _: f64, trip: usize) {
+        self.associations.remove(&trip);
+    }
+}

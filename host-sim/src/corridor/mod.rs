@@ -1,0 +1,22 @@
+//! Roads that cross without signals: a scenario file and a seed enter; vehicles of all kinds arrive at random, each with the
+//! unit's own code, agree on an order by radio, cross and leave; what happened to them leaves.
+//!
+//! ```text
+//! file -> read -> description -> network (roads, crossing points) -> trips (who comes when) -> traffic (the world)
+//!                                                     referee (collisions, gaps, stops), beliefs (errors) <-'
+//! ```
+
+pub mod alone;
+pub mod beliefs;
+pub mod description;
+pub mod globe;
+pub mod map;
+pub mod network;
+pub mod read;
+pub mod referee;
+pub mod road;
+pub mod traffic;
+pub mod trips;
+
+pub use description::Corridor;
+pub use network::Network;
