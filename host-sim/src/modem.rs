@@ -1,16 +1,18 @@
 //! A vehicle's V2X modem: the unit's `Own*` frames enter and a message for the channel leaves; messages from the channel
 //! enter and `Peer*` frames on the vehicle's own bus leave, with that bus's own counters.
 //!
-//! *Slots:* a station keeps its slot until it has been silent for [`SLOT_REUSE_S`]. A station without a slot gets a free
-//! one, or else that of the station that has been silent longest, if that is long enough; otherwise it is not relayed,
-//! and counted. Whom the unit follows can therefore not be pushed out by others while it is heard.
+//! *Slots:* a station without a slot gets a free one, or else that of the station that has been silent longest, if that is
+//! at least [`SLOT_REUSE_S`], or else that of the farthest one, if that is farther than it by more than [`FARTHER_M`];
+//! otherwise it is not relayed, and counted. So the slots go to those nearest, whom the unit follows among them, and two
+//! stations at nearly the same distance do not take turns.
 //!
 //! *Intents* are relayed when a station gets its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
 //! eight peers fit the bus.
 
+use holdover::units::Position;
 use holdover::wire::horizon::Knots;
 use holdover::wire::intent::Intent;
-use holdover::wire::motion::Motion;
+use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::{BaseId, Frame, Message, Said, Sender, Slot, StationHash};
 
 /// Slots of the unit.
@@ -18,6 +20,9 @@ pub const PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
+
+/// A station that is farther than another one by this much may lose its slot to it.
+pub const FARTHER_M: f64 = 10.0;
 
 /// Time between two relays of an intent that does not change.
 pub const INTENT_EVERY_S: f64 = 0.5;
@@ -65,6 +70,7 @@ impl Transmitter {
 struct Tenant {
     station: StationHash,
     heard_s: f64,
+    position: WirePosition,
     intent: Option<(Intent, f64)>,
 }
 
@@ -74,13 +80,15 @@ pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
     turned_away: u64,
+    /// Where the vehicle itself is.
+    own: Option<Position>,
 }
 
 impl Relay {
     /// On a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { sender: Sender::new(base), slots: vec![None; PEERS], turned_away: 0 }
+        Self { sender: Sender::new(base), slots: vec![None; PEERS], turned_away: 0, own: None }
     }
 
     /// Messages that found no slot.
@@ -89,9 +97,14 @@ impl Relay {
         self.turned_away
     }
 
+    /// Takes note of where the vehicle itself is; before that, nobody is nearer than anybody else.
+    pub fn place(&mut self, position: WirePosition) {
+        self.own = Some(position.nearest_to(self.own.unwrap_or(Position::ZERO)));
+    }
+
     /// Puts a message that was heard at `at_s` on the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage, frames: &mut Vec<Frame>) {
-        let Some(slot) = self.slot_of(message.motion.station, at_s) else {
+        let Some(slot) = self.slot_of(&message.motion, at_s) else {
             self.turned_away += 1;
             return;
         };
@@ -107,23 +120,31 @@ impl Relay {
         }
     }
 
-    fn slot_of(&mut self, station: StationHash, at_s: f64) -> Option<usize> {
-        let held = |tenant: &Option<Tenant>| tenant.is_some_and(|tenant| tenant.station == station);
-        let slot = self.slots.iter().position(held).or_else(|| self.free_slot(at_s))?;
-        match &mut self.slots[slot] {
-            Some(tenant) if tenant.station == station => tenant.heard_s = at_s,
-            free => *free = Some(Tenant { station, heard_s: at_s, intent: None }),
-        }
+    fn slot_of(&mut self, motion: &Motion, at_s: f64) -> Option<usize> {
+        let held = |tenant: &Option<Tenant>| tenant.is_some_and(|tenant| tenant.station == motion.station);
+        let slot = self.slots.iter().position(held).or_else(|| self.free_slot(motion, at_s))?;
+        let intent = self.slots[slot].filter(|tenant| tenant.station == motion.station).and_then(|held| held.intent);
+        let (station, position) = (motion.station, motion.position);
+        self.slots[slot] = Some(Tenant { station, heard_s: at_s, position, intent });
         Some(slot)
     }
 
-    fn free_slot(&self, at_s: f64) -> Option<usize> {
+    fn free_slot(&self, motion: &Motion, at_s: f64) -> Option<usize> {
         if let Some(free) = self.slots.iter().position(Option::is_none) {
             return Some(free);
         }
         let heard_s = |slot: &usize| self.slots[*slot].map_or(0.0, |tenant| tenant.heard_s);
         let longest = (0..self.slots.len()).min_by(|a, b| heard_s(a).total_cmp(&heard_s(b)))?;
-        (at_s - heard_s(&longest) >= SLOT_REUSE_S - 1e-9).then_some(longest)
+        if at_s - heard_s(&longest) >= SLOT_REUSE_S - 1e-9 {
+            return Some(longest);
+        }
+        let distance_m = |slot: &usize| self.slots[*slot].map_or(0.0, |tenant| self.distance_m(tenant.position));
+        let farthest = (0..self.slots.len()).max_by(|a, b| distance_m(a).total_cmp(&distance_m(b)))?;
+        (distance_m(&farthest) > self.distance_m(motion.position) + FARTHER_M).then_some(farthest)
+    }
+
+    fn distance_m(&self, position: WirePosition) -> f64 {
+        self.own.map_or(0.0, |own| position.nearest_to(own).ahead_of(own).magnitude().get().to_num())
     }
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
@@ -143,7 +164,6 @@ mod tests {
     use holdover::time::Stamp;
     use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
     use holdover::wire::intent::Limits;
-    use holdover::wire::motion::WirePosition;
     use holdover::wire::{Predecessor, Received, Receiver, Role};
 
     fn message(station: u8, intent: Option<Intent>) -> V2xMessage {
@@ -239,6 +259,19 @@ mod tests {
         assert_eq!(unit.hear(2.01, &message(99, None)).0, [(0, 99)]);
         // The one that lost its slot is a new station now.
         assert_eq!(unit.hear(2.02, &message(1, None)).0, [(1, 1)]);
+    }
+
+    #[test]
+    fn a_nearer_station_takes_the_slot_of_the_farthest_and_one_at_the_same_distance_does_not() {
+        let mut unit = Unit::new();
+        // Stations 1 to 8 at 1 to 8 m; the vehicle is at 30 m, and then comes one at 9 m.
+        unit.relay.place(WirePosition::from_mm(30_000));
+        for station in 1..=PEERS as u8 {
+            unit.hear(0.0, &message(station, None));
+        }
+        assert_eq!(unit.hear(0.1, &message(9, None)).0, [], "8 m nearer than the farthest");
+        assert_eq!(unit.hear(0.1, &message(12, None)).0, [(0, 12)]);
+        assert_eq!(unit.hear(0.2, &message(1, None)).0, []);
     }
 
     #[test]

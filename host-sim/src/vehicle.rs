@@ -254,7 +254,12 @@ impl Vehicle {
         self.estimate = None;
         while let Some((_, frame)) = self.harness.receive(now)? {
             match self.listener.receive(&frame) {
-                Ok(Received::Whole(Message::Own(said))) => self.transmitter.take(&said),
+                Ok(Received::Whole(Message::Own(said))) => {
+                    if let Said::Motion(motion) = &said {
+                        self.relay.place(motion.position);
+                    }
+                    self.transmitter.take(&said);
+                }
                 Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
                 Ok(Received::Whole(Message::Command(command))) => {
                     self.command_mps2 = command.acceleration.get().to_num();
