@@ -4,6 +4,7 @@
 use crate::evaluate::{self, arguments::EvaluateArguments};
 use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
+use crate::string::{self, arguments::StringArguments};
 use crate::sweep::{self, arguments::SweepArguments};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -40,6 +41,9 @@ pub enum Command {
     /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
     #[command(after_help = price::arguments::AFTER_HELP)]
     Price(PriceArguments),
+    /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
+    #[command(after_help = string::arguments::AFTER_HELP)]
+    String(StringArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),

@@ -27,6 +27,7 @@ pub mod run;
 pub mod scenario;
 pub mod sensors;
 pub mod streams;
+pub mod string;
 pub mod sweep;
 pub mod vehicle;
 pub mod verdict;

@@ -7,6 +7,7 @@ use crate::evaluate::options::EvaluateOptions;
 use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
+use crate::string::options::StringOptions;
 use crate::sweep::options::SweepOptions;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,8 @@ pub enum Options {
     Sweep(SweepOptions),
     /// Measure what the envelope costs.
     Price(PriceOptions),
+    /// Measure string stability.
+    String(StringOptions),
     /// Replay a log.
     Replay(ReplayOptions),
 }
@@ -64,6 +67,7 @@ impl Options {
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
+            Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }

@@ -56,6 +56,12 @@ pub struct MotionState {
 }
 
 impl Motion {
+    /// A drive that was computed: at least two rows, time strictly increasing.
+    pub(crate) fn of(rows: Vec<MotionRow>) -> Self {
+        debug_assert!(rows.len() > 1 && rows.windows(2).all(|pair| pair[0].t_s < pair[1].t_s));
+        Self { rows }
+    }
+
     /// Reads the file.
     ///
     /// # Errors

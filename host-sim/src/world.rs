@@ -103,8 +103,7 @@ impl<'a> World<'a> {
             let described = &scenario.vehicles[index];
             let config = config(scenario, index);
             let is_recorded = index == 0 && scenario.leader.motion.is_some();
-            let machine = Machine::new(described.kind, described.plant_lag_s, &described.difference);
-            let plant = Plant::cruising(machine, state.position_m, state.speed_mps);
+            let plant = Plant::cruising(machine(scenario, index), state.position_m, state.speed_mps);
             let wish = wish(
                 index.checked_sub(1),
                 !is_recorded,
@@ -251,6 +250,13 @@ pub fn warm_up_ticks(message_rate_hz: f64, period_s: f64) -> u32 {
 pub fn clock_offset(seed: u64, index: usize) -> u64 {
     let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
     10_000_000 + (share * 1e9) as u64
+}
+
+/// The body of a vehicle.
+#[must_use]
+pub fn machine(scenario: &Scenario, index: usize) -> Machine {
+    let vehicle = &scenario.vehicles[index];
+    Machine::new(vehicle.kind, vehicle.plant_lag_s, &vehicle.difference)
 }
 
 /// The configuration of a vehicle's unit.

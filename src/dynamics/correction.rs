@@ -173,6 +173,17 @@ mod tests {
     }
 
     #[test]
+    fn speeds_that_jump_down_to_a_crawl_are_taken_as_they_are() {
+        let (config, mut correction) = (Config::car(StationHash(1)), Correction::new());
+        for tick in 0..100 {
+            let speed = Speed::from_mm_per_s(if tick % 3 == 0 { 30_000 } else { 1 });
+            let ego = State { speed, ..State::default() };
+            let asked = correction.apply(&config, Some(&ego), Acceleration::from_mm_per_s2(-8_000));
+            assert!(asked.plus(Acceleration::from_mm_per_s2(8_000)).magnitude() <= LARGEST);
+        }
+    }
+
+    #[test]
     fn the_disturbance_has_an_end() {
         let (config, mut correction) = (Config::car(StationHash(1)), Correction::new());
         let mut asked = Acceleration::ZERO;

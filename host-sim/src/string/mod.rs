@@ -1,0 +1,73 @@
+//! `string`: how a string of ten vehicles damps what its leader does. Checked options enter; a table or JSON on stdout and
+//! a report leave; and the verdict.
+//!
+//! ```text
+//! disturbance -> string of units, and strings without holdover -> speeds -> amplification -> rows -> table, JSON, report
+//! ```
+
+pub mod amplification;
+pub mod arguments;
+pub mod disturbance;
+pub mod options;
+mod page;
+pub mod rows;
+pub mod table;
+pub mod uncompensated;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::output;
+use crate::run::write_report;
+use crate::verdict::Verdict;
+use options::StringOptions;
+use rows::Row;
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    /// The largest ratio allowed.
+    limit: f64,
+    /// The smallest of the time gaps at and above which it holds; none if it does not hold at the largest.
+    smallest_time_gap_s: Option<f64>,
+    rows: &'a [Row],
+}
+
+/// Runs everything and writes what the options ask for.
+///
+/// # Errors
+/// A configuration that the units refuse, and places that cannot be written.
+pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
+    let cells = options.time_gaps_s.len() * options.delays_s.len() * options.losses.len();
+    let bar = progress((cells * options.disturbances.len()) as u64);
+    let rows = rows::run(options, || bar.inc(1))?;
+    bar.finish_and_clear();
+    let failures = rows::failures(&rows);
+    let report = match &options.report {
+        Some(folder) => Some(write_report(folder, &page::render(options, &rows, &failures))?),
+        None => None,
+    };
+    if options.json {
+        let smallest_time_gap_s = rows::smallest_time_gap_s(&rows);
+        let results = Results { limit: rows::LIMIT, smallest_time_gap_s, rows: &rows };
+        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
+        output::print(&format!("{json}\n"))?;
+        failures.iter().for_each(|failure| output::say(&format!("verdict: FAILED: {failure}")));
+    } else {
+        output::print(&table::text(&rows, &failures))?;
+    }
+    if let Some(report) = report {
+        output::say(&format!("report: {}", report.display()));
+    }
+    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+}
+
+fn progress(runs: u64) -> ProgressBar {
+    let bar = ProgressBar::new(runs);
+    // The template is a constant; should it ever be wrong, the usual bar does.
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {eta} to go") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,72 @@
+//! The command line of `string` as it is meant: raw values enter, checked ones leave.
+
+use std::path::PathBuf;
+
+use super::arguments::StringArguments;
+use super::disturbance::Disturbance;
+use crate::error::Error;
+use crate::options::can_be_folder;
+
+/// What is to be measured and what becomes of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StringOptions {
+    /// Time gaps, in seconds; at least one.
+    pub time_gaps_s: Vec<f64>,
+    /// Delays of every message, in seconds; at least one.
+    pub delays_s: Vec<f64>,
+    /// Shares lost; at least one.
+    pub losses: Vec<f64>,
+    /// What the leader does.
+    pub disturbances: Vec<Disturbance>,
+    /// Seed of what is lost.
+    pub seed: u64,
+    /// Results as JSON.
+    pub json: bool,
+    /// Folder of the report; `None`: no report.
+    pub report: Option<PathBuf>,
+}
+
+impl StringOptions {
+    /// Checks what the arguments say.
+    ///
+    /// # Errors
+    /// Values that cannot be, and a folder that cannot be written.
+    pub fn read(arguments: StringArguments) -> Result<Self, Error> {
+        let StringArguments { time_gaps, delays, losses, frequencies, seed, json, out, no_report } = arguments;
+        within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
+        within("--delays", &delays, "seconds", (0.0, 1.0))?;
+        within("--losses", &losses, "shares", (0.0, 0.9))?;
+        within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
+        let report = (!no_report).then_some(out);
+        if let Some(folder) = &report {
+            can_be_folder(folder)?;
+        }
+        let sines = frequencies.into_iter().map(Disturbance::Sine);
+        let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
+        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, json, report })
+    }
+
+    /// The same command again.
+    #[must_use]
+    pub fn command(&self) -> String {
+        let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let frequencies: Vec<f64> =
+            self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
+        format!(
+            "holdover-sim string --time-gaps {} --delays {} --losses {} --frequencies {} --seed {}",
+            list(&self.time_gaps_s),
+            list(&self.delays_s),
+            list(&self.losses),
+            list(&frequencies),
+            self.seed
+        )
+    }
+}
+
+fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {
+    let remedy = format!("give {unit} from {low} to {high}");
+    match values.iter().find(|value| !(low..=high).contains(*value)) {
+        Some(value) => Err(Error::new(format!("is {value}"), remedy).in_option(option)),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,93 @@
+//! The report of string stability: rows enter, an HTML page with a table and curves leaves.
+
+use super::options::StringOptions;
+use super::rows::{LIMIT, Row};
+use super::table::ratio;
+use crate::report::page::{Cell, Page};
+use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
+
+const WHAT: &str = "Ten vehicles follow a leader that is disturbed. Shown is the largest ratio, over all disturbances, of a \
+                    vehicle’s speed amplitude to its predecessor’s. Below 1 a disturbance dies out along the string; above \
+                    1 it grows, and the last vehicle brakes for what the first hardly felt.";
+
+/// The page.
+pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
+    let mut page = Page::new("holdover-sim · report of string stability", "What a string makes of a disturbance");
+    let passed = format!("With holdover no ratio is above {LIMIT}.");
+    page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
+    page.paragraph(WHAT);
+    table(&mut page, rows);
+    page.command(&options.command());
+    for &time_gap_s in &options.time_gaps_s {
+        let rows: Vec<&Row> = rows.iter().filter(|row| row.time_gap_s == time_gap_s).collect();
+        over_delay(&mut page, time_gap_s, &options.losses, &rows);
+        over_frequency(&mut page, time_gap_s, options, &rows);
+    }
+    page.finish()
+}
+
+fn table(page: &mut Page, rows: &[Row]) {
+    let cells = |row: &Row| {
+        let met = row.holdover.as_ref().is_none_or(|worst| worst.ratio <= LIMIT);
+        let place = row.holdover.as_ref().map(|worst| format!("{}, vehicle {}", worst.disturbance, worst.vehicle));
+        vec![
+            Cell::number(row.time_gap_s.to_string()),
+            Cell::number(row.delay_s.to_string()),
+            Cell::number(row.loss.to_string()),
+            Cell::limit(ratio(row.holdover.as_ref()), met),
+            Cell::text(place.unwrap_or_default()),
+            Cell::number(ratio(row.as_it_stands.as_ref())),
+            Cell::number(ratio(row.age_times_speed.as_ref())),
+        ]
+    };
+    let header = ["Time gap, s", "Delay, s", "Loss", "Holdover", "Where", "As it stands", "Age times speed"];
+    let caption = "Largest ratio of a vehicle’s speed amplitude to its predecessor’s, with holdover; and without it, by the \
+                   newest message as it stands, and moved on by its age times its speed.";
+    page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
+}
+
+fn guide() -> Guide {
+    Guide { at: LIMIT, label: format!("limit {LIMIT}") }
+}
+
+fn over_delay(page: &mut Page, time_gap_s: f64, losses: &[f64], rows: &[&Row]) {
+    let caption = "Largest ratio over the delay of the messages, for the largest share of them lost.";
+    let Some(most) = losses.iter().copied().reduce(f64::max) else { return };
+    let line = |name: &str, tone: Tone, of: &dyn Fn(&Row) -> Option<f64>| {
+        let points = rows.iter().filter(|row| row.loss == most).filter_map(|row| Some((row.delay_s, of(row)?)));
+        Layer::Line { series: Series::new(name, points), tone, marked: true }
+    };
+    let layers = vec![
+        line("as it stands", Tone::Idle, &|row| Some(row.as_it_stands.as_ref()?.ratio)),
+        line("age times speed", Tone::Other(1), &|row| Some(row.age_times_speed.as_ref()?.ratio)),
+        line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
+    ];
+    let axes = (Axis::linear("delay", "s"), Axis::linear("largest ratio", "").including(1.0));
+    let title = format!("Largest ratio over delay at a time gap of {time_gap_s} s");
+    let chart =
+        Chart { description: caption.into(), layers, guides: vec![guide()], ..Chart::new(&title, axes.0, axes.1) };
+    page.figure(&title, caption, &[&chart]);
+}
+
+fn over_frequency(page: &mut Page, time_gap_s: f64, options: &StringOptions, rows: &[&Row]) {
+    let caption = "Largest ratio with holdover over the driven frequency, for each delay, at the largest share lost.";
+    let Some(most) = options.losses.iter().copied().reduce(f64::max) else { return };
+    let points = |row: &Row| {
+        let pairs = options.disturbances.iter().zip(&row.by_disturbance);
+        pairs.filter_map(|(which, worst)| Some((which.frequency_hz()?, worst.as_ref()?.ratio))).collect::<Vec<_>>()
+    };
+    let layers = rows.iter().filter(|row| row.loss == most).enumerate().map(|(index, row)| Layer::Line {
+        series: Series::new(format!("{} s", row.delay_s), points(row)),
+        tone: Tone::Other(index % 7),
+        marked: true,
+    });
+    let axes = (Axis::logarithmic("frequency", "Hz"), Axis::linear("largest ratio", "").including(1.0));
+    let title = format!("Largest ratio over frequency at a time gap of {time_gap_s} s");
+    let chart = Chart {
+        description: caption.into(),
+        layers: layers.collect(),
+        guides: vec![guide()],
+        ..Chart::new(&title, axes.0, axes.1)
+    };
+    page.figure(&title, caption, &[&chart]);
+}

@@ -1,0 +1,158 @@
+//! The runs: options enter; for each time gap, delay and loss the largest ratio of all disturbances leaves, with holdover
+//! and without.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::amplification::{Speeds, Worst};
+use super::disturbance::{CRUISE_MPS, Disturbance};
+use super::options::StringOptions;
+use super::uncompensated::{self, Reading};
+use crate::error::Error;
+use crate::run::simulate;
+use crate::scenario::{MAX_VEHICLES, Overrides, Scenario};
+
+/// The largest ratio that is allowed.
+pub const LIMIT: f64 = 1.01;
+
+/// The figures of one time gap, delay and loss; `None`: nothing was passed on that could be measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Time gap of the followers.
+    pub time_gap_s: f64,
+    /// Delay of every message.
+    pub delay_s: f64,
+    /// Share of messages lost.
+    pub loss: f64,
+    /// With holdover.
+    pub holdover: Option<Worst>,
+    /// By the newest message as it stands.
+    pub as_it_stands: Option<Worst>,
+    /// By the newest message and its age times its speed.
+    pub age_times_speed: Option<Worst>,
+    /// Of each disturbance the largest ratio with holdover.
+    pub by_disturbance: Vec<Option<Worst>>,
+    /// Collisions with holdover.
+    pub collisions: usize,
+}
+
+/// The outcome of one disturbance.
+struct Outcome {
+    holdover: Option<Worst>,
+    as_it_stands: Option<Worst>,
+    age_times_speed: Option<Worst>,
+    collisions: usize,
+}
+
+/// Runs all of it on all cores; `done` is called after each disturbance.
+///
+/// # Errors
+/// What a unit finds wrong with the configuration.
+pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
+    let mut cells = Vec::new();
+    for &time_gap_s in &options.time_gaps_s {
+        for &delay_s in &options.delays_s {
+            cells.extend(options.losses.iter().map(|&loss| (time_gap_s, delay_s, loss)));
+        }
+    }
+    let jobs: Vec<_> =
+        cells.iter().flat_map(|cell| options.disturbances.iter().map(move |which| (*cell, *which))).collect();
+    let one = |&(cell, disturbance)| {
+        let outcome = outcome(cell, disturbance, options.seed);
+        done();
+        outcome
+    };
+    // Collected in order before anything is compared, so that the number of threads decides nothing.
+    let outcomes: Vec<Outcome> = jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
+    let of_cell = |(cell, outcomes): (&(f64, f64, f64), &[Outcome])| row(*cell, outcomes);
+    Ok(cells.iter().zip(outcomes.chunks(options.disturbances.len())).map(of_cell).collect())
+}
+
+fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome]) -> Row {
+    let worst = |of: fn(&Outcome) -> &Option<Worst>| {
+        outcomes.iter().filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+    };
+    Row {
+        time_gap_s,
+        delay_s,
+        loss,
+        holdover: worst(|outcome| &outcome.holdover),
+        as_it_stands: worst(|outcome| &outcome.as_it_stands),
+        age_times_speed: worst(|outcome| &outcome.age_times_speed),
+        by_disturbance: outcomes.iter().map(|outcome| outcome.holdover.clone()).collect(),
+        collisions: outcomes.iter().map(|outcome| outcome.collisions).sum(),
+    }
+}
+
+fn outcome(
+    (time_gap_s, delay_s, loss): (f64, f64, f64),
+    disturbance: Disturbance,
+    seed: u64,
+) -> Result<Outcome, Error> {
+    let scenario = scenario(time_gap_s, delay_s, loss, disturbance)?;
+    let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
+    let speeds = |ticks: &Vec<crate::world::Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
+    let units = Speeds { period_s: scenario.period_s, vehicles: trace.vehicles.iter().map(speeds).collect() };
+    let without = |reading| uncompensated::run(&scenario, seed, reading).worst(disturbance);
+    Ok(Outcome {
+        holdover: units.worst(disturbance),
+        as_it_stands: without(Reading::AsItStands),
+        age_times_speed: without(Reading::AgeTimesSpeed),
+        collisions: summary.collisions,
+    })
+}
+
+/// The string: everybody at the gap and the speed that are wanted.
+///
+/// # Errors
+/// None that values within the options' limits make.
+pub fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
+    let duration_s = disturbance.duration_s();
+    let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
+    let vehicle = |gap: &str| {
+        format!(
+            "[[vehicle]]\n{gap}speed_mps = {CRUISE_MPS}\ntime_gap_s = {time_gap_s}\nposition_accuracy_m = 0.05\n\
+             speed_accuracy_mps = 0.02\n"
+        )
+    };
+    let followers = vehicle(&format!("gap_m = {gap_m}\n")).repeat(MAX_VEHICLES - 1);
+    let text = format!(
+        "duration_s = {duration_s}\nego = 1\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n{}{followers}[channel]\n\
+         applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
+        vehicle(""),
+    );
+    let mut scenario = Scenario::parse(Path::new("string"), &text, &Overrides::default())?;
+    scenario.leader.motion = Some(disturbance.motion(scenario.period_s));
+    Ok(scenario)
+}
+
+/// The largest ratio with holdover, if it is above the limit.
+#[must_use]
+pub fn failures(rows: &[Row]) -> Vec<String> {
+    let above = |row: &Row| {
+        let worst = row.holdover.as_ref().filter(|worst| worst.ratio > LIMIT)?;
+        Some(format!(
+            "a ratio of {:.4} at a time gap of {} s, a delay of {} s and a loss of {} ({}, vehicle {})",
+            worst.ratio, row.time_gap_s, row.delay_s, row.loss, worst.disturbance, worst.vehicle
+        ))
+    };
+    let crashed = |row: &Row| {
+        (row.collisions > 0).then(|| format!("{} collisions at a delay of {} s", row.collisions, row.delay_s))
+    };
+    rows.iter().filter_map(above).chain(rows.iter().filter_map(crashed)).collect()
+}
+
+/// The smallest time gap for which the limit holds there and at every larger one that was tried.
+#[must_use]
+pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
+    let holds = |gap: f64| {
+        rows.iter()
+            .filter(|row| row.time_gap_s == gap)
+            .all(|row| row.holdover.as_ref().is_none_or(|worst| worst.ratio <= LIMIT))
+    };
+    let mut gaps: Vec<f64> = rows.iter().map(|row| row.time_gap_s).collect();
+    gaps.sort_by(|a, b| b.total_cmp(a));
+    gaps.into_iter().take_while(|gap| holds(*gap)).last()
+}
