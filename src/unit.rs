@@ -8,7 +8,6 @@ use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::coordination::Coordination;
-use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
@@ -17,7 +16,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
-use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
+use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
 
 mod answer;
 mod caution;
@@ -132,7 +131,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.is_started() {
             return Ok(Reception::Foreign);
         }
-        let result = match self.receiver.receive(frame) {
+        let result = match self.receiver.receive_as_unit(frame) {
             Ok(Received::Foreign) => Ok(Reception::Foreign),
             Ok(Received::Pending) => Ok(Reception::Pending),
             Ok(Received::Whole(message)) => self.take(at, &message).map(|()| Reception::Taken),
@@ -241,7 +240,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
             (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
         };
-        Facts { engaged: self.wish.get().is_some_and(|wish| wish.engaged), ego, target }
+        Facts { engaged: self.wish.as_ref().is_some_and(|wish| wish.engaged), ego, target }
     }
 
     /// Looks the gains up when the target changes.
@@ -253,14 +252,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.association.is_some_and(|(associated, _)| associated == station) {
             return;
         }
-        let (Some(target), Some(ego)) = (reading, self.ego.get()) else { return };
+        let (Some(target), Some(ego)) = (reading, self.ego.as_ref()) else { return };
         let headway = target.position.ahead_of(ego.position);
         self.association = Some((station, Gains::look_up(&self.config.law, ego.speed, target.speed, headway)));
     }
 
     /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
     fn ego_at(&self, now: Instant) -> Option<State> {
-        let sample = self.ego.get()?;
+        let sample = self.ego.as_ref()?;
         let state = State {
             position: sample.position.ring(),
             speed: sample.speed,
@@ -279,7 +278,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
         let law = &self.config.law;
-        let wish = self.wish.get();
+        let wish = self.wish.as_ref();
         let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
         let aim = match self.association {
             Some((_, gains)) => Aim::Follow {
@@ -296,7 +295,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     fn course(&self, now: Instant, target: Option<usize>) -> Course {
         match self.mode {
-            Mode::Standby => Course::Yield { demand: self.ego.get().map_or(Acceleration::ZERO, |ego| ego.demand) },
+            Mode::Standby => Course::Yield { demand: self.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
             Mode::Cooperative | Mode::Holdover { .. } => {
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {

@@ -197,6 +197,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        // Named, so that the image holds the encoders of these alone.
+        if !matches!(message, Message::Command(_) | Message::Estimate(_) | Message::Status(_) | Message::Own(_)) {
+            debug_assert!(false, "the unit says nothing else");
+            return;
+        }
         let sent = self.sender.send(message, &mut |frame| {
             let pushed = frames.push(frame);
             debug_assert!(pushed.is_ok(), "MAX_FRAMES holds every tick's frames");
@@ -230,11 +235,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Intent {
             length: config.length,
             standstill: self.standstill(),
-            predecessor: match self.wish.get() {
+            predecessor: match self.wish.as_ref() {
                 Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,
             },
-            target_speed: self.wish.get().map_or(law.target_speed, |wish| wish.target_speed),
+            target_speed: self.wish.as_ref().map_or(law.target_speed, |wish| wish.target_speed),
             time_gap,
             gain,
             damping,
