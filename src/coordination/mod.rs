@@ -282,18 +282,23 @@ impl<const PEERS: usize> Coordination<PEERS> {
         // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
         // is ahead takes the ego along. Or else three could wait for one another, two by the order and two on the leg.
         let ahead = present.iter().filter(|other| other.lane == Some(Side::Ahead) && !other.has_left);
-        let after = ahead.filter_map(|other| other.entry.arrival).filter(|arrival| registration.arrival.is_before(*arrival));
+        let after =
+            ahead.filter_map(|other| other.entry.arrival).filter(|arrival| registration.arrival.is_before(*arrival));
         if let Some(latest) = after.reduce(|a, b| if a.is_before(b) { b } else { a }) {
             self.registration.set(Registration { arrival: latest.next(), ..registration });
         }
         let arrival = self.registration.get().map(|registration| registration.arrival);
         let ego = Entry { arrival, ..ego };
         let mut given_way = None;
-        for Present { index, entry, heard, is_far_behind, .. } in present.iter().filter(|other| other.lane != Some(Side::Behind)) {
+        for Present { index, entry, heard, is_far_behind, .. } in
+            present.iter().filter(|other| other.lane != Some(Side::Behind))
+        {
             let overlooks = !is_far_behind && order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
             // What was said before the ego could be heard of does not count.
             let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
-            if self.is_lasting(*index, *heard, overlooks) && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
+            if self.is_lasting(*index, *heard, overlooks)
+                && given_way.is_none_or(|other: &Entry| other.is_before(entry))
+            {
                 given_way = Some(entry);
             }
         }

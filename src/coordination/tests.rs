@@ -103,7 +103,14 @@ impl Meeting {
             let heard = self.heard[index].iter().enumerate();
             let present: Vec<_> = heard
                 .filter_map(|(index, heard)| {
-                    heard.map(|(entry, heard)| Present { index, entry, heard, has_left: false, is_far_behind: false, lane: None })
+                    heard.map(|(entry, heard)| Present {
+                        index,
+                        entry,
+                        heard,
+                        has_left: false,
+                        is_far_behind: false,
+                        lane: None,
+                    })
                 })
                 .collect();
             gave_way += usize::from(coordination.review(at(tick + 1), own.station, &present));
