@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test cross c package)
+steps=(fmt lint doc test cross vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -22,6 +22,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
   cross     core and firmware for a Cortex-M4F, and what they take of its memory
+  vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
+            a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; scripts/hil.sh runs parts
   c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
   package   the package that would be published builds by itself and holds what it should
 
@@ -89,6 +91,10 @@ step_cross() {
     cargo clippy --locked --release --target "$target" -- -D warnings
 }
 
+step_vcan() {
+    scripts/hil.sh
+}
+
 step_c() {
     holdover-c/check.sh
 }
@@ -101,7 +107,8 @@ step_package() {
     fi
     contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
     for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
-        memory.x src/lib.rs src/main.rs src/board/mod.rs; do
+        memory.x src/lib.rs src/main.rs src/board/mod.rs \
+        src/board/zynqmp_r5/link.x; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
     if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then
