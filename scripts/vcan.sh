@@ -55,8 +55,18 @@ guest() {
     busybox ip link set lo up
     busybox ip link add dev vcan0 type vcan
     busybox ip link set vcan0 up
-    local status=0
-    setsid bash "$VCAN_JOB/command" </dev/null >/dev/tty1 2>/dev/tty2 || status=$?
+    # By way of pipes, so that no program takes them for a terminal with somebody in front of it.
+    local status=0 out err pid
+    exec 3> >(exec cat >/dev/tty1) && out=$!
+    exec 4> >(exec cat >/dev/tty2) && err=$!
+    setsid bash "$VCAN_JOB/command" </dev/null >&3 2>&4 3>&- 4>&- || status=$?
+    # What the command left running ends with it, and lets go of the pipes.
+    for pid in /proc/[0-9]*; do
+        pid=${pid#/proc/}
+        [ -z "$(readlink "/proc/$pid/exe")" ] || [[ " 1 $out $err " = *" $pid "* ]] || kill -KILL "$pid" 2>/dev/null || true
+    done
+    exec 3>&- 4>&-
+    wait "$out" "$err"
     echo "$status" >"$VCAN_JOB/status"
 }
 
