@@ -34,6 +34,7 @@ pub mod estimator;
 pub mod fixed;
 pub mod health;
 mod held;
+pub mod lockstep;
 pub mod parameters;
 pub mod peers;
 pub mod time;
@@ -42,4 +43,5 @@ pub mod units;
 pub mod wire;
 
 pub use config::{Config, ConfigError};
+pub use lockstep::LockStep;
 pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};
