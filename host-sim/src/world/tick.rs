@@ -1,8 +1,8 @@
 //! One tick of one vehicle, for the trace: the vehicle enters; its true motion, its command and what its unit believes of
 //! its target leave. The belief is what stands on the bus.
 
-use holdover::controller::Mode;
 use holdover::units::Speed;
+use holdover::wire::command::ModeCode;
 use holdover::wire::estimate::TargetEstimate;
 
 use crate::vehicle::{Vehicle, metres};
@@ -21,7 +21,7 @@ pub struct Tick {
     /// Whether the envelope changed that.
     pub limited: bool,
     /// Its unit's mode.
-    pub mode: Mode,
+    pub mode: ModeCode,
     /// Where its unit believes its target is.
     pub target: Option<TargetBelief>,
 }
@@ -76,7 +76,7 @@ impl Tick {
             acceleration_mps2: vehicle.plant.acceleration_mps2,
             command_mps2: vehicle.command_mps2,
             limited: vehicle.limited,
-            mode: vehicle.unit.mode(),
+            mode: vehicle.mode,
             target: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
         }
     }
