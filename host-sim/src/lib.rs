@@ -4,8 +4,10 @@
 pub mod baseline;
 pub mod bus;
 pub mod candump;
+pub mod capture;
 pub mod channel;
 pub mod cli;
+pub mod ecu;
 pub mod error;
 pub mod evaluate;
 pub mod figures;

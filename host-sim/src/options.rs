@@ -1,7 +1,9 @@
 //! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
+use crate::capture::CaptureOptions;
 use crate::cli::{Cli, Command, RunArguments};
+use crate::ecu::options::EcuOptions;
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
 use crate::price::options::PriceOptions;
@@ -23,6 +25,10 @@ pub enum Options {
     Price(PriceOptions),
     /// Replay a log.
     Replay(ReplayOptions),
+    /// Record an interface.
+    Record(CaptureOptions),
+    /// Be a unit.
+    Ecu(EcuOptions),
 }
 
 /// A run and what becomes of its results.
@@ -65,6 +71,8 @@ impl Options {
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
+            Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
+            Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }
     }
