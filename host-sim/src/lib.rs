@@ -12,6 +12,7 @@ pub mod error;
 pub mod evaluate;
 pub mod figures;
 pub mod heard;
+pub mod hil;
 pub mod metrics;
 pub mod modem;
 pub mod observer;
