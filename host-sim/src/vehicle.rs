@@ -171,6 +171,12 @@ impl Vehicle {
         self.alias
     }
 
+    /// When its unit said so of its target, at a time of the run.
+    #[must_use]
+    pub fn estimate_s(&self) -> f64 {
+        self.estimate_s
+    }
+
     /// Lets its driver engage the unit, if it is to drive at all, or not yet.
     pub fn engage(&mut self, engages: bool) {
         self.engaged = engages && self.wish.engaged;

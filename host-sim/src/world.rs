@@ -268,7 +268,7 @@ impl<'a> World<'a> {
         trace.times_s.push(at_s);
         trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
         for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
-            ticks.push(Tick::of(vehicle));
+            ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
         }
         for (from, message) in broadcasts {
             self.broadcast(at_s, from, message);

@@ -105,9 +105,10 @@ impl Monitor {
         &self.beats
     }
 
-    /// Faults of the protection of its frames, with the time. The first frame of each identifier is none: nobody trusts it.
+    /// Faults of its frames, with the time. The first frame of each identifier is none, nor that its message is then not
+    /// whole: nobody trusts what is heard for the first time.
     pub fn e2e(&self) -> impl Iterator<Item = (Instant, Refusal)> + '_ {
-        self.e2e.iter().copied().filter(|(_, cause)| *cause != Refusal::NotYetTrusted)
+        self.e2e.iter().copied().filter(|(_, cause)| !matches!(cause, Refusal::NotYetTrusted | Refusal::Torn))
     }
 
     /// What it says that it refused, by cause; causes that it met.
