@@ -4,6 +4,7 @@
 use crate::capture::{self, arguments::CaptureArguments};
 use crate::ecu::{self, arguments::EcuArguments};
 use crate::evaluate::{self, arguments::EvaluateArguments};
+use crate::hil::{self, arguments::HilArguments};
 use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use crate::sweep::{self, arguments::SweepArguments};
@@ -51,6 +52,9 @@ pub enum Command {
     /// Be an onboard unit on a CAN interface
     #[command(after_help = ecu::arguments::AFTER_HELP)]
     Ecu(EcuArguments),
+    /// Drive an onboard unit on a CAN interface through a scenario, and judge it
+    #[command(after_help = hil::arguments::AFTER_HELP)]
+    Hil(HilArguments),
 }
 
 /// What can follow `run`.

@@ -4,7 +4,7 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{capture, ecu, evaluate, output, price, replay, run, sweep};
+use holdover_sim::{capture, ecu, evaluate, hil, output, price, replay, run, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -16,6 +16,7 @@ fn main() -> ExitCode {
         Options::Replay(options) => replay::replay(&options),
         Options::Record(options) => capture::capture(&options),
         Options::Ecu(options) => ecu::run(&options),
+        Options::Hil(options) => hil::run(&options),
     });
     match verdict {
         Ok(verdict) => verdict.into(),

@@ -6,6 +6,7 @@ use crate::cli::{Cli, Command, RunArguments};
 use crate::ecu::options::EcuOptions;
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
+use crate::hil::options::HilOptions;
 use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
@@ -13,7 +14,7 @@ use crate::sweep::options::SweepOptions;
 use std::path::{Path, PathBuf};
 
 /// What to do.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
@@ -29,6 +30,8 @@ pub enum Options {
     Record(CaptureOptions),
     /// Be a unit.
     Ecu(EcuOptions),
+    /// Judge one.
+    Hil(Box<HilOptions>),
 }
 
 /// A run and what becomes of its results.
@@ -73,6 +76,7 @@ impl Options {
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
+            Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }
     }

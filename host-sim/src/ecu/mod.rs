@@ -21,6 +21,8 @@ use options::{EcuOptions, identifiers};
 /// Its clock started so long before its first tick: what a message's stamp dates may lie before that.
 const POWERED_BEFORE: Duration = Duration::from_millis(60_000);
 
+/// Frames that it takes in, at most, before it looks at its clock.
+const AT_ONCE: usize = 256;
 /// Between two looks at the bus in lock step.
 const PATIENCE: Duration = Duration::from_millis(100);
 
@@ -44,16 +46,22 @@ pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// Lives on a port, for ever.
+/// Lives on a port, for ever. As in the firmware, what has arrived is taken in before the unit ticks; but no flood of
+/// frames keeps it from ticking.
 fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
     loop {
-        let now = port.now();
-        if let Some(answer) = ecu.tick(now) {
-            transmit(ecu, port, &answer)?;
+        let wake = ecu.wakes().unwrap_or(port.now().plus(PATIENCE));
+        let mut until = if ecu.is_by_clock() && ecu.wakes().is_none() { port.now() } else { wake };
+        for _ in 0..AT_ONCE {
+            let Some((at, event)) = port.wait(until)? else { break };
+            if let Event::Received(frame) = event
+                && let Some(answer) = ecu.receive(at, &frame)
+            {
+                transmit(ecu, port, &answer)?;
+            }
+            until = wake;
         }
-        if let Some((at, Event::Received(frame))) = port.wait(ecu.wakes().unwrap_or(now.plus(PATIENCE)))?
-            && let Some(answer) = ecu.receive(at, &frame)
-        {
+        if let Some(answer) = ecu.tick(port.now()) {
             transmit(ecu, port, &answer)?;
         }
     }
@@ -109,6 +117,11 @@ impl Ecu {
             Pace::Clock { ticks } => ticks.map(|(_, next)| next),
             Pace::LockStep(_) => None,
         }
+    }
+
+    /// Whether it ticks by a clock.
+    fn is_by_clock(&self) -> bool {
+        matches!(self.pace, Pace::Clock { .. })
     }
 
     /// Ticks if its clock says so. Periods that passed unseen are not made up for.

@@ -51,6 +51,8 @@ pub struct Talk<P> {
     burst: (Instant, u32),
     /// The last `Sync` and when it was sent, and when it was on the bus.
     mark: Option<(Sync, Instant, Option<Instant>)>,
+    /// Whether a follow-up is given the time at which its mark was on the bus; otherwise it says what it says.
+    pub dates: bool,
     /// What the time synchronisation is wrong by, on purpose.
     pub clock_error_us: i64,
     /// How frames are spoiled, on purpose.
@@ -69,6 +71,7 @@ impl<P: Port> Talk<P> {
             queue: VecDeque::new(),
             burst: (now, BURST),
             mark: None,
+            dates: true,
             clock_error_us: 0,
             spoiled: None,
             counts: Counts::default(),
@@ -116,12 +119,25 @@ impl<P: Port> Talk<P> {
     /// # Errors
     /// The port's, but for an interface that is down.
     pub fn pump(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event)) -> io::Result<()> {
+        self.pump_while(until, |at, event| {
+            hear(at, event);
+            true
+        })
+    }
+
+    /// The same, until `hear` has heard enough.
+    ///
+    /// # Errors
+    /// As [`Talk::pump`].
+    pub fn pump_while(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event) -> bool) -> io::Result<()> {
         loop {
             let wake = self.send_waiting()?.map_or(until, |next| next.min(until));
             match self.port.wait(wake)? {
                 Some((at, event)) => {
                     self.note(at, &event);
-                    hear(at, event);
+                    if !hear(at, event) {
+                        return Ok(());
+                    }
                     // A bus that never falls silent must not stop the clock.
                     if self.port.now() >= until && at > until {
                         return Ok(());
@@ -146,7 +162,7 @@ impl<P: Port> Talk<P> {
                     self.mark = Some((Sync::decode(&[payload(&frame)]), now, None));
                     frame
                 }
-                Some(Content::FollowUp) => match self.mark {
+                Some(Content::FollowUp) if self.dates => match self.mark {
                     Some((sync, _, Some(marked))) => self.dated(&frame, &sync, marked),
                     Some((_, sent, None)) if now.since(sent) < MARK_PATIENCE => {
                         return Ok(Some(sent.plus(MARK_PATIENCE)));
