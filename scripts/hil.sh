@@ -88,7 +88,7 @@ check_ecu() {
     for mode in '' --lock-step; do
         echo "-- a process of Linux, ${mode:-real time}"
         judge vcan0 $mode
-        scripts/vcan.sh bash -c '"$0" ecu --bus vcan0 --station 1 '"$mode"' & unit=$!
+        scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 '"$mode"' & unit=$!
             code=0; "$@" || code=$?; kill $unit; exit $code' "$sim" "${harness[@]}"
     done
 }
