@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test cross firmware c package)
+steps=(fmt lint doc test cross firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -23,6 +23,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   test      unit, property, integration and documentation tests, with overflow checks
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
+  vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
+            a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; scripts/hil.sh runs parts
   c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
   package   the package that would be published builds by itself and holds what it should
 
@@ -104,6 +106,10 @@ step_firmware() {
     scripts/firmware.sh
 }
 
+step_vcan() {
+    scripts/hil.sh
+}
+
 step_c() {
     holdover-c/check.sh
 }
@@ -116,7 +122,8 @@ step_package() {
     fi
     contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
     for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
-        memory.x src/lib.rs src/main.rs src/board/mod.rs; do
+        memory.x src/lib.rs src/main.rs src/board/mod.rs \
+        src/board/zynqmp_r5/link.x; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
     if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then

@@ -65,4 +65,4 @@ done
 [ -n "$line" ] || { say "the emulator did not start:" && cat "$words" >&2 && exit 125; }
 stty -F "$line" raw -echo
 here=$(dirname "$(realpath "$0")")
-"$here/vcan.sh" "${options[@]}" --serial "$line" -- "$here/device-m4.sh" --inside "$@"
+"$here/vcan.sh" --real-time "${options[@]}" --serial "$line" -- "$here/device-m4.sh" --inside "$@"

@@ -16,6 +16,8 @@
 #                    VCAN_SERIAL1, and so on
 #   --timeout S      end the command after S seconds (default: 600)
 #   --memory SIZE    of user-mode Linux (default: 1G, taken as it is used)
+#   --real-time      let it come before the machine's other programs, where this user may say so, as a bus waits for none;
+#                    a command that does nothing but compute then has a processor for itself
 #   --uml            use user-mode Linux even where the machine has vcan
 #   -h, --help       this text
 #
@@ -55,8 +57,18 @@ guest() {
     busybox ip link set lo up
     busybox ip link add dev vcan0 type vcan
     busybox ip link set vcan0 up
-    local status=0
-    setsid bash "$VCAN_JOB/command" </dev/null >/dev/tty1 2>/dev/tty2 || status=$?
+    # By way of pipes, so that no program takes them for a terminal with somebody in front of it.
+    local status=0 out err pid
+    exec 3> >(exec cat >/dev/tty1) && out=$!
+    exec 4> >(exec cat >/dev/tty2) && err=$!
+    setsid bash "$VCAN_JOB/command" </dev/null >&3 2>&4 3>&- 4>&- || status=$?
+    # What the command left running ends with it, and lets go of the pipes.
+    for pid in /proc/[0-9]*; do
+        pid=${pid#/proc/}
+        [ -z "$(readlink "/proc/$pid/exe")" ] || [[ " 1 $out $err " = *" $pid "* ]] || kill -KILL "$pid" 2>/dev/null || true
+    done
+    exec 3>&- 4>&-
+    wait "$out" "$err"
     echo "$status" >"$VCAN_JOB/status"
 }
 
@@ -72,7 +84,7 @@ usage() {
 
 wrong() {
     say "$*"
-    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
+    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--real-time] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
     exit 2
 }
 
@@ -109,8 +121,10 @@ has_slcan() {
 
 run_here() {
     local number
+    local first=()
+    [ $real_time = false ] || ! chrt --rr 1 true 2>/dev/null || first=(chrt --rr 1)
     for number in "${!serial[@]}"; do export "VCAN_SERIAL$number=${serial[number]}"; done
-    timeout --foreground --kill-after=5 "$limit" "$@" </dev/null
+    "${first[@]}" timeout --foreground --kill-after=5 "$limit" "$@" </dev/null
 }
 
 install_packages() {
@@ -154,9 +168,8 @@ run_in_uml() {
     # The guest's memory is a file of the machine's. A container's /dev/shm is often smaller than that.
     [ "$(df --output=avail -B 1 /dev/shm 2>/dev/null | tail -n 1)" -gt "$(numfmt --from=iec "$memory")" ] 2>/dev/null ||
         memory_in=$job
-    # A bus waits for no other program, so this comes before others where this user may say so.
     local first=()
-    [ "$(nice -n -10 nice 2>/dev/null)" != -10 ] || first=(nice -n -10)
+    [ $real_time = false ] || ! chrt --rr 1 true 2>/dev/null || first=(chrt --rr 1)
     # Through a pipe, because the kernel would put the user's terminal into raw mode.
     local out err
     exec 3> >(exec cat) && out=$!
@@ -183,11 +196,12 @@ run_in_uml() {
     exit "$(cat "$job/status")"
 }
 
-limit=600 memory=1G uml=false serial=()
+limit=600 memory=1G uml=false real_time=false serial=()
 while [ $# -gt 0 ]; do
     case $1 in
     -h | --help) usage && exit ;;
     --uml) uml=true && shift ;;
+    --real-time) real_time=true && shift ;;
     --serial | --timeout | --memory)
         [ $# -ge 2 ] || wrong "$1 needs a value"
         case $1 in

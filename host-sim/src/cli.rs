@@ -1,7 +1,10 @@
 //! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
 //! decided in [`crate::options`].
 
+use crate::capture::{self, arguments::CaptureArguments};
+use crate::ecu::{self, arguments::EcuArguments};
 use crate::evaluate::{self, arguments::EvaluateArguments};
+use crate::hil::{self, arguments::HilArguments};
 use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use crate::string::{self, arguments::StringArguments};
@@ -44,9 +47,18 @@ pub enum Command {
     /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
     #[command(after_help = string::arguments::AFTER_HELP)]
     String(StringArguments),
-    /// Give a unit the traffic of a recorded CAN bus and print what it sends
+    /// Give a unit the traffic of a recorded CAN bus and print what it sends, or put that traffic on a bus
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),
+    /// Record the traffic of a CAN interface
+    #[command(after_help = capture::arguments::AFTER_HELP)]
+    Record(CaptureArguments),
+    /// Be an onboard unit on a CAN interface
+    #[command(after_help = ecu::arguments::AFTER_HELP)]
+    Ecu(EcuArguments),
+    /// Drive an onboard unit on a CAN interface through a scenario, and judge it
+    #[command(after_help = hil::arguments::AFTER_HELP)]
+    Hil(HilArguments),
 }
 
 /// What can follow `run`.

@@ -4,14 +4,17 @@
 pub mod baseline;
 pub mod bus;
 pub mod candump;
+pub mod capture;
 pub mod channel;
 pub mod cli;
 pub mod corridor;
+pub mod ecu;
 pub mod error;
 pub mod evaluate;
 pub mod figures;
 pub mod ground;
 pub mod heard;
+pub mod hil;
 pub mod metrics;
 pub mod modem;
 pub mod observer;

@@ -4,7 +4,7 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{evaluate, output, price, replay, run, string, sweep};
+use holdover_sim::{capture, ecu, evaluate, hil, output, price, replay, run, string, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -15,6 +15,9 @@ fn main() -> ExitCode {
         Options::String(options) => string::string(&options),
         Options::Price(options) => price::price(&options),
         Options::Replay(options) => replay::replay(&options),
+        Options::Record(options) => capture::capture(&options),
+        Options::Ecu(options) => ecu::run(&options),
+        Options::Hil(options) => hil::run(&options),
     });
     match verdict {
         Ok(verdict) => verdict.into(),

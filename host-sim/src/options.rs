@@ -1,9 +1,12 @@
 //! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
+use crate::capture::CaptureOptions;
 use crate::cli::{Cli, Command, RunArguments};
+use crate::ecu::options::EcuOptions;
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
+use crate::hil::options::HilOptions;
 use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
@@ -12,7 +15,7 @@ use crate::sweep::options::SweepOptions;
 use std::path::{Path, PathBuf};
 
 /// What to do.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Options {
     /// Run a scenario.
     Run(RunOptions),
@@ -26,6 +29,12 @@ pub enum Options {
     String(StringOptions),
     /// Replay a log.
     Replay(ReplayOptions),
+    /// Record an interface.
+    Record(CaptureOptions),
+    /// Be a unit.
+    Ecu(EcuOptions),
+    /// Judge one.
+    Hil(Box<HilOptions>),
 }
 
 /// A run and what becomes of its results.
@@ -69,6 +78,9 @@ impl Options {
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
+            Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
+            Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
+            Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
             None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
         }
     }

@@ -4,7 +4,7 @@ mod files;
 mod page;
 mod table;
 
-pub use files::write_report;
+pub use files::{mode_name, write_report};
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,12 +1,12 @@
 //! One vehicle: its body, its onboard unit, its own bus between the two, and its modem. What its sensors and its modem put
-//! on the bus enters the unit; what the unit commands moves the body.
+//! on the bus enters the unit; what the unit commands moves the body. The unit's seat on the bus can be given to another
+//! one outside ([`Vehicle::give_seat`]).
 
 use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
-use holdover::time::{Duration, GnssTime, Instant};
-use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
-use holdover::wire::command::Effort;
+use holdover::time::{GnssTime, Instant};
+use holdover::wire::command::{Effort, ModeCode};
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -20,6 +20,14 @@ use crate::corridor::road::Road;
 use crate::modem::{Course, PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
+use actuators::Actuators;
+
+pub mod actuators;
+pub mod alias;
+mod quantities;
+
+pub use alias::Alias;
+pub use quantities::{acceleration, distance, duration, fine_seconds, metres, seconds, speed};
 
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
@@ -32,6 +40,8 @@ pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 const SYNC_EVERY_S: f64 = 0.5;
 /// Cycle of the position on the globe, in seconds.
 const LOCATE_EVERY_S: f64 = 0.1;
+/// What a unit outside said of its target is held for so long: the message's timeout.
+const ESTIMATE_TIMEOUT_S: f64 = 0.05;
 /// Cycle of the driver's wish, in seconds.
 const WISH_EVERY_S: f64 = 0.1;
 
@@ -91,6 +101,8 @@ pub struct Vehicle {
     pub effort: Effort,
     /// Whether its unit's envelope changed that.
     pub limited: bool,
+    /// In which mode that was.
+    pub mode: ModeCode,
     /// What its unit said last of its target.
     pub estimate: Option<TargetEstimate>,
     wish: EgoIntent,
@@ -102,7 +114,13 @@ pub struct Vehicle {
     listener: Receiver<PEERS>,
     transmitter: Transmitter,
     bus: MemoryBus,
-    ecu: MemoryNode,
+    /// The unit's place on the bus; `None`: a unit outside has it, which commands through these actuators.
+    ecu: Option<MemoryNode>,
+    actuators: Actuators,
+    /// When the unit last said something of its target.
+    estimate_s: f64,
+    /// How its bus calls the stations.
+    alias: Alias,
     harness: MemoryNode,
     tag: u8,
     synced: u8,
@@ -132,6 +150,7 @@ impl Vehicle {
             command_mps2: 0.0,
             effort: Effort::Force(0),
             limited: false,
+            mode: ModeCode::Standby,
             estimate: None,
             wish,
             clock_offset_us,
@@ -141,7 +160,10 @@ impl Vehicle {
             relay: Relay::new(config.base_id),
             listener: Receiver::new(config.base_id, Role::Modem),
             transmitter: Transmitter::default(),
-            ecu: bus.node(),
+            ecu: Some(bus.node()),
+            actuators: Actuators::default(),
+            estimate_s: f64::NEG_INFINITY,
+            alias: Alias::default(),
             harness: bus.node(),
             bus,
             tag: 0,
@@ -153,12 +175,7 @@ impl Vehicle {
     ///
     /// # Errors
     /// What the unit finds wrong with the map.
-    pub fn set_out(
-        &mut self,
-        ground: Ground,
-        itinerary: &'static Itinerary,
-        course: Course,
-    ) -> Result<(), MapError> {
+    pub fn set_out(&mut self, ground: Ground, itinerary: &'static Itinerary, course: Course) -> Result<(), MapError> {
         self.ground = Some(ground);
         self.relay.set_out(course);
         self.unit.set_out(itinerary)
@@ -168,6 +185,29 @@ impl Vehicle {
     #[must_use]
     pub fn listen(&self) -> MemoryNode {
         self.bus.node()
+    }
+
+    /// Takes its unit off the bus and hands out the place, for a unit outside. On this bus stations are called by `alias`.
+    pub fn give_seat(&mut self, alias: Alias) -> MemoryNode {
+        self.alias = alias;
+        self.ecu.take().unwrap_or_else(|| self.bus.node())
+    }
+
+    /// How its bus calls the stations.
+    #[must_use]
+    pub fn alias(&self) -> Alias {
+        self.alias
+    }
+
+    /// When its unit said so of its target, at a time of the run.
+    #[must_use]
+    pub fn estimate_s(&self) -> f64 {
+        self.estimate_s
+    }
+
+    /// Lets its driver engage the unit, if it is to drive at all, or not yet.
+    pub fn engage(&mut self, engages: bool) {
+        self.engaged = engages && self.wish.engaged;
     }
 
     /// Messages that its modem had no slot for.
@@ -265,14 +305,15 @@ impl Vehicle {
             stamp: gnss(at_s).stamp(),
             position_accuracy: Some(self.sensors.position_accuracy),
             speed_accuracy: Some(self.sensors.speed_accuracy),
-            station: station(self.index),
+            station: self.alias.of(station(self.index)),
         };
         self.put(at_s, &Message::Ego(Said::Motion(motion)))
     }
 
     /// What the driver wants.
     fn wish(&mut self, at_s: f64) -> io::Result<()> {
-        let wish = EgoIntent { engaged: self.engaged, ..self.wish };
+        let predecessor = self.alias.of_predecessor(self.wish.predecessor);
+        let wish = EgoIntent { engaged: self.engaged, predecessor, ..self.wish };
         self.put(at_s, &Message::EgoIntent(wish))
     }
 
@@ -282,18 +323,9 @@ impl Vehicle {
     /// The bus's.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
         let mut frames = Vec::new();
-        self.relay.hear(at_s, message, &mut frames);
+        self.relay.hear(at_s, &self.alias.of_message(message), &mut frames);
         let at = self.instant(at_s);
         frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
-    }
-
-    /// Lets the unit receive all that has been on the bus up to now.
-    fn receive(&mut self, at_s: f64) -> io::Result<()> {
-        let now = self.instant(at_s);
-        while let Some((at, frame)) = self.ecu.receive(now)? {
-            let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
-        }
-        Ok(())
     }
 
     /// One period of the unit: receive, tick, transmit. What its modem broadcasts then, if anything.
@@ -301,34 +333,75 @@ impl Vehicle {
     /// # Errors
     /// The bus's.
     pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
-        self.receive(at_s)?;
         let now = self.instant(at_s);
-        for frame in self.unit.tick(now).frames {
-            self.ecu.send(now, (&frame).into())?;
+        if let Some(ecu) = &mut self.ecu {
+            while let Some((at, frame)) = ecu.receive(now)? {
+                let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
+            }
+            for frame in self.unit.tick(now).frames {
+                ecu.send(now, (&frame).into())?;
+            }
+            self.estimate = None;
+        } else if self.estimate_s + ESTIMATE_TIMEOUT_S < at_s {
+            self.estimate = None;
         }
-        self.estimate = None;
-        while let Some((_, frame)) = self.harness.receive(now)? {
+        self.take_in(at_s)?;
+        Ok(self.transmitter.broadcast().map(|message| self.alias.of_message(&message)))
+    }
+
+    /// Takes in what the unit has said up to now.
+    fn take_in(&mut self, at_s: f64) -> io::Result<()> {
+        let now = self.instant(at_s);
+        while let Some((at, frame)) = self.harness.receive(now)? {
+            let at_s = self.time_of(at);
             match self.listener.receive(&frame) {
                 Ok(Received::Whole(Message::Own(said))) => {
                     self.transmitter.take(&said);
                     self.relay.take(&said);
                 }
-                Ok(Received::Whole(Message::Estimate(estimate))) => self.estimate = Some(estimate),
+                Ok(Received::Whole(Message::Estimate(estimate))) => {
+                    (self.estimate, self.estimate_s) = (Some(estimate), at_s);
+                }
                 Ok(Received::Whole(Message::Command(command))) => {
                     self.command_mps2 = command.acceleration.get().to_num();
                     self.effort = command.effort;
                     self.limited = command.limited;
+                    self.mode = command.mode;
+                    if self.ecu.is_none() && command.mode != ModeCode::Standby {
+                        self.actuators.take(at_s, self.effort);
+                    }
                 }
                 _ => {}
             }
         }
-        Ok(self.transmitter.broadcast())
+        Ok(())
+    }
+
+    /// The body moves on from the time of a tick to the next one. A command from outside is in force from when it came.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
+        if self.ecu.is_some() {
+            self.plant.drive(self.effort, period_s);
+            return Ok(());
+        }
+        self.take_in(at_s + period_s)?;
+        for (effort, length_s) in self.actuators.pieces(at_s, at_s + period_s) {
+            let without = || self.effort_for(actuators::WITHOUT_COMMAND_MPS2);
+            self.plant.drive(effort.unwrap_or_else(without), length_s);
+        }
+        Ok(())
     }
 
     /// Drives it by another acceleration than its unit's command, as far as its body can.
     pub fn override_with(&mut self, wanted_mps2: f64) {
         self.command_mps2 = wanted_mps2;
-        self.effort = self.unit.config().body.effort(acceleration(wanted_mps2), speed(self.plant.speed_mps));
+        self.effort = self.effort_for(wanted_mps2);
+    }
+
+    fn effort_for(&self, wanted_mps2: f64) -> Effort {
+        self.unit.config().body.effort(acceleration(wanted_mps2), speed(self.plant.speed_mps))
     }
 
     fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
@@ -360,52 +433,4 @@ pub fn wish(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap
         target_speed: speed(target_speed_mps),
         time_gap: Some(seconds(time_gap_s)),
     }
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating, and positions are far smaller
-pub fn metres(m: f64) -> Position {
-    Position::from_bits((m * f64::from(1 << 20)).round() as i64)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating
-pub fn distance(m: f64) -> Distance {
-    Distance::from_bits((m * f64::from(1 << 20)).round() as i32)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating
-pub fn speed(mps: f64) -> Speed {
-    Speed::from_bits((mps.max(0.0) * f64::from(1 << 23)).round() as i32)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating
-pub fn acceleration(mps2: f64) -> Acceleration {
-    Acceleration::from_bits((mps2 * f64::from(1 << 25)).round() as i32)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating
-pub fn seconds(s: f64) -> Seconds {
-    Seconds::from_bits((s * f64::from(1 << 29)).round() as i32)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // saturating
-pub fn fine_seconds(s: f64) -> FineSeconds {
-    FineSeconds::from_bits((s * f64::from(1 << 30)).round() as i32)
-}
-
-/// To the core's format, to nearest.
-#[must_use]
-pub fn duration(s: f64) -> Duration {
-    Duration::from_micros(micros(s))
 }

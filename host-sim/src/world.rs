@@ -24,7 +24,7 @@ use crate::plant::{Machine, Plant};
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::streams::{Purpose, stream, unit};
-use crate::vehicle::{Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
+use crate::vehicle::{Alias, Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
 
 mod air;
 mod tick;
@@ -33,7 +33,7 @@ pub use air::{Air, Arrived};
 pub use tick::{Bounds, TargetBelief, Tick};
 
 /// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
-const WARM_UP_S: f64 = 1.0;
+pub const WARM_UP_S: f64 = 1.0;
 
 /// The trace of a run.
 pub struct Trace {
@@ -89,7 +89,8 @@ pub struct World<'a> {
     log: Option<(usize, MemoryNode)>,
     paper: Paper,
     measured: Measured,
-    leader_start_m: f64,
+    /// Where the bodies start.
+    starts_m: Vec<f64>,
 }
 
 impl<'a> World<'a> {
@@ -115,7 +116,7 @@ impl<'a> World<'a> {
             vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us, sensors)?);
         }
         let measured = Measured::of(scenario);
-        let leader_start_m = vehicles[0].plant.position_m;
+        let starts_m = vehicles.iter().map(|vehicle: &Vehicle| vehicle.plant.position_m).collect();
         Ok(Self {
             scenario,
             air: Air::new(&scenario.channel, seed),
@@ -125,7 +126,7 @@ impl<'a> World<'a> {
             vehicles,
             paper: Paper::new(measured.vehicle, scenario.step_s),
             measured,
-            leader_start_m,
+            starts_m,
         })
     }
 
@@ -134,11 +135,60 @@ impl<'a> World<'a> {
     /// # Errors
     /// The buses'.
     pub fn run(mut self, mut progress: impl FnMut(f64)) -> io::Result<Trace> {
-        self.warm_up()?;
         let period_s = self.scenario.period_s;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a day of milliseconds at most
-        let ticks = (self.scenario.duration_s / period_s).round() as usize;
-        let mut trace = Trace {
+        for tick in (1..=self.warm_up_ticks(WARM_UP_S)).rev() {
+            let at_s = -f64::from(tick) * period_s;
+            self.approach(at_s)?;
+            self.answer(at_s)?;
+        }
+        self.begin();
+        let ticks = self.ticks();
+        let mut trace = self.trace();
+        for tick in 0..ticks {
+            #[allow(clippy::cast_precision_loss)]
+            let at_s = tick as f64 * period_s;
+            self.speak(at_s)?;
+            self.act(at_s, &mut trace)?;
+            self.drive(at_s)?;
+            if tick % 100 == 0 {
+                #[allow(clippy::cast_precision_loss)]
+                progress(tick as f64 / ticks as f64);
+            }
+        }
+        self.finish(trace)
+    }
+
+    /// Gives a vehicle's unit's seat to a unit outside, which calls stations by the alias. What that one says up to a time
+    /// has to be on the bus before the world goes on from there.
+    pub fn give_seat(&mut self, vehicle: usize, alias: Alias) -> MemoryNode {
+        self.vehicles[vehicle].give_seat(alias)
+    }
+
+    /// The vehicles.
+    #[must_use]
+    pub fn vehicles(&self) -> &[Vehicle] {
+        &self.vehicles
+    }
+
+    /// Ticks of the run.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a day of milliseconds at most
+    pub fn ticks(&self) -> usize {
+        (self.scenario.duration_s / self.scenario.period_s).round() as usize
+    }
+
+    /// Ticks of a time before the run that is at least so long, in seconds, and ends when the own messages, which go out
+    /// from the first tick on, are due at time 0.
+    #[must_use]
+    pub fn warm_up_ticks(&self, at_least_s: f64) -> u32 {
+        warm_up_ticks(at_least_s, self.scenario.message_rate_hz, self.scenario.period_s)
+    }
+
+    /// The trace of a run that has not begun.
+    #[must_use]
+    pub fn trace(&self) -> Trace {
+        let ticks = self.ticks();
+        Trace {
             times_s: Vec::with_capacity(ticks),
             vehicles: vec![Vec::with_capacity(ticks); self.vehicles.len()],
             paper: Vec::with_capacity(ticks),
@@ -147,16 +197,92 @@ impl<'a> World<'a> {
             channel: Channel::new(&self.scenario.channel, 0),
             log: Vec::new(),
             turned_away: 0,
-        };
-        for tick in 0..ticks {
-            #[allow(clippy::cast_precision_loss)]
-            let at_s = tick as f64 * period_s;
-            self.tick(at_s, &mut trace)?;
-            if tick % 100 == 0 {
-                #[allow(clippy::cast_precision_loss)]
-                progress(tick as f64 / ticks as f64);
-            }
         }
+    }
+
+    /// The time before the run, as every real unit knows it: it has power and ticks, its time base and its sensors
+    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. `at_s` is
+    /// negative; [`answer`](Self::answer) follows.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn approach(&mut self, at_s: f64) -> io::Result<()> {
+        self.place_recorded_leader(0.0);
+        for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
+            vehicle.engage(false);
+            vehicle.plant.position_m = start_m + vehicle.plant.speed_mps * at_s;
+            vehicle.speak(at_s, self.scenario.period_s, None)?;
+        }
+        Ok(())
+    }
+
+    /// The units answer before the run.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn answer(&mut self, at_s: f64) -> io::Result<()> {
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s).map(|_| ()))
+    }
+
+    /// The drivers engage their units; the run begins.
+    pub fn begin(&mut self) {
+        for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
+            vehicle.plant.position_m = *start_m;
+            vehicle.engage(true);
+        }
+    }
+
+    /// The first part of a tick: messages arrive, sensors and time base speak.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        self.deliver(at_s)?;
+        self.place_recorded_leader(at_s);
+        self.show_to_paper(at_s)?;
+        let mut ahead = None;
+        for vehicle in &mut self.vehicles {
+            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
+            ahead = Some(vehicle.seen_from_behind());
+        }
+        Ok(())
+    }
+
+    /// The second part: the units tick, and their modems broadcast.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn act(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for vehicle in &mut self.vehicles {
+            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
+        }
+        trace.times_s.push(at_s);
+        trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
+        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
+            ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
+        }
+        for (from, message) in broadcasts {
+            let others = (0..self.vehicles.len()).filter(|to| *to != from);
+            self.air.broadcast(at_s, from, others, message);
+        }
+        Ok(())
+    }
+
+    /// The third part: the bodies move on to the next tick.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn drive(&mut self, at_s: f64) -> io::Result<()> {
+        let period_s = self.scenario.period_s;
+        self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged).try_for_each(|vehicle| vehicle.drive(at_s, period_s))
+    }
+
+    /// The run is over: the trace is completed.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn finish(mut self, mut trace: Trace) -> io::Result<Trace> {
         trace.refusals = Refusal::ALL
             .iter()
             .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
@@ -171,46 +297,13 @@ impl<'a> World<'a> {
         Ok(trace)
     }
 
-    /// The time before the run; it ends when the own messages, which go out from the first tick on, are due at time 0.
-    fn warm_up(&mut self) -> io::Result<()> {
-        let period_s = self.scenario.period_s;
-        self.place_recorded_leader(0.0);
-        let ticks = warm_up_ticks(self.scenario.message_rate_hz, period_s);
-        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.warm_up(0.0, period_s, ticks))
-    }
-
-    fn tick(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
-        self.deliver(at_s)?;
-        self.place_recorded_leader(at_s);
-        self.show_to_paper(at_s)?;
-        let (mut broadcasts, mut ahead) = (Vec::new(), None);
-        for vehicle in &mut self.vehicles {
-            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
-            ahead = Some(vehicle.seen_from_behind());
-            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
-        }
-        trace.times_s.push(at_s);
-        trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
-        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
-            ticks.push(Tick::of(vehicle));
-        }
-        for (from, message) in broadcasts {
-            let others = (0..self.vehicles.len()).filter(|to| *to != from);
-            self.air.broadcast(at_s, from, others, message);
-        }
-        for vehicle in self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged) {
-            vehicle.plant.drive(vehicle.effort, self.scenario.period_s);
-        }
-        Ok(())
-    }
-
     /// The literal paper decodes what the measuring vehicle's unit receives.
     fn show_to_paper(&mut self, at_s: f64) -> io::Result<()> {
         let by = &self.vehicles[self.measured.by];
         let near = metres(self.vehicles[self.measured.vehicle].plant.position_m);
         while let Some((at, frame)) = self.tap.receive(by.instant(at_s))? {
             if let Some(heard) = self.observer.observe(by.time_of(at), &frame, near) {
-                self.paper.hear(&heard);
+                self.paper.hear(&by.alias().of_heard(heard));
             }
         }
         Ok(())
@@ -229,7 +322,7 @@ impl<'a> World<'a> {
         let Some(motion) = &self.scenario.leader.motion else { return };
         let state = motion.at(motion.start_s() + at_s);
         let leader = &mut self.vehicles[0];
-        leader.plant.position_m = self.leader_start_m + state.position_m - motion.at(motion.start_s()).position_m;
+        leader.plant.position_m = self.starts_m[0] + state.position_m - motion.at(motion.start_s()).position_m;
         leader.plant.speed_mps = state.speed_mps.max(0.0);
         leader.plant.acceleration_mps2 = motion.past_slope(motion.start_s() + at_s);
         leader.command_mps2 = leader.plant.acceleration_mps2;
@@ -239,8 +332,8 @@ impl<'a> World<'a> {
 /// The ticks of a warm-up: whole cycles of the messages.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
-pub fn warm_up_ticks(message_rate_hz: f64, period_s: f64) -> u32 {
-    let messages = (WARM_UP_S * message_rate_hz).ceil();
+pub fn warm_up_ticks(at_least_s: f64, message_rate_hz: f64, period_s: f64) -> u32 {
+    let messages = (at_least_s * message_rate_hz).ceil();
     (messages / message_rate_hz / period_s - 1e-9).ceil() as u32
 }
 

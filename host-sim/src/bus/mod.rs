@@ -1,15 +1,40 @@
 //! CAN buses behind one trait: a node sends frames, and receives in the order of time what the other nodes sent.
 //!
-//! [`memory`] is a bus inside the process; [`fault`] and [`record`] are middleware that wraps a node of any bus.
+//! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are middleware
+//! that wraps a node of any bus. [`port`] is for those who live by the bus's time.
 
 pub mod fault;
 pub mod frame;
 pub mod memory;
+pub mod port;
 pub mod record;
+#[cfg(target_os = "linux")]
+pub mod socketcan;
 
+use crate::error::Error;
 pub use frame::Frame;
 use holdover::time::Instant;
+pub use port::Port;
 use std::io;
+
+/// Opens a CAN interface of this machine.
+///
+/// # Errors
+/// What [`socketcan::SocketCan::open`] says.
+#[cfg(target_os = "linux")]
+pub fn open(name: &str) -> Result<socketcan::SocketCan, Error> {
+    socketcan::SocketCan::open(name).map_err(|error| error.in_option("--bus"))
+}
+
+/// Opens a CAN interface of this machine.
+///
+/// # Errors
+/// Always: there are none.
+#[cfg(not(target_os = "linux"))]
+pub fn open(name: &str) -> Result<Box<dyn Port>, Error> {
+    let cause = format!("{} is an interface of SocketCAN, which is Linux's", crate::error::quoted(name));
+    Err(Error::new(cause, "run this command on Linux").in_option("--bus"))
+}
 
 /// One node of a classic CAN bus.
 pub trait Bus {

@@ -2,6 +2,7 @@
 
 use super::Interface;
 use crate::bus::Frame;
+use crate::bus::port::BusError;
 use embedded_can::{Frame as _, Id};
 use holdover::time::Instant;
 use std::fmt::Write as _;
@@ -36,6 +37,28 @@ impl<W: Write> LogWriter<W> {
         self.out.write_all(self.line.as_bytes())
     }
 
+    /// Writes one error frame.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn write_error(&mut self, at: Instant, error: &BusError) -> io::Result<()> {
+        const ERROR_FLAG: u32 = 0x2000_0000;
+        self.line.clear();
+        self.begin(at).map_err(io::Error::other)?;
+        write!(self.line, "{:08X}#", error.classes | ERROR_FLAG).map_err(io::Error::other)?;
+        error.data.iter().try_for_each(|byte| write!(self.line, "{byte:02X}")).map_err(io::Error::other)?;
+        self.line.push('\n');
+        self.out.write_all(self.line.as_bytes())
+    }
+
+    /// Hands over what it still holds.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
     /// Ends the log.
     ///
     /// # Errors
@@ -45,10 +68,14 @@ impl<W: Write> LogWriter<W> {
         Ok(self.out)
     }
 
-    fn format(&mut self, at: Instant, frame: &Frame) -> std::fmt::Result {
-        let line = &mut self.line;
+    fn begin(&mut self, at: Instant) -> std::fmt::Result {
         let micros = at.as_micros();
-        write!(line, "({:010}.{:06}) {} ", micros / 1_000_000, micros % 1_000_000, self.interface)?;
+        write!(self.line, "({:010}.{:06}) {} ", micros / 1_000_000, micros % 1_000_000, self.interface)
+    }
+
+    fn format(&mut self, at: Instant, frame: &Frame) -> std::fmt::Result {
+        self.begin(at)?;
+        let line = &mut self.line;
         match frame.id() {
             Id::Standard(id) => write!(line, "{:03X}#", id.as_raw())?,
             Id::Extended(id) => write!(line, "{:08X}#", id.as_raw())?,

@@ -26,7 +26,7 @@ use crate::plant::{Difference, Kind, Machine, Plant};
 use crate::scenario::{Accuracy, Envelope};
 use crate::sensors::Sensors;
 use crate::vehicle::{Ground, Vehicle, distance, duration, fine_seconds, seconds, speed, station};
-use crate::world::{Air, Arrived, TargetBelief, clock_offset, horizon, warm_up_ticks};
+use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, horizon, warm_up_ticks};
 
 /// How well every vehicle knows its own motion, as it publishes it.
 const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
@@ -336,7 +336,7 @@ impl<'a> Traffic<'a> {
             .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
             .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;
         let period_s = self.corridor.period_s;
-        vehicle.warm_up(at_s, period_s, warm_up_ticks(self.corridor.message_rate_hz, period_s))?;
+        vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
         let from_s = trip.at_s + trip.dark_after_s;
         let dark = Window { from_s, to_s: from_s + self.conditions.radio.dark_s };
         Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark })

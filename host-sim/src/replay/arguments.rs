@@ -10,6 +10,11 @@ pub struct ReplayArguments {
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
 
+    /// Put the log's frames on this CAN interface instead, with their timing
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["scenario", "vehicle", "station", "base_id", "period",
+        "step", "summary", "json"])]
+    pub bus: Option<String>,
+
     /// Replay as a unit of this scenario; the paper's if only --vehicle is given
     #[arg(long, value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
@@ -63,6 +68,7 @@ Examples:
   candump -L can0 | holdover-sim replay - --base-id 0x500 --station 7
   holdover-sim --candump ego.log && holdover-sim replay ego.log --vehicle 2
                                              the ego's unit of a run once more
+  holdover-sim replay drive.log --bus vcan0  the same traffic on a CAN interface
 
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first
@@ -72,6 +78,10 @@ Time:
   logs merged of several; it is received late, at its own time. Beyond that,
   after a gap of more than an hour, and without times the log is refused, by
   line. Lines are read one by one, so frames may have been printed by then.
+
+  With --bus the first frame is sent at once and every further one as long after
+  it as the log says; error frames and CAN FD are left out. How late the latest
+  of them was is told at the end.
 
 What becomes of a frame:
   recognised  a good frame of one of the catalogue's messages to the unit

@@ -5,9 +5,11 @@
 //! log -> candump -> player (timeline -> tick, receive) -> candump
 //!                   `-> tally -> summary
 //! ```
-//! The log is read and answered line by line, so its length does not matter.
+//! The log is read and answered line by line, so its length does not matter. With `--bus` its frames go onto a CAN
+//! interface instead ([`onto_bus`]).
 
 pub mod arguments;
+pub mod onto_bus;
 pub mod options;
 pub mod player;
 pub mod summary;
@@ -43,6 +45,9 @@ pub fn replay(options: &ReplayOptions) -> Result<Verdict, Error> {
 const STDIN: &str = "standard input";
 
 fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>) -> Result<Verdict, Error> {
+    if let Output::Bus(bus) = &options.output {
+        return onto_bus::replay(bus, options.interface.as_ref(), file, log);
+    }
     let start = time::Instant::now();
     let compares = options.output != Output::Frames;
     let mut player = Player::new(&options.config, compares)
@@ -72,7 +77,7 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
     let elapsed_s = start.elapsed().as_secs_f64();
     let summary = Summary::new(player.tally(), player.has_changed().unwrap_or(false), elapsed_s);
     match options.output {
-        Output::Frames => {}
+        Output::Frames | Output::Bus(_) => {}
         Output::Summary => output::print(&summary.text())?,
         Output::Json => {
             let json = serde_json::to_string(&summary).map_err(|e| Error::new(e.to_string(), "report this"))?;

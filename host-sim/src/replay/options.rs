@@ -22,13 +22,15 @@ pub struct ReplayOptions {
     pub config: Config,
     /// The interface to replay; `None` is that of the first frame.
     pub interface: Option<Interface>,
-    /// What to print.
+    /// What becomes of it.
     pub output: Output,
 }
 
-/// What a replay prints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What becomes of a replay.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
+    /// No unit is involved: the log's own frames go onto this interface.
+    Bus(String),
     /// The unit's frames.
     Frames,
     /// The summary as text.
@@ -43,7 +45,7 @@ impl ReplayOptions {
     /// # Errors
     /// Values that cannot be, and a scenario that cannot be used.
     pub fn read(arguments: ReplayArguments) -> Result<Self, Error> {
-        let ReplayArguments { log, scenario, vehicle, station, base_id, period, step, interface, summary, json } =
+        let ReplayArguments { log, bus, scenario, vehicle, station, base_id, period, step, interface, summary, json } =
             arguments;
         let mut config = match (&scenario, vehicle) {
             (None, None) => of_a_car(station, period, step)?,
@@ -55,10 +57,11 @@ impl ReplayOptions {
                 Error::new(format!("the first identifier is {id:#x}"), remedy).in_option("--base-id")
             })?;
         }
-        let output = match (json, summary) {
-            (true, _) => Output::Json,
-            (false, true) => Output::Summary,
-            (false, false) => Output::Frames,
+        let output = match (bus, json, summary) {
+            (Some(bus), ..) => Output::Bus(bus),
+            (None, true, _) => Output::Json,
+            (None, false, true) => Output::Summary,
+            (None, false, false) => Output::Frames,
         };
         let interface = interface.map(|name| self::interface(&name)).transpose()?;
         Ok(Self { log: (log != Path::new("-")).then_some(log), config, interface, output })

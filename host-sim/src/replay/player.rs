@@ -107,6 +107,6 @@ impl Player {
     }
 }
 
-fn no_time() -> Error {
+pub(super) fn no_time() -> Error {
     Error::new("the line has no time", "record with `candump -l` or `candump -t a`")
 }

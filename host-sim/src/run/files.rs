@@ -5,6 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use holdover::time::Instant;
+use holdover::wire::command::ModeCode;
 
 use crate::candump::LogWriter;
 use crate::error::Error;
@@ -42,7 +43,7 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
             field(seen.target.map(|target| target.position_m)),
             field(seen.target.map(|target| target.speed_mps)),
             field(seen.target.map(|target| target.age_s)),
-            mode_name(&seen.mode),
+            mode_name(seen.mode),
             seen.command_mps2,
             field(trace.paper[tick]),
             truth.position_m - length_m - seen.position_m,
@@ -58,9 +59,8 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
 
 /// The name of a mode, as reports spell it.
 #[must_use]
-pub fn mode_name(mode: &holdover::controller::Mode) -> &'static str {
-    use holdover::wire::command::ModeCode;
-    match mode.code() {
+pub const fn mode_name(mode: ModeCode) -> &'static str {
+    match mode {
         ModeCode::Standby => "standby",
         ModeCode::Cooperative => "cooperative",
         ModeCode::Holdover => "holdover",

@@ -173,7 +173,7 @@ fn measured_link(trace: &Trace) -> Link {
 
 fn modes(trace: &Trace, names: &[String]) -> Vec<ModeTrack> {
     let changes = |index: usize| {
-        trace.times_s.iter().zip(&trace.vehicles[index]).map(|(at_s, tick)| (*at_s, mode_name(&tick.mode).to_owned()))
+        trace.times_s.iter().zip(&trace.vehicles[index]).map(|(at_s, tick)| (*at_s, mode_name(tick.mode).to_owned()))
     };
     names
         .iter()

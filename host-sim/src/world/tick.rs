@@ -1,8 +1,8 @@
 //! One tick of one vehicle, for the trace: the vehicle enters; its true motion, its command and what its unit believes of
 //! its target leave. The belief is what stands on the bus.
 
-use holdover::controller::Mode;
 use holdover::units::Speed;
+use holdover::wire::command::ModeCode;
 use holdover::wire::estimate::TargetEstimate;
 
 use crate::vehicle::{Vehicle, metres};
@@ -21,7 +21,7 @@ pub struct Tick {
     /// Whether the envelope changed that.
     pub limited: bool,
     /// Its unit's mode.
-    pub mode: Mode,
+    pub mode: ModeCode,
     /// Where its unit believes its target is.
     pub target: Option<TargetBelief>,
 }
@@ -67,17 +67,25 @@ impl Bounds {
     }
 }
 
+/// Hardest changes of speed of any road vehicle, in m/s²: braking and acceleration.
+const WORST_MPS2: (f64, f64) = (12.0, 8.0);
+
 impl Tick {
     /// Of a vehicle after its unit's tick.
-    pub(super) fn of(vehicle: &Vehicle) -> Self {
+    pub(super) fn of(vehicle: &Vehicle, at_s: f64, period_s: f64) -> Self {
+        // A unit outside ticks by a clock of its own: what it said last it said of an instant between its message before
+        // and that one.
+        let since_s = at_s - vehicle.estimate_s();
+        let apart_s = if since_s < 1e-6 { (0.0, 0.0) } else { (since_s, since_s + period_s) };
+        let belief = |estimate| TargetBelief::of(estimate, vehicle.plant.position_m).carried(apart_s);
         Self {
             position_m: vehicle.plant.position_m,
             speed_mps: vehicle.plant.speed_mps,
             acceleration_mps2: vehicle.plant.acceleration_mps2,
             command_mps2: vehicle.command_mps2,
             limited: vehicle.limited,
-            mode: vehicle.unit.mode(),
-            target: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
+            mode: vehicle.mode,
+            target: vehicle.estimate.as_ref().map(belief),
         }
     }
 }
@@ -98,5 +106,44 @@ impl TargetBelief {
         #[allow(clippy::cast_precision_loss)] // seconds
         let age_s = estimate.age.as_micros() as f64 * 1e-6;
         Self { position_m, speed_mps, age_s, bound }
+    }
+
+    /// The same belief later, by a time that is known to lie between these two.
+    fn carried(self, (least_s, most_s): (f64, f64)) -> Self {
+        let (braking, accelerating) = WORST_MPS2;
+        let carried = |bound: Bounds| Bounds {
+            lowest_position_m: bound.lowest_position_m + bound.lowest_speed_mps * least_s
+                - 0.5 * braking * most_s.powi(2),
+            highest_position_m: bound.highest_position_m
+                + bound.highest_speed_mps * most_s
+                + 0.5 * accelerating * most_s.powi(2),
+            lowest_speed_mps: (bound.lowest_speed_mps - braking * most_s).max(0.0),
+            highest_speed_mps: bound.highest_speed_mps + accelerating * most_s,
+        };
+        Self {
+            position_m: self.position_m + self.speed_mps * least_s,
+            bound: self.bound.map(carried),
+            age_s: self.age_s + least_s,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_belief_of_a_known_instant_stays_what_it_is_and_one_of_a_span_widens() {
+        let bound =
+            Bounds { lowest_position_m: 9.9, highest_position_m: 10.1, lowest_speed_mps: 9.0, highest_speed_mps: 11.0 };
+        let belief = TargetBelief { position_m: 10.0, speed_mps: 10.0, age_s: 0.1, bound: Some(bound) };
+        assert_eq!(belief.carried((0.0, 0.0)), belief);
+        let later = belief.carried((0.01, 0.02));
+        assert!((later.position_m - 10.1).abs() < 1e-9);
+        let bound = later.bound.unwrap();
+        // Where a vehicle can be that drove at 9 to 11 m/s and braked or accelerated at its hardest for 10 to 20 ms.
+        assert!(bound.lowest_position_m < 9.9 + 0.09 && bound.highest_position_m > 10.1 + 0.22);
+        assert!(bound.width_m() < 0.4);
     }
 }

@@ -5,6 +5,10 @@ use holdover::time::Instant;
 
 const TICK_MICROS: u64 = 10_000;
 
+/// A frame takes 94 µs at least (47 bits at 500 kbit/s), so nothing is missed by asking every 50 µs whether one has come. To
+/// ask all the time would keep the bus to the controller busy, and the emulator from everything else.
+const POLL_MICROS: u64 = 50;
+
 /// The time since the start, and the ticks.
 pub struct Clock {
     cycles_per_micro: u32,
@@ -32,6 +36,14 @@ impl Clock {
         self.rest = (passed % per_micro) as u32;
         self.micros = self.micros.wrapping_add(passed / per_micro);
         Instant::from_micros(self.micros)
+    }
+
+    /// Waits until it is time to look at the controller again, or a period begins.
+    pub fn wait(&mut self) {
+        let until = self.micros.wrapping_add(POLL_MICROS).min(self.next);
+        while self.micros < until {
+            self.now();
+        }
     }
 
     /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up

@@ -90,9 +90,10 @@ impl Board {
         [(Incident::Overrun, overruns), transmit, bus_off]
     }
 
-    /// Sends what can be sent. It never sleeps, since nothing would wake it.
+    /// Sends what can be sent, and waits for a moment. It never sleeps, since nothing would wake it.
     pub fn idle(&mut self) {
         while self.outbox.pass(&mut self.port) == Pass::Taken {}
+        self.clock.wait();
     }
 }
 

@@ -1,0 +1,247 @@
+//! A CAN interface of Linux: frames enter and are sent by its driver; frames, the echoes of the own ones and error frames
+//! leave with the kernel's time stamps, in microseconds since 1970.
+//!
+//! *Own frames* come back when they really were on the bus. The kernel marks them, but socket libraries do not pass the
+//! mark on; so a frame that equals one which is still awaited is its echo. A foreign frame that is the same, bit for bit,
+//! at the same time would be taken for it, and its echo for the foreign one: which makes no difference.
+
+use super::port::{BusError, Event, Port};
+use super::{Bus, Frame};
+use crate::error::{Error, quoted};
+use embedded_can::{ExtendedId, Id, StandardId};
+use holdover::time::Instant;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use socketcan::{CanErrorFrame, CanFilter, CanFrame, CanSocket, EmbeddedFrame, Frame as _, Socket, SocketOptions};
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind};
+use std::os::fd::AsFd;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+/// What may wait in the kernel for this program: it holds a second of a full bus, and the system cuts it if it is too much.
+const WAITING_BYTES: usize = 1 << 22;
+/// How long a full transmit queue of the driver is waited for.
+const QUEUE_PATIENCE: Duration = Duration::from_millis(20);
+
+/// A node on a CAN interface.
+#[derive(Debug)]
+pub struct SocketCan {
+    socket: CanSocket,
+    /// Sent and not seen on the bus yet.
+    awaited: VecDeque<Frame>,
+    /// Received, and later than what a [`Bus::receive`] asked for.
+    early: Option<(Instant, Event)>,
+}
+
+impl SocketCan {
+    /// Opens an interface by its name.
+    ///
+    /// # Errors
+    /// There is no CAN, no such interface, or it is down; with the remedy.
+    pub fn open(name: &str) -> Result<Self, Error> {
+        let socket = CanSocket::open_iface(0).and_then(|_| CanSocket::open(name));
+        let socket = socket.map_err(|error| unopened(name, &error))?;
+        if is_down(name) {
+            return Err(Error::new(format!("{} is down", quoted(name)), format!("as root: {}", up(name))));
+        }
+        let set_up = || {
+            socket.set_nonblocking(true)?;
+            socket.set_recv_timestamp(true)?;
+            socket.set_recv_own_msgs(true)?;
+            socket.set_error_filter_accept_all()?;
+            socket.as_raw_socket().set_recv_buffer_size(WAITING_BYTES)
+        };
+        set_up().map_err(|error| unopened(name, &error))?;
+        Ok(Self { socket, awaited: VecDeque::new(), early: None })
+    }
+
+    /// Lets the kernel pass nothing but frames with these standard identifiers, of whatever kind and length, and errors.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn hear_only(&self, ids: impl IntoIterator<Item = u16>) -> io::Result<()> {
+        const STANDARD: u32 = 0x8000_07FF; // the identifier, and that it is not an extended one
+        let filters: Vec<_> = ids.into_iter().map(|id| CanFilter::new(id.into(), STANDARD)).collect();
+        self.socket.set_filters(&filters)
+    }
+
+    /// Frames that were sent and have not been seen on the bus.
+    #[must_use]
+    pub fn awaited(&self) -> usize {
+        self.awaited.len()
+    }
+
+    /// What has happened by now, one by one.
+    fn next(&mut self) -> io::Result<Option<(Instant, Event)>> {
+        if let Some(early) = self.early.take() {
+            return Ok(Some(early));
+        }
+        let (frame, stamps) = match self.socket.read_frame_with_timestamps() {
+            Ok(read) => read,
+            Err(error) => {
+                return match error.kind() {
+                    ErrorKind::WouldBlock | ErrorKind::Interrupted => Ok(None),
+                    ErrorKind::NetworkDown => {
+                        self.awaited.clear();
+                        Ok(Some((self.now(), Event::Down)))
+                    }
+                    _ => Err(error),
+                };
+            }
+        };
+        let at = stamps.socket.map_or_else(|| self.now(), instant);
+        let event = match classic(&frame) {
+            Ok(frame) => match self.awaited.iter().position(|sent| *sent == frame) {
+                Some(place) => {
+                    self.awaited.remove(place);
+                    Event::Sent(frame)
+                }
+                None => Event::Received(frame),
+            },
+            Err(error) => Event::Error(error),
+        };
+        Ok(Some((at, event)))
+    }
+
+    fn write(&self, frame: &CanFrame) -> io::Result<()> {
+        let given_up = SystemTime::now() + QUEUE_PATIENCE;
+        loop {
+            match self.socket.write_frame(frame) {
+                // The driver's queue is full: the bus is slower than we are.
+                Err(error) if is_queue_full(&error) && SystemTime::now() < given_up => {
+                    std::thread::sleep(Duration::from_micros(200));
+                }
+                other => return other,
+            }
+        }
+    }
+}
+
+impl Port for SocketCan {
+    fn now(&self) -> Instant {
+        instant(SystemTime::now())
+    }
+
+    fn send(&mut self, frame: Frame) -> io::Result<()> {
+        self.write(&linux(&frame)?)?;
+        self.awaited.push_back(frame);
+        Ok(())
+    }
+
+    fn send_error(&mut self, error: BusError) -> io::Result<()> {
+        let frame = CanErrorFrame::new_error(error.classes, &error.data).map_err(io::Error::other)?;
+        self.write(&CanFrame::Error(frame))
+    }
+
+    fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>> {
+        loop {
+            if let Some(event) = self.next()? {
+                return Ok(Some(event));
+            }
+            let left = until.since(self.now()).as_micros();
+            if left <= 0 {
+                return Ok(None);
+            }
+            // The kernel waits for events by whole milliseconds. What comes in the rest has its stamp all the same.
+            match u16::try_from(left / 1000).unwrap_or(u16::MAX) {
+                0 => std::thread::sleep(Duration::from_micros(left.unsigned_abs())),
+                millis => {
+                    let waited =
+                        poll(&mut [PollFd::new(self.socket.as_fd(), PollFlags::POLLIN)], PollTimeout::from(millis));
+                    match waited {
+                        Ok(_) | Err(nix::Error::EINTR) => {}
+                        Err(error) => return Err(error.into()),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// By the bus's own time: what is sent is sent now, whatever its time, and what comes back of it is not passed on.
+impl Bus for SocketCan {
+    fn send(&mut self, _at: Instant, frame: Frame) -> io::Result<()> {
+        Port::send(self, frame)
+    }
+
+    fn receive(&mut self, upto: Instant) -> io::Result<Option<(Instant, Frame)>> {
+        while let Some((at, event)) = self.next()? {
+            match event {
+                Event::Received(_) if at > upto => {
+                    self.early = Some((at, event));
+                    return Ok(None);
+                }
+                Event::Received(frame) => return Ok(Some((at, frame))),
+                Event::Sent(_) | Event::Error(_) | Event::Down => {}
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn instant(time: SystemTime) -> Instant {
+    let since = time.duration_since(UNIX_EPOCH).unwrap_or_default();
+    Instant::from_micros(u64::try_from(since.as_micros()).unwrap_or(u64::MAX))
+}
+
+/// The frame, or the error that it reports.
+fn classic(frame: &CanFrame) -> Result<Frame, BusError> {
+    let id = || match frame.raw_id() & 0x1FFF_FFFF {
+        raw if frame.is_extended() => ExtendedId::new(raw).map(Id::Extended),
+        raw => u16::try_from(raw).ok().and_then(StandardId::new).map(Id::Standard),
+    };
+    let made = match frame {
+        CanFrame::Data(data) => id().and_then(|id| Frame::new(id, EmbeddedFrame::data(data))),
+        CanFrame::Remote(remote) => id().and_then(|id| Frame::new_remote(id, EmbeddedFrame::dlc(remote))),
+        CanFrame::Error(_) => None,
+    };
+    made.ok_or_else(|| {
+        let mut data = [0; 8];
+        data.iter_mut().zip(frame.data()).for_each(|(to, from)| *to = *from);
+        BusError { classes: frame.raw_id() & 0x1FFF_FFFF, data }
+    })
+}
+
+fn linux(frame: &Frame) -> io::Result<CanFrame> {
+    let made = match frame.is_remote_frame() {
+        true => <CanFrame as EmbeddedFrame>::new_remote(frame.id(), frame.dlc()),
+        false => <CanFrame as EmbeddedFrame>::new(frame.id(), frame.data()),
+    };
+    made.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "not a classic frame"))
+}
+
+fn is_queue_full(error: &io::Error) -> bool {
+    const ENOBUFS: i32 = 105;
+    error.raw_os_error() == Some(ENOBUFS) || error.kind() == ErrorKind::WouldBlock
+}
+
+fn is_down(name: &str) -> bool {
+    const UP: u32 = 1;
+    let flags = std::fs::read_to_string(format!("/sys/class/net/{name}/flags")).ok();
+    let flags = flags.and_then(|flags| u32::from_str_radix(flags.trim().trim_start_matches("0x"), 16).ok());
+    flags.is_some_and(|flags| flags & UP == 0)
+}
+
+/// The command that takes it up.
+fn up(name: &str) -> String {
+    let bitrate = if name.starts_with("can") { " type can bitrate 500000" } else { "" };
+    format!("ip link set {name} up{bitrate}")
+}
+
+fn unopened(name: &str, error: &io::Error) -> Error {
+    const EAFNOSUPPORT: i32 = 97;
+    const ENODEV: i32 = 19;
+    let shown = quoted(name);
+    let is_there = std::path::Path::new("/sys/class/net").join(name).exists();
+    match error.raw_os_error() {
+        Some(EAFNOSUPPORT) => Error::new(
+            "this kernel has no CAN",
+            "as root: modprobe can-raw; or run the command under a kernel that has it: scripts/vcan.sh COMMAND...",
+        ),
+        Some(ENODEV) if is_there => Error::new(format!("{shown} is no CAN interface"), "name one, such as vcan0"),
+        Some(ENODEV) => Error::new(
+            format!("there is no network interface {shown}"),
+            format!("as root: modprobe vcan && ip link add dev {name} type vcan && ip link set {name} up"),
+        ),
+        _ => Error::new(format!("{shown} cannot be used ({error})"), "check the interface with `ip -details link`"),
+    }
+}

@@ -1,0 +1,100 @@
+//! `record`: what happens on a CAN interface enters, a candump log with the kernel's time stamps leaves.
+
+pub mod arguments;
+
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use holdover::time::{Duration, Instant};
+
+use crate::bus;
+use crate::bus::port::{Event, Port};
+use crate::candump::LogWriter;
+use crate::error::Error;
+use crate::options::can_be_file;
+use crate::output;
+use crate::vehicle::duration;
+use crate::verdict::Verdict;
+use arguments::CaptureArguments;
+
+/// Between two looks at whether the time is up, and two flushes of the log.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// A recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaptureOptions {
+    /// The interface.
+    pub interface: String,
+    /// The log; `None` is standard output.
+    pub file: Option<PathBuf>,
+    /// Its length; `None`: until it is interrupted.
+    pub length: Option<Duration>,
+}
+
+impl CaptureOptions {
+    /// Checks the arguments.
+    ///
+    /// # Errors
+    /// Values that cannot be.
+    pub fn read(arguments: CaptureArguments) -> Result<Self, Error> {
+        let CaptureArguments { bus, output, duration: length_s } = arguments;
+        if let Some(file) = &output {
+            can_be_file("--output", file, &[])?;
+        }
+        if let Some(length_s) = length_s.filter(|length_s| !(0.001..=1e6).contains(length_s)) {
+            return Err(Error::new(format!("is {length_s}"), "give seconds from 0.001 to 1e6").in_option("--duration"));
+        }
+        Ok(Self { interface: bus, file: output, length: length_s.map(duration) })
+    }
+}
+
+/// Records as the options say.
+///
+/// # Errors
+/// An interface that cannot be used, and a log that cannot be written.
+pub fn capture(options: &CaptureOptions) -> Result<Verdict, Error> {
+    let mut port = bus::open(&options.interface)?;
+    let (name, out): (&Path, Box<dyn Write>) = match &options.file {
+        Some(file) => (file, Box::new(File::create(file).map_err(|error| Error::unwritable(file, &error))?)),
+        None => (Path::new("standard output"), Box::new(io::stdout().lock())),
+    };
+    let log = LogWriter::new(BufWriter::new(out), &options.interface)
+        .ok_or_else(|| Error::new("is no name of an interface", "name one, such as vcan0").in_option("--bus"))?;
+    let until = options.length.map(|length| port.now().plus(length));
+    match record(&mut port, log, until) {
+        Ok(frames) => output::say(&format!("{frames} frames recorded")),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
+        Err(error) => return Err(Error::unwritable(name, &error)),
+    }
+    Ok(Verdict::Pass)
+}
+
+/// Writes down what happens until then; how many frames that were. The log is whole whenever nothing happens.
+///
+/// # Errors
+/// The port's and the log's.
+pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> io::Result<u64> {
+    let mut frames = 0;
+    loop {
+        let now = port.now();
+        if until.is_some_and(|until| until <= now) {
+            log.finish()?;
+            return Ok(frames);
+        }
+        let pause = now.plus(PAUSE);
+        match port.wait(until.map_or(pause, |until| until.min(pause)))? {
+            Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame)?,
+            Some((at, Event::Error(error))) => log.write_error(at, &error)?,
+            Some((_, Event::Down)) => {
+                output::say("the interface is down; going on when it is up");
+                continue;
+            }
+            None => {
+                log.flush()?;
+                continue;
+            }
+        }
+        frames += 1;
+    }
+}

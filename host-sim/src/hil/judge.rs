@@ -1,0 +1,294 @@
+//! The judge: an outcome and the limits enter, figures and a verdict with its reasons leave.
+//!
+//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::outcome::{Cut, Outcome};
+use super::recovery::{Recovery, recoveries};
+use super::session::Setup;
+use super::spread::Spread;
+use crate::figures::{Summary, failures, summarise};
+use crate::run::mode_name;
+use crate::verdict::Verdict;
+
+/// The harness may be so late in one tick: later, and the device rightly takes its vehicle's motion for lost.
+pub const LATE_MAX_MS: f64 = 40.0;
+/// And so late in one of a hundred: a period.
+pub const LATE_P99_MS: f64 = 10.0;
+/// So long the device may take to its command, in one of a hundred: two periods, because it need not tick when its vehicle
+/// speaks.
+pub const LATENCY_P99_MS: f64 = 20.0;
+/// Share of periods that a device in real time may miss on a system that is none.
+pub const MISSED_SHARE: f64 = 0.01;
+
+/// What there is to say of the device.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DeviceFigures {
+    /// Frames of it.
+    pub frames: u64,
+    /// Commands in the run.
+    pub commands: usize,
+    /// Times that it started anew by itself.
+    pub restarts: u32,
+    /// Faults of the protection of its frames, but for those of the faults' aftermath.
+    pub e2e_errors: usize,
+    /// What it says that it refused, by cause.
+    pub refusals: BTreeMap<&'static str, u32>,
+    /// Commands by mode.
+    pub modes: BTreeMap<&'static str, usize>,
+    /// Frames of others on the harness's identifiers.
+    pub foreign_frames: u64,
+    /// Error frames on the bus.
+    pub bus_errors: u64,
+}
+
+/// The device beside its twin.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DeviationFigures {
+    /// Whether it was in lock step.
+    pub lock_step: bool,
+    /// Ticks that were compared.
+    pub ticks: u64,
+    /// Frames that were compared, in lock step.
+    pub frames: u64,
+    /// Of those, frames that were not the same.
+    pub different_frames: u64,
+    /// Largest difference of the estimated position.
+    pub position_m: f64,
+    /// Largest difference of the estimated speed.
+    pub speed_mps: f64,
+    /// Largest difference of the command.
+    pub command_mps2: f64,
+    /// Ticks in which the modes differed.
+    pub mode_ticks: u64,
+    /// Ticks with a difference that the time stamps do not explain.
+    pub unexplained: usize,
+}
+
+/// Wall-clock figures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Timing {
+    /// From the vehicle's newest motion (in lock step: from the step) on the bus to the command.
+    pub latency: Spread,
+    /// Periods in which the device said nothing, but for those of the faults' aftermath.
+    pub missed_periods: i64,
+    /// The harness's own.
+    pub harness: HarnessTiming,
+}
+
+/// The harness's own share.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct HarnessTiming {
+    /// Frames that it sent.
+    pub frames: u64,
+    /// Of those, frames that were not seen on the bus.
+    pub lost: u64,
+    /// Frames that it could not send because the interface was down.
+    pub refused: u64,
+    /// How late it was, over its ticks.
+    pub lateness: Spread,
+}
+
+/// Everything that is reported.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Results {
+    /// `passed`, `failed` or `inconclusive`.
+    pub verdict: &'static str,
+    /// Why.
+    pub reasons: Vec<String>,
+    /// The device.
+    pub device: DeviceFigures,
+    /// The device beside its twin.
+    pub deviation: DeviationFigures,
+    /// What became of it in each fault.
+    pub faults: Vec<Recovery>,
+    /// The scenario's own figures.
+    pub scenario: Summary,
+    /// Wall-clock figures.
+    pub timing: Timing,
+}
+
+impl Results {
+    /// The verdict of the exit code.
+    #[must_use]
+    pub fn code(&self) -> Verdict {
+        match self.verdict {
+            "passed" => Verdict::Pass,
+            "failed" => Verdict::Failed,
+            _ => Verdict::Inconclusive,
+        }
+    }
+}
+
+/// Judges.
+#[must_use]
+pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
+    let mut scenario = summarise(&setup.scenario, &outcome.trace, 1.0);
+    scenario.timing.realtime_factor = if outcome.steps.is_some() { 0.0 } else { 1.0 };
+    let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
+    let timing = timing(setup, outcome);
+    let faults = recoveries(setup, outcome);
+    let own = inconclusive(outcome, &timing);
+    let failed = failed(setup, outcome, &device, &deviation, &timing, &faults, &scenario);
+    let (verdict, reasons) = match (own.is_empty(), failed.is_empty()) {
+        (false, _) => ("inconclusive", own.into_iter().chain(failed).collect()),
+        (true, false) => ("failed", failed),
+        (true, true) => ("passed", Vec::new()),
+    };
+    Results { verdict, reasons, device, deviation, faults, scenario, timing }
+}
+
+fn device(setup: &Setup, outcome: &Outcome) -> DeviceFigures {
+    let monitor = &outcome.monitor;
+    let in_run = || monitor.beats().iter().filter(|beat| outcome.time_of(beat.at) >= 0.0);
+    let mut modes = BTreeMap::new();
+    in_run().for_each(|beat| *modes.entry(mode_name(beat.mode)).or_default() += 1);
+    DeviceFigures {
+        frames: monitor.frames(),
+        commands: in_run().count(),
+        restarts: monitor.restarts(),
+        e2e_errors: monitor.e2e().filter(|(at, _)| !setup.is_excused(outcome.time_of(*at))).count(),
+        refusals: monitor.refusals(),
+        modes,
+        foreign_frames: outcome.foreign,
+        bus_errors: outcome.bus_errors,
+    }
+}
+
+fn deviation(setup: &Setup, outcome: &Outcome) -> DeviationFigures {
+    let found = &outcome.deviation;
+    let figures = DeviationFigures {
+        ticks: found.ticks,
+        position_m: found.position_m,
+        speed_mps: found.speed_mps,
+        command_mps2: found.command_mps2,
+        mode_ticks: found.modes,
+        unexplained: found.unexplained_s.iter().filter(|at_s| !setup.is_excused(**at_s)).count(),
+        ..DeviationFigures::default()
+    };
+    match &outcome.steps {
+        Some(steps) => DeviationFigures {
+            lock_step: true,
+            ticks: steps.steps,
+            frames: steps.frames,
+            different_frames: steps.different,
+            ..figures
+        },
+        None => figures,
+    }
+}
+
+fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
+    let monitor = &outcome.monitor;
+    let in_run = monitor.beats().iter().filter(|beat| outcome.time_of(beat.at) >= 0.0);
+    let latencies: Vec<i64> = in_run.filter_map(|beat| Some(beat.latency?.as_micros())).collect();
+    let counts_from = |at_s: f64| at_s >= 0.0 && !setup.is_excused(at_s);
+    let missed = monitor.missed(setup.config.period).into_iter();
+    let missed = missed.filter(|(at, _)| counts_from(outcome.time_of(*at)) && outcome.steps.is_none());
+    let counts = outcome.counts;
+    Timing {
+        latency: Spread::of(&latencies),
+        missed_periods: missed.map(|(_, periods)| periods).sum(),
+        harness: HarnessTiming {
+            frames: counts.sent,
+            lost: counts.sent.saturating_sub(counts.confirmed + counts.refused),
+            refused: counts.refused,
+            lateness: Spread::of(&outcome.lateness_us),
+        },
+    }
+}
+
+/// What the harness has to say against itself.
+fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let lateness = timing.harness.lateness;
+    if outcome.steps.is_none() {
+        for (what, value, limit) in
+            [("once", lateness.max_ms, LATE_MAX_MS), ("in one of 100 ticks", lateness.p99_ms, LATE_P99_MS)]
+        {
+            if let Some(value) = value.filter(|value| *value > limit) {
+                reasons.push(format!("the harness was {value:.1} ms late {what}, of at most {limit} ms"));
+            }
+        }
+    }
+    let is_down = outcome.faults.iter().any(|(fault, _)| fault.kind == super::fault::Kind::Interface);
+    if timing.harness.lost > 0 && !is_down {
+        reasons.push(format!("{} frames of the harness were not seen on the bus", timing.harness.lost));
+    }
+    for (fault, failed) in &outcome.faults {
+        if let Some(failed) = failed {
+            reasons.push(format!("the fault {} could not be played: {failed}", fault.kind.name()));
+        }
+    }
+    reasons
+}
+
+/// What there is to say against the device.
+fn failed(
+    setup: &Setup,
+    outcome: &Outcome,
+    device: &DeviceFigures,
+    deviation: &DeviationFigures,
+    timing: &Timing,
+    faults: &[Recovery],
+    scenario: &Summary,
+) -> Vec<String> {
+    if let Some(cut) = &outcome.cut {
+        return vec![said(cut)];
+    }
+    let mut reasons = Vec::new();
+    let mut limit = |is_met: bool, reason: String| {
+        if !is_met {
+            reasons.push(reason);
+        }
+    };
+    if let Some(p99) = timing.latency.p99_ms.filter(|_| !deviation.lock_step) {
+        limit(
+            p99 <= LATENCY_P99_MS,
+            format!("late: commands after {p99:.1} ms in one of 100, of at most {LATENCY_P99_MS} ms"),
+        );
+    }
+    #[allow(clippy::cast_precision_loss)] // counts
+    let share = timing.missed_periods as f64 / (outcome.trace.times_s.len().max(1)) as f64;
+    limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
+    limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));
+    limit(device.restarts == 0, format!("it started anew {} times by itself", device.restarts));
+    limit(
+        deviation.unexplained == 0,
+        format!("{} ticks differ from the twin's by more than the time stamps explain", deviation.unexplained),
+    );
+    if let Some((at_s, device, twin)) = outcome.steps.as_ref().and_then(|steps| steps.first.as_ref()) {
+        let cause = format!(
+            "{} of {} frames are not the twin's; the first at {at_s:.2} s: {device} instead of {twin}",
+            deviation.different_frames, deviation.frames
+        );
+        limit(false, cause);
+    }
+    for fault in faults {
+        if let Some(reason) = fault.reason() {
+            limit(false, reason);
+        }
+    }
+    reasons.extend(failures(&setup.scenario, scenario));
+    reasons
+}
+
+/// A run that was cut short, in words.
+fn said(cut: &Cut) -> String {
+    let ended =
+        |ended: &Option<String>| ended.as_ref().map_or(String::new(), |how| format!("; its process ended: {how}"));
+    match cut {
+        Cut::Silent { waited, ended: how } => {
+            format!("the device is silent: not one frame of it in {} s{}", waited.as_millis() / 1000, ended(how))
+        }
+        Cut::Gone { at_s, ended: how } => {
+            format!("the device is gone: its last frame was at {at_s:.2} s{}", ended(how))
+        }
+        Cut::NotFresh { tick } => format!(
+            "the device has run before: its first answer has the count {tick} instead of 1; for lock step give it power anew"
+        ),
+    }
+}

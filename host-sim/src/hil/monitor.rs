@@ -1,0 +1,222 @@
+//! What the device does, as it can be seen on the bus: its frames with their time stamps enter; its beat, its modes, what it
+//! refuses and how well its frames are protected leave.
+
+use std::collections::BTreeMap;
+
+use holdover::health::Refusal;
+use holdover::time::{Duration, Instant};
+use holdover::wire::command::{Command, ModeCode};
+use holdover::wire::estimate::TargetEstimate;
+use holdover::wire::{BaseId, Message, Received, Receiver, Role};
+
+use crate::bus::Frame;
+
+/// A command of the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beat {
+    /// When it was on the bus.
+    pub at: Instant,
+    /// The mode.
+    pub mode: ModeCode,
+    /// The count of periods.
+    pub tick: u8,
+    /// How long after the vehicle's newest motion, if it is the first one after it.
+    pub latency: Option<Duration>,
+}
+
+/// What a frame of the device brings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum News {
+    /// A command; whether the device has started anew before it.
+    Command(Command, bool),
+    /// An estimate.
+    Estimate(TargetEstimate),
+    /// Anything else.
+    Other,
+}
+
+/// The observer of the device.
+pub struct Monitor {
+    receiver: Receiver<1>,
+    beats: Vec<Beat>,
+    /// Faults of the protection, with the time.
+    e2e: Vec<(Instant, Refusal)>,
+    /// What the device says that it refused.
+    refusals: BTreeMap<&'static str, u32>,
+    newest_input: Option<Instant>,
+    frames: u64,
+    restarts: u32,
+}
+
+impl Monitor {
+    /// Of a device whose catalogue begins at `base`.
+    #[must_use]
+    pub fn new(base: BaseId) -> Self {
+        Self {
+            receiver: Receiver::new(base, Role::Modem),
+            beats: Vec::new(),
+            e2e: Vec::new(),
+            refusals: BTreeMap::new(),
+            newest_input: None,
+            frames: 0,
+            restarts: 0,
+        }
+    }
+
+    /// The vehicle's motion was on the bus.
+    pub fn input(&mut self, at: Instant) {
+        self.newest_input = Some(at);
+    }
+
+    /// A frame of the device was on the bus.
+    pub fn hear(&mut self, at: Instant, frame: &Frame) -> News {
+        self.frames += 1;
+        match self.receiver.receive(frame) {
+            Ok(Received::Whole(Message::Command(command))) => self.command(at, command),
+            Ok(Received::Whole(Message::Estimate(estimate))) => News::Estimate(estimate),
+            Ok(Received::Whole(Message::Status(status))) => {
+                self.refusals.insert(status.cause.name(), status.count);
+                News::Other
+            }
+            Ok(_) => News::Other,
+            Err(cause) => {
+                self.e2e.push((at, cause));
+                News::Other
+            }
+        }
+    }
+
+    fn command(&mut self, at: Instant, command: Command) -> News {
+        // After a gap, a unit that goes on has the next number or, if frames were lost, one soon after it; one that has
+        // started anew has a small one.
+        let is_new = self.beats.last().is_some_and(|last| {
+            let goes_on = (1..=4).contains(&(command.tick.wrapping_sub(last.tick) & 63));
+            at.since(last.at) > Duration::from_millis(30) && command.tick <= 8 && !goes_on
+        });
+        self.restarts += u32::from(is_new);
+        let latency = self.newest_input.take().map(|input| at.since(input));
+        self.beats.push(Beat { at, mode: command.mode, tick: command.tick, latency });
+        News::Command(command, is_new)
+    }
+
+    /// Its commands.
+    #[must_use]
+    pub fn beats(&self) -> &[Beat] {
+        &self.beats
+    }
+
+    /// Faults of its frames, with the time. The first frame of each identifier is none, nor that its message is then not
+    /// whole: nobody trusts what is heard for the first time.
+    pub fn e2e(&self) -> impl Iterator<Item = (Instant, Refusal)> + '_ {
+        self.e2e.iter().copied().filter(|(_, cause)| !matches!(cause, Refusal::NotYetTrusted | Refusal::Torn))
+    }
+
+    /// What it says that it refused, by cause; causes that it met.
+    #[must_use]
+    pub fn refusals(&self) -> BTreeMap<&'static str, u32> {
+        self.refusals.iter().filter(|(_, count)| **count > 0).map(|(cause, count)| (*cause, *count)).collect()
+    }
+
+    /// Its frames.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// How often it started anew.
+    #[must_use]
+    pub fn restarts(&self) -> u32 {
+        self.restarts
+    }
+
+    /// Periods in which it said nothing, each gap with the time of its end.
+    #[must_use]
+    pub fn missed(&self, period: Duration) -> Vec<(Instant, i64)> {
+        let gap = |pair: &[Beat]| {
+            let periods = pair[1].at.since(pair[0].at).as_micros() + period.as_micros() / 2;
+            (pair[1].at, periods.div_euclid(period.as_micros()) - 1)
+        };
+        self.beats.windows(2).map(gap).filter(|(_, missed)| *missed > 0).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use holdover::units::Acceleration;
+    use holdover::wire::Sender;
+    use holdover::wire::command::Effort;
+
+    struct Device {
+        sender: Sender<0>,
+        monitor: Monitor,
+    }
+
+    impl Device {
+        fn new() -> Self {
+            Self { sender: Sender::new(BaseId::DEFAULT), monitor: Monitor::new(BaseId::DEFAULT) }
+        }
+
+        fn command(&mut self, millis: u64, tick: u8) -> Vec<News> {
+            let command = Command {
+                acceleration: Acceleration::ZERO,
+                effort: Effort::Force(0),
+                mode: ModeCode::Cooperative,
+                limited: false,
+                tick,
+            };
+            let (at, mut news) = (Instant::from_micros(millis * 1000), Vec::new());
+            let Self { sender, monitor } = self;
+            sender
+                .send(&Message::Command(command), &mut |frame| news.push(monitor.hear(at, &(&frame).into())))
+                .unwrap();
+            news
+        }
+    }
+
+    #[test]
+    fn the_first_frame_is_not_trusted_and_no_fault() {
+        let mut device = Device::new();
+        assert_eq!(device.command(0, 1), [News::Other]);
+        assert!(matches!(device.command(10, 2)[..], [News::Command(_, false)]));
+        assert_eq!((device.monitor.e2e().count(), device.monitor.frames()), (0, 2));
+    }
+
+    #[test]
+    fn a_gap_is_counted_in_whole_periods() {
+        let mut device = Device::new();
+        for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7)] {
+            device.command(millis, tick);
+        }
+        let missed = device.monitor.missed(Duration::from_millis(10));
+        assert_eq!(missed, [(Instant::from_micros(56_000), 3)]);
+    }
+
+    #[test]
+    fn latency_is_from_the_newest_motion_to_the_first_command_after_it() {
+        let mut device = Device::new();
+        device.command(0, 1);
+        for millis in [2, 3] {
+            device.monitor.input(Instant::from_micros(millis * 1000));
+        }
+        device.command(10, 2);
+        device.command(20, 3);
+        let latencies: Vec<_> = device.monitor.beats().iter().map(|beat| beat.latency).collect();
+        assert_eq!(latencies, [Some(Duration::from_millis(7)), None]);
+    }
+
+    #[test]
+    fn a_count_of_periods_that_begins_anew_after_a_gap_is_a_restart() {
+        let mut device = Device::new();
+        for (millis, tick) in [(0, 62), (10, 63), (20, 0), (80, 1), (90, 60)] {
+            device.command(millis, tick);
+        }
+        assert_eq!(device.monitor.restarts(), 0);
+        device.sender = Sender::new(BaseId::DEFAULT);
+        for (millis, tick) in [(1000, 1), (1010, 2), (1020, 3), (1030, 4)] {
+            device.command(millis, tick);
+        }
+        // A receiver needs some frames to trust the new counters.
+        assert_eq!(device.monitor.restarts(), 1);
+    }
+}

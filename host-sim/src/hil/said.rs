@@ -1,0 +1,38 @@
+//! What a unit says in one tick, of what two units can be compared by: frames enter, its command and estimate leave.
+
+use holdover::wire::command::Command;
+use holdover::wire::estimate::TargetEstimate;
+use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role};
+
+/// The command and the estimate of one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// The command.
+    pub command: Command,
+    /// The estimate, if there is a target.
+    pub estimate: Option<TargetEstimate>,
+}
+
+/// What stands in the frames of one answer. They are taken at their word: their counters are not judged.
+#[must_use]
+pub fn said(base: BaseId, frames: &[Frame]) -> Option<Said> {
+    let (mut command, mut estimate) = (None, None);
+    // Twice, because a receiver trusts nothing that it hears for the first time; counters that repeat are then refused.
+    let mut receiver = Receiver::<1>::new(base, Role::Modem);
+    for round in 0..2 {
+        for frame in frames {
+            match receiver.receive(&counted(base, frame, round)) {
+                Ok(Received::Whole(Message::Command(said))) => command = Some(said),
+                Ok(Received::Whole(Message::Estimate(said))) => estimate = Some(said),
+                _ => {}
+            }
+        }
+    }
+    Some(Said { command: command?, estimate })
+}
+
+fn counted(base: BaseId, frame: &Frame, counter: u8) -> Frame {
+    let offset = base.offset_of(frame.id).unwrap_or(0);
+    let data_id = holdover::wire::catalogue::data_id(offset);
+    Frame { id: frame.id, data: holdover::wire::e2e::protect(frame.data, data_id, counter) }
+}

@@ -1,0 +1,305 @@
+//! A run in real time: the world goes on by the bus's clock, frames go to the device and its twin, what the device commands
+//! moves the ego. A setup, a port and a rig enter, what happened leaves.
+//!
+//! Order within a tick: what the device said up to now has moved the ego; the world speaks at the tick's own time, however
+//! late the harness is, so that lateness makes messages older and never wrong; the others' units answer. Between ticks the
+//! bus is listened to. Every wait has an end, so a device that says nothing, or nothing more, ends the run.
+
+use std::io;
+
+use holdover::time::{Duration, Instant};
+use holdover::wire::BaseId;
+use holdover::wire::catalogue::{About, Content, Node, Speaker};
+use holdover::{Config, ConfigError};
+
+use super::deviation::Deviation;
+use super::fault::Fault;
+use super::monitor::{Monitor, News};
+use super::outcome::{Cut, Outcome};
+use super::rig::Rig;
+use super::said::Said;
+use super::talk::{Talk, line_of};
+use super::twin::Twin;
+use super::villain::Villain;
+use crate::bus::memory::MemoryNode;
+use crate::bus::port::{Event, Port};
+use crate::bus::{Bus, Frame};
+use crate::scenario::Scenario;
+use crate::vehicle::{Alias, station};
+use crate::world::{Trace, World};
+
+/// How long the world speaks before the run, in seconds: a time base needs two synchronisations, half a second apart, that
+/// are trusted.
+const WARM_UP_S: f64 = 2.0;
+/// A device that is silent for longer, and not by a fault, has gone; in seconds.
+const GONE_S: f64 = 2.0;
+/// How long after a fault its effects are put down to it, in seconds.
+pub const AFTERMATH_S: f64 = 5.0;
+
+/// What is to be run with what.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The world; its ego is the device's vehicle.
+    pub scenario: Scenario,
+    /// The device.
+    pub config: Config,
+    /// How long it may take to say its first word.
+    pub wait: Duration,
+    /// What is done to it.
+    pub faults: Vec<Fault>,
+}
+
+impl Setup {
+    /// The device's bus calls its vehicle by the device's own station.
+    #[must_use]
+    pub fn alias(&self) -> Alias {
+        Alias::between(station(self.scenario.ego), self.config.station)
+    }
+
+    /// Whether what happens then is put down to a fault.
+    #[must_use]
+    pub fn is_excused(&self, at_s: f64) -> bool {
+        self.faults.iter().any(|fault| (fault.from_s..fault.to_s + AFTERMATH_S).contains(&at_s))
+    }
+}
+
+/// What listens to the bus.
+pub(super) struct Ears {
+    base: BaseId,
+    config: Config,
+    seat: MemoryNode,
+    pub monitor: Monitor,
+    twin: Twin,
+    told: Option<(Said, Duration)>,
+    pub deviation: Deviation,
+    pub foreign: u64,
+    pub bus_errors: u64,
+    last_beat: Option<Instant>,
+}
+
+impl Ears {
+    pub fn new(config: &Config, seat: MemoryNode) -> Result<Self, ConfigError> {
+        Ok(Self {
+            base: config.base_id,
+            config: *config,
+            seat,
+            monitor: Monitor::new(config.base_id),
+            twin: Twin::new(config)?,
+            told: None,
+            deviation: Deviation::default(),
+            foreign: 0,
+            bus_errors: 0,
+            last_beat: None,
+        })
+    }
+
+    /// The device has got power anew, and so has its twin.
+    fn restart(&mut self) {
+        if let Ok(twin) = Twin::new(&self.config) {
+            self.twin = twin;
+        }
+    }
+
+    /// Something happened on the bus. `local` makes a time of the bus one of the run and one of the vehicle's own clock.
+    pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
+        match event {
+            Event::Sent(frame) => {
+                if line_of(self.base, &frame).map(|line| line.content)
+                    == Some(Content::Said(Speaker::Ego, About::MotionB))
+                {
+                    self.monitor.input(at);
+                }
+                self.twin.hear(at, frame);
+            }
+            Event::Received(frame) => match line_of(self.base, &frame) {
+                Some(line) if line.sender == Node::Unit => self.device(at, &frame, local)?,
+                line => {
+                    self.foreign += u64::from(line.is_some());
+                    self.twin.hear(at, frame);
+                }
+            },
+            Event::Error(_) => self.bus_errors += 1,
+            Event::Down => {}
+        }
+        Ok(())
+    }
+
+    fn device(&mut self, at: Instant, frame: &Frame, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
+        let (at_s, own) = local(at);
+        self.seat.send(own, *frame)?;
+        match self.monitor.hear(at, frame) {
+            News::Command(command, is_new) => {
+                if is_new {
+                    self.restart();
+                }
+                // Before the run the two may have been given power at different times.
+                let window = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                self.last_beat = Some(at);
+                self.told = self.twin.tick(at).map(|said| (said, window));
+                if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0) {
+                    self.deviation.command(at_s, &command, &said, window);
+                }
+            }
+            News::Estimate(device) => {
+                if let Some((Said { command, estimate: Some(twin) }, window)) = self.told.filter(|_| at_s >= 0.0)
+                    && self.monitor.beats().last().is_some_and(|beat| beat.tick % 4 == device.tag)
+                    && command.tick % 4 == twin.tag
+                {
+                    self.deviation.estimate(at_s, &device, &twin, window);
+                }
+            }
+            News::Other => {}
+        }
+        Ok(())
+    }
+}
+
+/// Runs it; `progress` is told the time of the run, now and then.
+///
+/// # Errors
+/// The port's; a configuration that the unit refuses counts as one.
+pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
+    let Setup { scenario, config, .. } = setup;
+    let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
+    let seat = world.give_seat(scenario.ego, setup.alias());
+    let mut ears = Ears::new(config, seat).map_err(io::Error::other)?;
+    let mut talk = Talk::new(port, config.base_id);
+    let mut trace = world.trace();
+    let mut villain = Villain::new(&setup.faults, config.base_id);
+    rig.power(true)?;
+    let mut cut = wait_for_device(setup, &mut talk, &mut ears, rig)?;
+    let period = config.period;
+    let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
+    talk.begin_at(talk.now().plus(period.times(warm_up + 2)));
+    let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
+    let mut lateness_us = Vec::new();
+    for tick in -warm_up..=ticks {
+        if cut.is_some() {
+            break;
+        }
+        #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³
+        let time = |tick: i64| tick as f64 * scenario.period_s;
+        let (at_s, due) = (time(tick), talk.instant(time(tick)));
+        while talk.now() < due {
+            let pause = villain.act(talk.time_of(talk.now()), rig);
+            let until = pause.map_or(due, |pause| due.min(talk.now().plus(pause)));
+            listen(&mut talk, &mut ears, &world, scenario.ego, until)?;
+        }
+        lateness_us.push(talk.now().since(due).as_micros());
+        if villain.switch(at_s, rig) {
+            ears.restart();
+        }
+        talk.clock_error_us = villain.clock_error_us(at_s);
+        talk.spoiled = villain.spoils();
+        if tick > 0 {
+            world.drive(time(tick - 1))?;
+        } else if tick == 0 {
+            world.begin();
+        }
+        if tick == ticks {
+            break;
+        }
+        if tick < 0 {
+            world.approach(at_s)?
+        } else {
+            world.speak(at_s)?
+        }
+        let own = world.vehicles()[scenario.ego].instant(at_s);
+        while let Some((_, frame)) = ears.seat.receive(own)? {
+            villain.overhear(&frame);
+            talk.send(frame);
+        }
+        if tick < 0 {
+            world.answer(at_s)?
+        } else {
+            world.act(at_s, &mut trace)?
+        }
+        cut = gone(setup, &talk, &ears, rig, at_s);
+        if tick % 100 == 0 {
+            progress(at_s);
+        }
+    }
+    // What was sent last comes back.
+    let end = talk.now().plus(Duration::from_millis(50));
+    listen(&mut talk, &mut ears, &world, scenario.ego, end)?;
+    villain.stop(rig);
+    finished(world, trace, &talk, ears, lateness_us, villain.played(), cut)
+}
+
+fn finished<P: Port>(
+    world: World<'_>,
+    trace: Trace,
+    talk: &Talk<P>,
+    ears: Ears,
+    lateness_us: Vec<i64>,
+    faults: Vec<(Fault, Option<String>)>,
+    cut: Option<Cut>,
+) -> io::Result<Outcome> {
+    Ok(Outcome {
+        trace: world.finish(trace)?,
+        monitor: ears.monitor,
+        deviation: ears.deviation,
+        steps: None,
+        lateness_us,
+        counts: talk.counts(),
+        foreign: ears.foreign,
+        bus_errors: ears.bus_errors,
+        origin: talk.instant(0.0),
+        faults,
+        cut,
+    })
+}
+
+fn listen<P: Port>(
+    talk: &mut Talk<P>,
+    ears: &mut Ears,
+    world: &World<'_>,
+    ego: usize,
+    until: Instant,
+) -> io::Result<()> {
+    let mut heard = Ok(());
+    let origin = talk.instant(0.0);
+    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+    let local = |at: Instant| {
+        let at_s = at.since(origin).as_micros() as f64 * 1e-6;
+        (at_s, world.vehicles()[ego].instant(at_s))
+    };
+    talk.pump(until, |at, event| {
+        if heard.is_ok() {
+            heard = ears.hear(at, event, local);
+        }
+    })?;
+    heard
+}
+
+/// Until its first word, which is sent without anybody's having spoken to it.
+fn wait_for_device<P: Port>(
+    setup: &Setup,
+    talk: &mut Talk<P>,
+    ears: &mut Ears,
+    rig: &mut dyn Rig,
+) -> io::Result<Option<Cut>> {
+    let end = talk.now().plus(setup.wait);
+    while talk.now() < end {
+        let (mut heard, until) = (false, talk.now().plus(Duration::from_millis(20)).min(end));
+        let base = ears.base;
+        talk.pump(until, |_, event| {
+            heard |= matches!(event, Event::Received(frame)
+                if line_of(base, &frame).is_some_and(|line| line.sender == Node::Unit));
+        })?;
+        if heard {
+            return Ok(None);
+        }
+        if let Some(ended) = rig.has_ended() {
+            return Ok(Some(Cut::Silent { waited: setup.wait, ended: Some(ended) }));
+        }
+    }
+    Ok(Some(Cut::Silent { waited: setup.wait, ended: None }))
+}
+
+/// Whether the device has fallen silent for good, for no fault of ours.
+fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, ears: &Ears, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
+    let last_s = talk.time_of(ears.monitor.beats().last()?.at);
+    let is_gone = at_s - last_s > GONE_S && !setup.is_excused(at_s);
+    is_gone.then(|| Cut::Gone { at_s: last_s, ended: rig.has_ended() })
+}

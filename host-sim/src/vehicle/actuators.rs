@@ -1,0 +1,97 @@
+//! The actuators of a vehicle whose unit is outside of the simulation: commands with the times at which they arrived enter,
+//! what the body is really told to do in a span of time leaves.
+//!
+//! *Their own watchdog:* without a command for [`COMMAND_TIMEOUT_S`] they brake, as an actuator has to that has lost its
+//! master. A command in mode standby is not to be used, so it counts as none.
+
+use std::collections::VecDeque;
+
+use holdover::wire::command::Effort;
+
+/// The timeout of the command, as in the catalogue, in seconds.
+pub const COMMAND_TIMEOUT_S: f64 = 0.05;
+/// What they do without one, in m/s²: braking that nobody behind is surprised by.
+pub const WITHOUT_COMMAND_MPS2: f64 = -2.0;
+
+/// The actuators.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Actuators {
+    /// In force, and since when.
+    current: Option<(f64, Effort)>,
+    /// Arrived, and not in force yet.
+    coming: VecDeque<(f64, Effort)>,
+}
+
+impl Actuators {
+    /// A command arrives.
+    pub fn take(&mut self, at_s: f64, effort: Effort) {
+        self.coming.push_back((at_s, effort));
+    }
+
+    /// What is in force from `from_s` to `to_s`, as pieces of a command, `None` where there is none, and its length in seconds.
+    pub fn pieces(&mut self, from_s: f64, to_s: f64) -> Vec<(Option<Effort>, f64)> {
+        let mut pieces = Vec::new();
+        let mut at_s = from_s;
+        loop {
+            let next_s = self.coming.front().map_or(to_s, |(next_s, _)| next_s.clamp(at_s, to_s));
+            self.hold(&mut pieces, at_s, next_s);
+            at_s = next_s;
+            match self.coming.front() {
+                Some((next_s, _)) if *next_s <= at_s => self.current = self.coming.pop_front(),
+                _ => return pieces,
+            }
+        }
+    }
+
+    /// One span without a new command.
+    fn hold(&self, pieces: &mut Vec<(Option<Effort>, f64)>, from_s: f64, to_s: f64) {
+        let since_s = self.current.map_or(f64::NEG_INFINITY, |(since_s, _)| since_s);
+        let until_s = (since_s + COMMAND_TIMEOUT_S).clamp(from_s, to_s);
+        let effort = self.current.map(|(_, effort)| effort);
+        let spans = [(effort, until_s - from_s), (None, to_s - until_s)];
+        pieces.extend(spans.into_iter().filter(|(_, length_s)| *length_s > 0.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Newtons and microseconds; 0 N stands for no command.
+    fn rounded(pieces: &[(Option<Effort>, f64)]) -> Vec<(u16, i32)> {
+        let newtons = |effort: &Option<Effort>| match effort {
+            Some(Effort::Force(newtons)) => *newtons,
+            Some(Effort::BrakeTorque(_)) => panic!("no brakes here"),
+            None => 0,
+        };
+        pieces.iter().map(|(effort, length_s)| (newtons(effort), (length_s * 1e6).round() as i32)).collect()
+    }
+
+    #[test]
+    fn a_command_is_in_force_from_its_arrival_on() {
+        let mut actuators = Actuators::default();
+        actuators.take(1.000, Effort::Force(5));
+        actuators.take(1.012, Effort::Force(7));
+        assert_eq!(rounded(&actuators.pieces(1.00, 1.01)), [(5, 10_000)]);
+        assert_eq!(rounded(&actuators.pieces(1.01, 1.02)), [(5, 2_000), (7, 8_000)]);
+        assert_eq!(rounded(&actuators.pieces(1.02, 1.03)), [(7, 10_000)]);
+    }
+
+    #[test]
+    fn without_a_command_for_fifty_milliseconds_they_brake_until_one_comes() {
+        let mut actuators = Actuators::default();
+        assert_eq!(rounded(&actuators.pieces(0.0, 0.01)), [(0, 10_000)]);
+        actuators.take(0.02, Effort::Force(10));
+        assert_eq!(rounded(&actuators.pieces(0.01, 0.10)), [(0, 10_000), (10, 50_000), (0, 30_000)]);
+        actuators.take(0.105, Effort::Force(4));
+        assert_eq!(rounded(&actuators.pieces(0.10, 0.11)), [(0, 5_000), (4, 5_000)]);
+    }
+
+    #[test]
+    fn commands_that_came_before_the_span_are_in_force_at_once_the_last_one_stays() {
+        let mut actuators = Actuators::default();
+        actuators.take(0.0, Effort::Force(10));
+        actuators.take(0.005, Effort::Force(20));
+        assert_eq!(rounded(&actuators.pieces(0.01, 0.02)), [(20, 10_000)]);
+    }
+}

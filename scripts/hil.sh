@@ -1,0 +1,135 @@
+#!/usr/bin/env bash
+# hil.sh [CHECK...]: hardware in the loop on a real CAN interface of Linux. `./ci.sh vcan` runs all of it:
+#
+#   kernel   vcan.sh gives a command a vcan0, and keeps what it says of exit code, output and time
+#   tests    the simulator's tests that need a SocketCAN interface
+#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time
+#   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
+#   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
+#
+# Exit code 77: something that it needs is not there, and cannot be had.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+built=${CARGO_TARGET_DIR:-target}
+work=$PWD/$built/hil
+sim=$PWD/$built/checked/holdover-sim
+export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
+
+skip() {
+    echo "SKIPPED: $*"
+    exit 77
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
+need() {
+    command -v "$1" >/dev/null && return
+    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
+}
+
+# expect WANTED COMMAND...: the command ends with that exit code.
+expect() {
+    local wanted=$1 code=0
+    shift
+    "$@" || code=$?
+    [ "$code" = "$wanted" ] || { echo "exit code $code instead of $wanted: $*" && return 1; }
+}
+
+check_kernel() {
+    local out=$work/kernel
+    expect 7 scripts/vcan.sh bash -c 'candump -n 1 vcan0 & sleep 0.3; cansend vcan0 123#DEADBEEF; wait; pwd; echo "$0 $1" >&2; exit 7' \
+        "two  words" "a 'quote'" >"$out.out" 2>"$out.err"
+    diff <(printf '  vcan0  123   [4]  DE AD BE EF\n%s\n' "$PWD") "$out.out"
+    diff <(echo "two  words a 'quote'") "$out.err"
+    # What the consoles of user-mode Linux are slow to take is not lost when it ends.
+    diff <(scripts/vcan.sh seq 100000 | md5sum) <(seq 100000 | md5sum)
+    expect 124 scripts/vcan.sh --timeout 4 sleep 60
+    expect 127 scripts/vcan.sh no-such-command
+    expect 2 scripts/vcan.sh --serial /dev/no-such-line true
+    echo "  a frame on vcan0, exit codes, output apart, 588,895 bytes without loss, time limit"
+}
+
+check_tests() {
+    local binaries
+    # Built outside: user-mode Linux has one processor.
+    binaries=$(cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
+        sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
+    [ -n "$binaries" ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
+    # A test's own folder is its package's. One at a time, because they share the bus.
+    scripts/vcan.sh bash -c 'cd host-sim; for binary in $0; do "$binary" --ignored --test-threads 1 || exit; done' "$binaries"
+}
+
+# images TARGET: builds the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step.
+images() {
+    local bin form
+    bin=$(scripts/install-target.sh "$1") || skip "no standard library for $1 can be had on this machine"
+    for form in real-time lock-step; do
+        local firmware=(--locked --quiet --profile firmware --target "$1" --bin holdover-ecu --features "${form/real-time/}")
+        PATH=$bin:$PATH cargo clippy "${firmware[@]}" -- -D warnings
+        PATH=$bin:$PATH cargo build "${firmware[@]}"
+        cp "$built/$1/firmware/holdover-ecu" "$work/$1-$form"
+    done
+}
+
+# judge INTERFACE ARGUMENT...: the command line of the harness. The firmware is a car of station 1.
+judge() {
+    local bus=$1
+    shift
+    harness=("$sim" hil --bus "$bus" --station 1 "$@")
+}
+
+check_ecu() {
+    local mode
+    for mode in '' --lock-step; do
+        echo "-- a process of Linux, ${mode:-real time}"
+        judge vcan0 $mode
+        scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 '"$mode"' & unit=$!
+            code=0; "$@" || code=$?; kill $unit; exit $code' "$sim" "${harness[@]}"
+    done
+}
+
+check_m4() {
+    need qemu-system-arm qemu-system-arm
+    local target=thumbv7em-none-eabihf
+    images $target
+    echo "-- an emulated Cortex-M4F over slcan, real time"
+    judge slcan0
+    scripts/device-m4.sh "$work/$target-real-time" -- "${harness[@]}"
+    echo "-- an emulated Cortex-M4F over slcan, lock step"
+    judge slcan0 --lock-step
+    scripts/device-m4.sh "$work/$target-lock-step" -- "${harness[@]}"
+}
+
+check_r5() {
+    need qemu-system-aarch64 qemu-system-arm
+    local target=armv7r-none-eabihf
+    images $target
+    echo "-- an emulated Cortex-R5F with a CAN controller on vcan0, real time"
+    judge vcan0
+    scripts/device-r5.sh "$work/$target-real-time" -- "${harness[@]}"
+    echo "-- an emulated Cortex-R5F with a CAN controller on vcan0, lock step"
+    judge vcan0 --lock-step
+    scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
+}
+
+checks=(kernel tests ecu m4 r5)
+for name in "$@"; do
+    [[ " ${checks[*]} " = *" $name "* ]] || { echo "hil.sh: no check '$name'; there are: ${checks[*]}" >&2 && exit 2; }
+done
+[ $# -gt 0 ] && checks=("$@")
+
+mkdir -p "$work"
+code=0
+scripts/vcan.sh true || code=$?
+[ "$code" != 77 ] || skip "no vcan0 can be had on this machine"
+[ "$code" = 0 ] || exit "$code"
+cargo build --locked --profile checked -p holdover-sim
+for name in "${checks[@]}"; do
+    echo "-- $name"
+    "check_$name"
+done
