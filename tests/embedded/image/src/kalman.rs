@@ -5,9 +5,9 @@
 use minikalman::prelude::*;
 use minikalman::regular::RegularKalmanBuilder;
 
-/// So many predictions; the position at the last.
+/// So many predictions; the position at the last, and its variance, so that the covariance is computed too.
 #[inline(never)]
-pub fn predict(steps: usize) -> f32 {
+pub fn predict(steps: usize) -> (f32, f32) {
     impl_buffer_x!(mut x, 3, f32, 0.0);
     impl_buffer_A!(mut A, 3, f32, 0.0);
     impl_buffer_P!(mut P, 3, f32, 0.0);
@@ -30,5 +30,5 @@ pub fn predict(steps: usize) -> f32 {
     for _ in 0..steps {
         filter.predict();
     }
-    filter.state_vector().get_row(0)
+    (filter.state_vector().get_row(0), filter.estimate_covariance().get_at(0, 0))
 }
