@@ -220,12 +220,12 @@ pub const fn divide(dividend: u64, divisor: u64) -> u64 {
         };
     }
     let (high, low) = ((dividend >> 32) as u32, dividend as u32);
-    let first = high % small << 8 | low >> 24;
-    let second = first % small << 8 | low >> 16 & 0xFF;
-    let third = second % small << 8 | low >> 8 & 0xFF;
-    let fourth = third % small << 8 | low & 0xFF;
-    let below = first / small << 24 | second / small << 16 | third / small << 8 | fourth / small;
-    ((high / small) as u64) << 32 | below as u64
+    let first = ((high % small) << 8) | (low >> 24);
+    let second = ((first % small) << 8) | ((low >> 16) & 0xFF);
+    let third = ((second % small) << 8) | ((low >> 8) & 0xFF);
+    let fourth = ((third % small) << 8) | (low & 0xFF);
+    let below = ((first / small) << 24) | ((second / small) << 16) | ((third / small) << 8) | (fourth / small);
+    (((high / small) as u64) << 32) | below as u64
 }
 
 /// `dividend / 10⁶` for a dividend below 2⁶³, by multiplying: `10⁶ = 2⁶·5⁶`, and a product with `⌈2⁷⁷/5⁶⌉`, which is off by
@@ -240,7 +240,7 @@ pub const fn per_million(dividend: u64) -> u64 {
     const LOW: u64 = FACTOR as u64 & u32::MAX as u64;
     let x = dividend >> 6;
     let (high, low) = (x >> 32, x & u32::MAX as u64);
-    let carried = (low * LOW >> 32) + low * HIGH;
+    let carried = ((low * LOW) >> 32) + low * HIGH;
     let middle = high * LOW + (carried & u32::MAX as u64);
     (high * HIGH + (carried >> 32) + (middle >> 32)) >> 13
 }
