@@ -8,7 +8,6 @@ use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::coordination::Coordination;
-use crate::estimator::bound::Bound;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
@@ -17,7 +16,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
-use crate::wire::{BaseId, Frame, Predecessor, Received, Receiver, Role, Sender};
+use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
 
 mod answer;
 mod caution;
