@@ -8,6 +8,7 @@ cd "$(dirname "$0")/.."
 target=thumbv7em-none-eabihf
 build=${CARGO_TARGET_DIR:-target}/c
 sources=holdover-c/examples
+most_stack=4096
 strict=(-std=c99 -Wall -Wextra -Werror -pedantic -O2 -I holdover-c)
 
 skip() {
@@ -57,8 +58,8 @@ g++ -std=c++11 -Wall -Wextra -Werror -pedantic -I holdover-c -fsyntax-only "$bui
 need arm-none-eabi-gcc gcc-arm-none-eabi
 need qemu-system-arm qemu-system-arm
 bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
-PATH=$bin:$PATH cargo build --locked --release --target "$target" -p holdover-c
-library=${CARGO_TARGET_DIR:-target}/$target/release/libholdover_c.a
+PATH=$bin:$PATH cargo build --locked --profile firmware --target "$target" -p holdover-c
+library=${CARGO_TARGET_DIR:-target}/$target/firmware/libholdover_c.a
 image=$build/replay.elf
 arm-none-eabi-gcc "${strict[@]}" -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffreestanding \
     -nostdlib -T "$sources/netduino.ld" -Wl,--gc-sections -Wl,-z,noexecstack -Wl,-Map="$build/replay.map" \
@@ -68,7 +69,15 @@ if arm-none-eabi-nm -C "$image" | grep -iE 'panic|unwrap_failed|rust_begin_unwin
     exit 1
 fi
 timeout 60 qemu-system-arm -M netduinoplus2 -display none -serial none -monitor none \
-    -semihosting-config enable=on,target=native -kernel "$image" >"$build/ecu.txt" </dev/null
+    -semihosting-config enable=on,target=native -kernel "$image" >"$build/ecu.txt" 2>"$build/stack.txt" </dev/null || {
+    cat "$build/stack.txt"
+    exit 1
+}
 same "$build/reference.txt" "$build/ecu.txt"
+stack=$(sed -n 's/^stack: 0*\([0-9]*\) bytes$/\1/p' "$build/stack.txt")
+[ -n "$stack" ] && [ "$stack" -le "$most_stack" ] || {
+    echo "the image took ${stack:-an unknown number of} bytes of stack, of at most $most_stack"
+    exit 1
+}
 arm-none-eabi-size "$image"
-echo "$target: $frames frames, the same as of the Rust core; no panic in the image"
+echo "$target: $frames frames, the same as of the Rust core; no panic in the image; $stack bytes of stack"

@@ -22,6 +22,10 @@ use crate::fixed::{ShareFormat, mul_hi, quotient, saturate_i32, shl_saturating};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Speed};
 
+mod walk;
+
+pub(crate) use walk::Run;
+
 /// A stretch on which the way is one polynomial of degree 6 in `s`, the share of its length that has passed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Piece {
@@ -87,24 +91,26 @@ impl Piece {
         let d = to.way.saturating_sub(from.way).saturating_sub(first).saturating_sub(second);
         let e = by_speed(to.speed.saturating_sub(from.speed)).saturating_sub(second.saturating_mul(2));
         let f = by_acceleration(to.acceleration.saturating_sub(from.acceleration));
+        // Words of 32 bits over at most 2³¹ µs make ways below 2⁴⁵, so that nothing here can overflow.
         let sum = |d_times: i64, e_times: i64, half_f_times: i64, bow_times: i64| {
-            d.saturating_mul(d_times)
-                .saturating_add(e.saturating_mul(e_times))
-                .saturating_add(f.saturating_mul(half_f_times) >> 1)
-                .saturating_add(bow.saturating_mul(bow_times))
+            d.wrapping_mul(d_times)
+                .wrapping_add(e.wrapping_mul(e_times))
+                .wrapping_add(f.wrapping_mul(half_f_times) >> 1)
+                .wrapping_add(bow.wrapping_mul(bow_times))
         };
         let coefficients =
             [first, second, sum(10, -4, 1, 64), sum(-15, 7, -2, -192), sum(6, -3, 1, 192), sum(0, 0, 0, -64)];
         let way = coefficients.map(|c| saturate_i32(c.clamp(-COEFFICIENT, COEFFICIENT)));
         let mut power = 0i64;
         let speed = way.map(|c| {
-            power = power.saturating_add(1);
-            let per_second = (i64::from(c) << (3 - SPEED_SHIFT)).saturating_mul(power.saturating_mul(MICROS_PER_S));
+            power = power.wrapping_add(1); // up to 6, which is 23 bits of microseconds
+            let per_second = (i64::from(c) << (3 - SPEED_SHIFT)).wrapping_mul(power.wrapping_mul(MICROS_PER_S));
             saturate_i32(quotient(per_second, micros).clamp(-COEFFICIENT, COEFFICIENT))
         });
         Self { micros, origin: Distance::from_bits(saturate_i32(from.way)), way, speed }
     }
 
+    #[inline(never)]
     fn share_of(&self, micros: i64) -> i32 {
         let share = micros.min(self.micros).max(0) << SHARE_BITS;
         saturate_i32(quotient(share, self.micros))
@@ -251,20 +257,6 @@ impl Curve {
         Self { states: [start, a, b, c, d, e], length }
     }
 
-    /// All pieces in the order of time, each with its start.
-    fn pieces(&self) -> impl Iterator<Item = (i64, Piece)> + use<> {
-        let [a, b, c, d, e, f] = self.states;
-        let [ta, tb, tc, td, te] = SHARES_PER_MILLE.map(|share| share_of(self.length, share));
-        [(0, ta, a, b), (ta, tb, b, c), (tb, tc, c, d), (tc, td, d, e), (td, te, e, f)].into_iter().flat_map(
-            |(start, end, from, to)| {
-                let length = Duration::from_micros(end.saturating_sub(start));
-                Segment::new(&from, &to, length)
-                    .pieces()
-                    .map(move |(after, piece)| (start.saturating_add(after), piece))
-            },
-        )
-    }
-
     /// The state so long after the motion's stamp; before it the start, after the horizon its end.
     #[must_use]
     pub fn at(&self, after: Duration) -> Knot {
@@ -272,57 +264,9 @@ impl Curve {
         let found = self.pieces().filter(|(start, _)| *start <= micros).last();
         found.map_or(Knot::default(), |(start, piece)| piece.at(micros.saturating_sub(start)))
     }
-
-    /// Way and speed on a uniform grid (steps of at least 1 ms), from this time after the motion's stamp (or the stamp,
-    /// if it is earlier) to the horizon's end.
-    pub fn walk(&self, first: Duration, step: Duration) -> impl Iterator<Item = (Distance, Speed)> + use<> {
-        self.runs(first, step).flatten()
-    }
-
-    /// The same, piece by piece.
-    pub(crate) fn runs(&self, first: Duration, step: Duration) -> impl Iterator<Item = Run> + use<> {
-        let (mut next, step) = (first.as_micros().max(0), step.as_micros().max(SHORTEST));
-        self.pieces().filter_map(move |(start, piece)| {
-            let passed = next.saturating_sub(start);
-            let until_end = piece.micros.saturating_sub(passed);
-            if until_end < 0 {
-                return None;
-            }
-            let readings = quotient(until_end, step).saturating_add(1);
-            next = next.saturating_add(readings.saturating_mul(step));
-            let left = usize::try_from(readings).unwrap_or(usize::MAX);
-            Some(Run { share: piece.share_of(passed), share_step: piece.share_of(step), left, piece })
-        })
-    }
 }
 
-/// The readings that lie in one piece: each is one addition and [`Piece::at_share`].
-pub(crate) struct Run {
-    piece: Piece,
-    left: usize,
-    share: i32,
-    share_step: i32,
-}
-
-impl Run {
-    /// How many readings are left.
-    pub(crate) const fn len(&self) -> usize {
-        self.left
-    }
-}
-
-impl Iterator for Run {
-    type Item = (Distance, Speed);
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<Self::Item> {
-        self.left = self.left.checked_sub(1)?;
-        let reading = self.piece.at_share(self.share);
-        self.share = self.share.wrapping_add(self.share_step); // beyond 1 it is not read any more
-        Some(reading)
-    }
-}
-
+#[inline(never)]
 const fn share_of(length: Duration, per_mille: u16) -> i64 {
     quotient(length.as_micros().saturating_mul(per_mille as i64), 1000)
 }

@@ -35,6 +35,7 @@ impl Fields {
     }
 
     /// The station is 0 where there is none.
+    #[inline(always)] // the fields would be passed, with their names
     pub(super) fn with(&self, payload: Payload, predecessor: Predecessor) -> Payload {
         let (kind, station) = match predecessor {
             Predecessor::Unknown => (0, 0),
@@ -45,6 +46,7 @@ impl Fields {
     }
 
     /// The station is ignored where the kind is not `station`.
+    #[inline(always)]
     pub(super) fn get(&self, payload: Payload) -> Predecessor {
         match self.kind.raw(payload) {
             1 => Predecessor::None,
