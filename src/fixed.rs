@@ -192,6 +192,7 @@ pub const fn saturate_i32(x: i64) -> i32 {
 }
 
 /// Quotient rounded to nearest, ties away from zero; 0 for a divisor of 0.
+#[inline(never)]
 const fn divide_rounding(dividend: i64, divisor: i64) -> i64 {
     let half = divisor.saturating_abs() / 2;
     quotient(if dividend >= 0 { dividend.saturating_add(half) } else { dividend.saturating_sub(half) }, divisor)

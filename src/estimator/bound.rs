@@ -9,8 +9,8 @@
 //! harder than it accelerates.
 //!
 //! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the truth.
-//! Products stay below 2⁶³: speeds are at most 65.534e6, the times for which they change at most 6.6e8 (0.1 m/s² up to
-//! that speed), all times are cut at an hour.
+//! Products stay below 2⁶³ and need not saturate: speeds are at most 65.534e6 (and no word makes more than 2.6e8 of them),
+//! accelerations at most 6.4e7, the times for which they last are cut at an hour, 3.6e9.
 
 use crate::fixed::{per_million, quotient};
 use crate::time::{Duration, Instant};
@@ -72,29 +72,29 @@ impl End {
     /// After braking for `micros`, rounded down. Whether it has come to rest by then, `micros >= ⌈v/a⌉`, needs no division.
     fn braked(self, micros: i64, braking: Acceleration) -> Self {
         let braking = micro_up(braking.to_bits(), 25).max(1);
-        let could_lose = braking.saturating_mul(micros);
-        if could_lose >= self.speed.saturating_mul(MICRO) {
+        let could_lose = braking.wrapping_mul(micros);
+        if could_lose >= self.speed.wrapping_mul(MICRO) {
             // v²/2a: speeds below 2²⁶ squared stay below 2⁵².
-            let way = floor(self.speed.saturating_mul(self.speed), braking.saturating_mul(2));
+            let way = floor(self.speed.wrapping_mul(self.speed), braking.wrapping_mul(2));
             return Self { position: self.position.saturating_add(way), speed: 0 };
         }
         let lost = millionths_up(could_lose).min(self.speed);
-        let way = millionths(self.speed.saturating_mul(2).saturating_sub(lost).saturating_mul(micros)) / 2;
+        let way = millionths(self.speed.wrapping_mul(2).saturating_sub(lost).wrapping_mul(micros)) / 2;
         Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
     }
 
     /// After accelerating for `micros` up to the top speed, rounded up.
     fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
         let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
-        let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).saturating_mul(MICRO);
+        let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).wrapping_mul(MICRO);
         // The top speed is reached after ⌈gain/a⌉, which is divided out only if that is before the end.
-        let rises_on = acceleration.saturating_mul(micros.saturating_sub(1)) < to_gain;
+        let rises_on = acceleration.wrapping_mul(micros.saturating_sub(1)) < to_gain;
         let rising = if rises_on { micros } else { micros.min(ceil(to_gain, acceleration)) };
-        let gained = millionths_up(acceleration.saturating_mul(rising));
-        let twice = self.speed.saturating_mul(2).saturating_add(gained).saturating_mul(rising);
+        let gained = millionths_up(acceleration.wrapping_mul(rising));
+        let twice = self.speed.wrapping_mul(2).saturating_add(gained).wrapping_mul(rising);
         let way = half_up(millionths_up(twice));
         let speed = self.speed.saturating_add(gained).min(TOP_SPEED.max(self.speed));
-        let rest = millionths_up(speed.saturating_mul(micros.saturating_sub(rising)));
+        let rest = millionths_up(speed.wrapping_mul(micros.saturating_sub(rising)));
         Self { position: self.position.saturating_add(way).saturating_add(rest), speed }
     }
 }

@@ -53,6 +53,12 @@ const fn over(word: i64, micros: i64) -> i64 {
     quotient(word.saturating_mul(micros), MICROS_PER_S)
 }
 
+/// A product, saturating; a call, because it stands in many places that are seldom come to.
+#[inline(never)]
+const fn times(a: i64, b: i64) -> i64 {
+    a.saturating_mul(b)
+}
+
 /// A state in the words of the number formats.
 #[derive(Clone, Copy)]
 struct State {
@@ -185,7 +191,7 @@ impl Segment {
             return None;
         }
         // constant jerk from rest: v = a·t/2, way = v·t/3
-        let moving_off = b.speed.saturating_mul(8 * MICROS_PER_S).checked_div(b.acceleration)?; // F25/F23 and 2
+        let moving_off = times(b.speed, 8 * MICROS_PER_S).checked_div(b.acceleration)?; // F25/F23 and 2
         let way_off = over(b.speed, moving_off).checked_div(3)? >> 3;
         let slack = i64::from(Distance::from_mm(2).to_bits());
         let way = b.way.saturating_sub(a.way).saturating_sub(way_off);
@@ -202,7 +208,7 @@ impl Segment {
             return None;
         }
         // evenly changing acceleration: its end follows from 0 = v + (a + end)/2·t
-        let end = a.speed.saturating_mul(-8 * MICROS_PER_S).checked_div(braking.max(1))?.saturating_sub(a.acceleration);
+        let end = times(a.speed, -8 * MICROS_PER_S).checked_div(braking.max(1))?.saturating_sub(a.acceleration);
         let rest = State { way: a.way.saturating_add(way), speed: 0, acceleration: i64::from(saturate_i32(end)) };
         let stop = if braking == 0 { Piece::NOTHING } else { Piece::quintic(a, rest, braking, bow) };
         let off = Piece::quintic(State { acceleration: 0, ..rest }, b, moving_off, 0);
@@ -231,14 +237,14 @@ impl Segment {
 /// When a vehicle comes to rest that has this way left, as the positive root of a quadratic:
 /// `n·D / (p·v + √(q·v² + r·a·D))`, in microseconds, at least [`SHORTEST`]. Words in, computed in millionths.
 fn time_to_rest(way: i64, speed: i64, acceleration: i64, [n, p, q, r]: [i64; 4]) -> i64 {
-    let way = way.saturating_mul(MICROS_PER_S) >> 20;
-    let speed = speed.saturating_mul(MICROS_PER_S) >> 23;
-    let acceleration = acceleration.saturating_mul(MICROS_PER_S) >> 25;
-    let squared = speed.saturating_mul(speed).saturating_mul(q);
-    let under = squared.saturating_add(acceleration.saturating_mul(way).saturating_mul(r)).max(0);
+    let way = times(way, MICROS_PER_S) >> 20;
+    let speed = times(speed, MICROS_PER_S) >> 23;
+    let acceleration = times(acceleration, MICROS_PER_S) >> 25;
+    let squared = times(times(speed, speed), q);
+    let under = squared.saturating_add(times(times(acceleration, way), r)).max(0);
     let root = i64::try_from(under.unsigned_abs().isqrt()).unwrap_or(i64::MAX);
-    let below = speed.saturating_mul(p).saturating_add(root);
-    quotient(way.saturating_mul(n).saturating_mul(MICROS_PER_S), below).max(SHORTEST)
+    let below = times(speed, p).saturating_add(root);
+    quotient(times(times(way, n), MICROS_PER_S), below).max(SHORTEST)
 }
 
 /// A whole horizon between its knots.
