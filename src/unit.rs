@@ -240,7 +240,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
             (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
         };
-        Facts { engaged: self.wish.get().is_some_and(|wish| wish.engaged), ego, target }
+        Facts { engaged: self.wish.as_ref().is_some_and(|wish| wish.engaged), ego, target }
     }
 
     /// Looks the gains up when the target changes.
@@ -252,14 +252,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.association.is_some_and(|(associated, _)| associated == station) {
             return;
         }
-        let (Some(target), Some(ego)) = (reading, self.ego.get()) else { return };
+        let (Some(target), Some(ego)) = (reading, self.ego.as_ref()) else { return };
         let headway = target.position.ahead_of(ego.position);
         self.association = Some((station, Gains::look_up(&self.config.law, ego.speed, target.speed, headway)));
     }
 
     /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
     fn ego_at(&self, now: Instant) -> Option<State> {
-        let sample = self.ego.get()?;
+        let sample = self.ego.as_ref()?;
         let state = State {
             position: sample.position.ring(),
             speed: sample.speed,
@@ -278,7 +278,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
         let law = &self.config.law;
-        let wish = self.wish.get();
+        let wish = self.wish.as_ref();
         let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
         let aim = match self.association {
             Some((_, gains)) => Aim::Follow {
@@ -295,7 +295,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     fn course(&self, now: Instant, target: Option<usize>) -> Course {
         match self.mode {
-            Mode::Standby => Course::Yield { demand: self.ego.get().map_or(Acceleration::ZERO, |ego| ego.demand) },
+            Mode::Standby => Course::Yield { demand: self.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
             Mode::Cooperative | Mode::Holdover { .. } => {
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {

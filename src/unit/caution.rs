@@ -41,7 +41,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         let position = bound.lowest_position().ahead(length.negated());
         // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
-        let ego = self.ego.get()?.position;
+        let ego = self.ego.as_ref()?.position;
         let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
         Some(Reading { position: ego.ahead(gap), speed: bound.lowest_speed() })
     }

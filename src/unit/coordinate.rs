@@ -27,7 +27,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whom the ego is to follow: whom it was told to, or whom the order has put ahead of it.
     pub(super) fn predecessor(&self) -> Predecessor {
-        let wished = self.wish.get().map_or(Predecessor::Unknown, |wish| wish.predecessor);
+        let wished = self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
         if wished != Predecessor::Unknown || self.coordination.registration().is_none() {
             return wished;
         }
@@ -46,7 +46,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Takes in where the ego is on the globe.
     pub(super) fn take_ego_place(&mut self, at: Instant, geo: &GeoPosition) -> Result<(), Refusal> {
-        let (Some(itinerary), Some(ego)) = (self.coordination.itinerary(), self.ego.get()) else { return Ok(()) };
+        let (Some(itinerary), Some(ego)) = (self.coordination.itinerary(), self.ego.as_ref()) else { return Ok(()) };
         let since = self.instant_of(geo.stamp, at).unwrap_or(at).since(ego.at);
         if since.as_micros().unsigned_abs() > self.config.link.ego_timeout.as_micros().unsigned_abs() {
             return Err(Refusal::Stale);
@@ -146,7 +146,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.coordination.is_due(now) || !self.is_synchronised(now) {
             return;
         }
-        let (Some(sample), Some(state), Some(gnss)) = (self.ego.get(), self.ego_at(now), self.clock.gnss(now)) else {
+        let (Some(sample), Some(state), Some(gnss)) = (self.ego.as_ref(), self.ego_at(now), self.clock.gnss(now)) else {
             return;
         };
         let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));

@@ -35,7 +35,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if age < Duration::ZERO.minus(self.config.link.future) {
             return Err(Refusal::Future);
         }
-        let near = self.ego.get().map(|ego| ego.position);
+        let near = self.ego.as_ref().map(|ego| ego.position);
         let sample = Sample::of(motion, instant, at, near);
         if let Some(held) = self.ego.as_ref() {
             if held.stamp == sample.stamp && at.since(held.received) < Duration::from_millis(1000) {
@@ -56,7 +56,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let Some(motion) = self.translate(at, slot, motion)? else { return Ok(()) };
                 let instant =
                     self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
-                let ego = self.ego.get().map(|ego| ego.position);
+                let ego = self.ego.as_ref().map(|ego| ego.position);
                 let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
                 let station = track.station();

@@ -230,11 +230,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Intent {
             length: config.length,
             standstill: self.standstill(),
-            predecessor: match self.wish.get() {
+            predecessor: match self.wish.as_ref() {
                 Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,
             },
-            target_speed: self.wish.get().map_or(law.target_speed, |wish| wish.target_speed),
+            target_speed: self.wish.as_ref().map_or(law.target_speed, |wish| wish.target_speed),
             time_gap,
             gain,
             damping,

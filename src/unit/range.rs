@@ -77,7 +77,7 @@ impl Ranging {
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a view of the vehicle ahead, received at `received`.
     pub(super) fn take_range(&mut self, received: Instant, seen: RangeSample) -> Result<(), Refusal> {
-        let ego = self.ego.get().ok_or(Refusal::Torn)?;
+        let ego = self.ego.as_ref().ok_or(Refusal::Torn)?;
         let at = received.minus(seen.age);
         let since = at.since(ego.at);
         if since > self.config.link.ego_timeout || since < Duration::ZERO.minus(self.config.link.ego_timeout) {
@@ -88,7 +88,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
         let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
-        let doubt = self.doubt_of_sight(&ego, since, &seen);
+        let doubt = self.doubt_of_sight(ego, since, &seen);
         let mut sight = Sight { at, rear, speed, doubt, is_target: false };
         if let Some(index) = self.visible() {
             sight.is_target = self.compare(index, &sight);
