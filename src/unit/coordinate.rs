@@ -146,7 +146,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.coordination.is_due(now) || !self.is_synchronised(now) {
             return;
         }
-        let (Some(sample), Some(state), Some(gnss)) = (self.ego.as_ref(), self.ego_at(now), self.clock.gnss(now)) else {
+        let (Some(sample), Some(state), Some(gnss)) = (self.ego.as_ref(), self.ego_at(now), self.clock.gnss(now))
+        else {
             return;
         };
         let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));

@@ -132,10 +132,25 @@ impl<const PEERS: usize> Receiver<PEERS> {
     /// `UnknownSlot`, `Length` (also for a remote frame), the E2E refusals (`Checksum`, `CounterRange`, `Repeated`,
     /// `CounterGap`, `NotYetTrusted`), `Range`, `Torn`, tested in this order.
     pub fn receive(&mut self, frame: &impl Frame) -> Result<Received, Refusal> {
+        match self.role {
+            Role::Unit => self.receive_as::<true>(frame),
+            Role::Modem => self.receive_as::<false>(frame),
+        }
+    }
+
+    /// As [`receive`](Self::receive) of a unit's receiver, without what the other side's takes: an image for an ECU need not
+    /// hold that.
+    pub(crate) fn receive_as_unit(&mut self, frame: &impl Frame) -> Result<Received, Refusal> {
+        self.receive_as::<true>(frame)
+    }
+
+    #[inline(always)]
+    fn receive_as<const UNIT: bool>(&mut self, frame: &impl Frame) -> Result<Received, Refusal> {
+        let role = if UNIT { Role::Unit } else { Role::Modem };
         let Id::Standard(id) = frame.id() else { return Ok(Received::Foreign) };
         let Some(offset) = self.base.offset_of(id.as_raw()) else { return Ok(Received::Foreign) };
         let Some((place, entry, slot)) = index::find(offset) else { return Ok(Received::Foreign) };
-        if !self.role.hears(entry.sender) {
+        if !role.hears(entry.sender) {
             return Ok(Received::Foreign);
         }
         if entry.content.is_per_slot() && usize::from(slot.0) >= PEERS {
@@ -149,7 +164,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
         self.check_of(place, entry, slot)?.receive(&LIMITS, data_id, data)?;
         let payload = Payload::from_bytes(*data);
         entry.check(payload)?;
-        Ok(self.assemble(entry, slot, payload)?.map_or(Received::Pending, Received::Whole))
+        Ok(self.assemble::<UNIT>(entry, slot, payload)?.map_or(Received::Pending, Received::Whole))
     }
 
     fn check_of(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut Check, Refusal> {
@@ -162,12 +177,20 @@ impl<const PEERS: usize> Receiver<PEERS> {
         check.ok_or(Refusal::UnknownSlot)
     }
 
-    fn assemble(&mut self, entry: &Entry, slot: Slot, payload: Payload) -> Result<Option<Message>, Refusal> {
+    /// What only the other side sends does not get here.
+    fn assemble<const UNIT: bool>(
+        &mut self,
+        entry: &Entry,
+        slot: Slot,
+        payload: Payload,
+    ) -> Result<Option<Message>, Refusal> {
         let (part, tag) = (entry.part_of(payload), super::field::TAG.byte(payload));
         let whole = [payload];
         Ok(match entry.content {
             Content::Sync => Some(Message::Sync(Sync::decode(&whole))),
             Content::FollowUp => Some(Message::FollowUp(FollowUp::decode(&whole))),
+            Content::Command | Content::Status | Content::EstimateA | Content::EstimateB if UNIT => None,
+            Content::Said(Speaker::Own, _) if UNIT => None,
             Content::Command => Some(Message::Command(Command::decode(&whole))),
             Content::EgoIntent => Some(Message::EgoIntent(EgoIntent::decode(&whole))),
             Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
