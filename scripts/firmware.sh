@@ -90,13 +90,14 @@ tr '\r' '\n' <"$work/serial.txt" | awk '
 echo "-- a log replayed, against this host"
 cd tests/embedded
 cargo build --locked --quiet --release -p holdover-log
-holdover_log=$PWD/${CARGO_TARGET_DIR:-target}/release/holdover-log
-replays=$PWD/${CARGO_TARGET_DIR:-target}/replay
+built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+holdover_log=$built/release/holdover-log
+replays=$built/replay
 mkdir -p "$replays"
 "$holdover_log" record "$replays" | sed 's/^/  /'
 while read -r target machine host; do
     cargo build --locked --quiet --profile firmware --target "$target" --bin replay
-    program=$PWD/${CARGO_TARGET_DIR:-target}/$target/firmware/replay
+    program=$built/$target/firmware/replay
     rm -f "$replays/sent.bin"
     (cd "$replays" && emulate -M "$machine" -serial none -semihosting-config enable=on,target=native -kernel "$program")
     printf '  %s on %s: ' "$target" "$machine"
