@@ -41,6 +41,7 @@ impl Duration {
 
     /// In whole milliseconds, towards zero.
     #[must_use]
+    #[inline(never)]
     pub const fn as_millis(self) -> i64 {
         quotient(self.0, 1000)
     }

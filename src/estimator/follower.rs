@@ -37,9 +37,11 @@ pub struct Follower {
     /// Half of `t_g + δt`: the whole of it may be beyond the format's 4 s.
     half_gap: Seconds,
     damping: Seconds,
+    /// What makes a sum saturate at the end of the format just where it would be less than `-(t_g + δt) v_c`, so that the limit
+    /// takes no comparison; it is added again.
+    reach: Distance,
+    /// `l + s_0`, less that.
     spacing: Distance,
-    /// `-(t_g + δt) v_c`.
-    farthest: Distance,
 }
 
 impl Follower {
@@ -57,12 +59,13 @@ impl Follower {
         let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
         let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
         let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
+        let reach = half.plus(half).negated().minus(Distance::MIN);
         Self {
             gain: semi_implicit(gain, damping, time_gap, step).negated(),
             half_gap,
             damping,
-            spacing,
-            farthest: half.plus(half).negated(),
+            reach,
+            spacing: spacing.minus(reach),
         }
     }
 
@@ -71,9 +74,9 @@ impl Follower {
     #[must_use]
     pub fn wish(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
         let half = state.speed.over(self.half_gap);
-        let behind =
-            state.position.ahead_of(ahead).plus(self.spacing).plus(state.speed.minus(ahead_speed).over(self.damping));
-        let error = behind.max(self.farthest).plus(half.plus(half)); // `QDADD`
+        let closing = state.speed.minus(ahead_speed).over(self.damping);
+        let behind = state.position.ahead_of(ahead).plus(closing).plus(self.spacing);
+        let error = behind.plus(self.reach).plus(half.plus(half)); // `QDADD`
         error.times(self.gain)
     }
 }
@@ -166,6 +169,31 @@ mod tests {
             assert!((f64::from(wish.to_mm_per_s2()) - exact).abs() < 1.0, "{mm_per_s} {wish:?}");
             assert_eq!(wish > Acceleration::ZERO, is_faster);
             assert!(over(None).wish(&state, ahead, state.speed) > Acceleration::from_mm_per_s2(60_000));
+        }
+    }
+
+    #[test]
+    fn the_limit_by_saturation_is_the_larger_of_the_two() {
+        let (step, time_gap) = (Duration::from_millis(10), Seconds::from_millis(1_000));
+        for catch_up in [0, 13_000, 80_000] {
+            let catch_up = Speed::from_mm_per_s(catch_up);
+            let law = Follower::over(
+                step,
+                Gain::from_milli(500),
+                Seconds::ZERO,
+                time_gap,
+                Distance::from_mm(6_800),
+                Some(catch_up),
+            );
+            let half = catch_up.over(law.half_gap);
+            for mm in (-1_000_000..1_000_000).step_by(997).chain([-13_130, -13_131, -6_800, 0]) {
+                let behind =
+                    Position::from_mm(mm).ring().ahead_of(Position::ZERO.ring()).plus(Distance::from_mm(6_800));
+                let larger = behind.max(half.plus(half).negated());
+                let limited =
+                    Position::from_mm(mm).ring().ahead_of(Position::ZERO.ring()).plus(law.spacing).plus(law.reach);
+                assert!((larger.to_bits() - limited.to_bits()).abs() <= 1, "{mm} {larger:?} {limited:?}");
+            }
         }
     }
 

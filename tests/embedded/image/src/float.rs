@@ -24,6 +24,8 @@ macro_rules! follower {
                 pub damping: $float,
                 /// `l + s_0`.
                 pub spacing: $float,
+                /// `-(t_g + δt) v_c`.
+                pub farthest: $float,
                 /// `δt`.
                 pub step: $float,
                 /// `e^(-δt/T)`.
@@ -50,9 +52,8 @@ macro_rules! follower {
                 let (mut position, mut speed) = (first.position - 18.11, first.speed);
                 let (mut acceleration, mut demand): ($float, $float) = (0.0, 0.0);
                 for (out, ahead) in out.iter_mut().zip(ahead) {
-                    let error =
-                        position - ahead.position + law.spacing + law.gap * speed + law.damping * (speed - ahead.speed);
-                    let wish = -law.gain * error;
+                    let behind = position - ahead.position + law.spacing + law.damping * (speed - ahead.speed);
+                    let wish = -law.gain * (larger(behind, law.farthest) + law.gap * speed);
                     let low = larger(demand - law.slew, law.floor);
                     let high = smaller(demand + law.slew, law.ceiling);
                     demand = larger(smaller(wish, high), low);
@@ -86,6 +87,7 @@ macro_rules! follower {
                 gap: 1.01,
                 damping: 2.0,
                 spacing: 6.8,
+                farthest: -16.24,
                 step: 0.01,
                 keep: 0.967_2,
                 slip: 0.009_835,

@@ -174,7 +174,13 @@ fn compare(counter: &Counter) {
         [[Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; CAPACITY]; 2];
     let config = Config::car(EGO);
     let law = config.law;
-    let aim = Aim::Follow { gain: law.gain, damping: law.damping, time_gap: law.time_gap, standstill: law.standstill, target_speed: law.target_speed };
+    let aim = Aim::Follow {
+        gain: law.gain,
+        damping: law.damping,
+        time_gap: law.time_gap,
+        standstill: law.standstill,
+        target_speed: law.target_speed,
+    };
     let stride = Driver::of_config(&config, aim).over(Duration::from_millis(10), None, &config.prediction.model);
     let speed = Speed::from_mm_per_s(11_000);
     let start = State { position: Position::ZERO.ring(), speed, ..State::default() };
