@@ -3,6 +3,7 @@
 mod rig;
 
 use holdover::health::Refusal;
+use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 
@@ -166,6 +167,42 @@ fn with_the_envelope_who_is_heard_to_leave_is_not_waited_for() {
     let mut junction = settled(two(6.0, true));
     junction.run(40.0, |_| {});
     assert!(junction.drivers[0].body.position > 300.0, "{}", junction.drivers[0].body.position);
+}
+
+#[test]
+fn when_an_axis_moves_everything_held_of_its_peer_moves_with_it() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(2.0, |_| {});
+    // From now on the peer drives at the same speed towards a crossing point 30 m farther away: it is on another street.
+    junction.drivers[1].speaks = false;
+    let now = junction.now;
+    let held = |junction: &Junction| {
+        let unit = &junction.drivers[0].rig.unit;
+        let at = rig::instant(now);
+        let bound = unit.bound(1, at).unwrap();
+        let reading = unit.estimator().read(1, at).unwrap();
+        let sample = *unit.peers().get(1).unwrap().newest().unwrap();
+        [reading.position, bound.lowest_position(), bound.highest_position(), sample.position].map(rig::m_of)
+    };
+    let before = held(&junction);
+    let newest = *junction.drivers[0].rig.unit.peers().get(1).unwrap().newest().unwrap();
+    let crossing = junction.drivers[0].axis + CROSSING;
+    let distance = crossing - rig::m_of(newest.position) + 30.0;
+    let route = Route {
+        tag: 0,
+        intersection: 5,
+        leg: 1,
+        distance: rig::metres((distance * 1e3).round() / 1e3),
+        stamp: newest.stamp,
+        arrival: 1,
+        predecessor: Predecessor::None,
+    };
+    let slot = holdover::wire::Slot(1);
+    junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Route(route))).unwrap();
+    for (before, after) in before.into_iter().zip(held(&junction)) {
+        assert!((after - before + 30.0).abs() < 0.002 + 0.013, "{before} {after}");
+    }
+    assert_eq!(junction.drivers[0].rig.unit.health().of(Refusal::Jump), 0);
 }
 
 #[test]

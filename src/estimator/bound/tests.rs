@@ -206,3 +206,20 @@ fn quotients_are_rounded_to_the_side_they_say() {
         }
     }
 }
+
+#[test]
+fn a_bound_that_is_moved_contains_what_it_contained_there() {
+    let reach = Reach::WORST;
+    let speed = Speed::from_mm_per_s(10_000);
+    let bound = Bound::around(Instant::ZERO, Position::from_mm(5_000), speed, &Doubt::default(), &reach);
+    for bits in [-1_048_577, -1_048_576, -2, -1, 0, 1, 2, 1_048_576, 1_048_577, i32::MAX, i32::MIN] {
+        let moved = bound.shifted(Distance::from_bits(bits));
+        let exact = |position: Position| position.to_bits() + i64::from(bits);
+        let near = exact(bound.lowest_position()) - moved.lowest_position().to_bits();
+        let far = moved.highest_position().to_bits() - exact(bound.highest_position());
+        // A micrometre is 1.05 bits, and each reading rounds once more.
+        assert!((0..=3).contains(&near) && (0..=3).contains(&far), "{bits}: {near} {far}");
+        assert_eq!((moved.lowest_speed(), moved.highest_speed()), (bound.lowest_speed(), bound.highest_speed()));
+        assert_eq!(moved.at(), bound.at());
+    }
+}
