@@ -27,7 +27,9 @@ if [ "${1:-}" = --inside ]; then
     # Half a line that was under way when the line was opened ends with the first frame. A unit in lock step says nothing
     # of itself, and a silent device is for the command to find.
     candump -n 1 -T 3000 slcan0 >/dev/null || true
-    "$@"
+    first=()
+    ! chrt --rr 1 true 2>/dev/null || first=(chrt --rr 1)
+    "${first[@]}" "$@"
     exit
 fi
 

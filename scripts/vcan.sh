@@ -168,8 +168,11 @@ run_in_uml() {
     # The guest's memory is a file of the machine's. A container's /dev/shm is often smaller than that.
     [ "$(df --output=avail -B 1 /dev/shm 2>/dev/null | tail -n 1)" -gt "$(numfmt --from=iec "$memory")" ] 2>/dev/null ||
         memory_in=$job
+    # It is several processes of which one runs at a time; that they stay on one processor makes each system call of the
+    # command's three times as fast.
     local first=()
-    [ $real_time = false ] || ! chrt --rr 1 true 2>/dev/null || first=(chrt --rr 1)
+    [ $real_time = false ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
+    [ $real_time = false ] || ! chrt --rr 1 true 2>/dev/null || first+=(chrt --rr 1)
     # Through a pipe, because the kernel would put the user's terminal into raw mode.
     local out err
     exec 3> >(exec cat) && out=$!
