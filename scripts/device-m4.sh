@@ -53,7 +53,7 @@ command -v qemu-system-arm >/dev/null || { say "no qemu-system-arm; remedy: apt-
 # processor (the last), because its two threads pass each byte of the line to one another, and to wake another one for that
 # takes longer.
 first=(taskset -c "$(taskset -cp $$ | sed 's/.*[:,-] *//')")
-[ "$(nice -n -10 nice 2>/dev/null)" != -10 ] || first+=(nice -n -10)
+! chrt --rr 1 true 2>/dev/null || first+=(chrt --rr 1)
 words=$(mktemp)
 "${first[@]}" qemu-system-arm -M netduinoplus2 -display none -monitor none -serial pty -kernel "$image" </dev/null >"$words" 2>&1 &
 qemu=$!
