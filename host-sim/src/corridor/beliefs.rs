@@ -90,15 +90,16 @@ pub struct Beliefs<'a> {
     pub changes: u64,
     /// Ticks at which what is certain did not hold the truth; in the first of the classes.
     pub violations: u64,
-    /// Errors over time of the trips that are watched: `(time, error)`.
-    pub watched: BTreeMap<usize, Vec<(f64, f64)>>,
+    /// Errors over time of the unit that is watched: `(time, error)`.
+    pub watched: Vec<(f64, f64)>,
+    watch: Option<usize>,
     associations: BTreeMap<usize, (Option<StationHash>, f64)>,
 }
 
 impl<'a> Beliefs<'a> {
-    /// Nothing is known yet; errors over time are kept of the units of those trips.
+    /// Nothing is known yet; errors over time are kept of the unit of that trip.
     #[must_use]
-    pub fn new(network: &'a Network, watched: &[usize]) -> Self {
+    pub fn new(network: &'a Network, watch: Option<usize>) -> Self {
         Self {
             network,
             settled: Class::default(),
@@ -106,7 +107,8 @@ impl<'a> Beliefs<'a> {
             unheard: Class::default(),
             changes: 0,
             violations: 0,
-            watched: watched.iter().map(|trip| (*trip, Vec::new())).collect(),
+            watched: Vec::new(),
+            watch,
             associations: BTreeMap::new(),
         }
     }
@@ -117,16 +119,13 @@ impl<'a> Beliefs<'a> {
             return Some(target.way_m);
         }
         let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
-        let shared = |stop: &&super::network::Stop| stops.iter().any(|other| other.intersection == stop.intersection);
-        // Two roads that share several intersections run side by side: then it is about the next one.
-        let shared: Vec<_> = own_stops.iter().filter(shared).collect();
-        let is_ahead = |stop: &&&super::network::Stop| {
+        // The two directions of a street share several intersections: it is about the one that the ego comes to next.
+        let here = own_stops.iter().find(|stop| {
             let half_m = self.network.junctions[stop.intersection].half_m;
             own.way_m - own.length_m < stop.at_m + half_m
-        };
-        let stop = shared.iter().find(is_ahead).or(shared.last())?;
-        let other = stops.iter().find(|other| other.intersection == stop.intersection)?;
-        Some(stop.at_m - other.at_m + target.way_m)
+        })?;
+        let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
+        Some(here.at_m - there.at_m + target.way_m)
     }
 }
 
@@ -158,8 +157,8 @@ impl Watch for Beliefs<'_> {
             if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
                 self.violations += 1;
             }
-            if let Some(errors) = self.watched.get_mut(&own.trip) {
-                errors.push((at_s, error_m));
+            if self.watch == Some(own.trip) {
+                self.watched.push((at_s, error_m));
             }
         }
     }

@@ -10,6 +10,8 @@ use std::io;
 
 use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
+use holdover::health::Refusal;
+use holdover::time::Instant;
 use holdover::units::Acceleration;
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::{Predecessor, StationHash};
@@ -20,6 +22,8 @@ use super::description::{Corridor, Radio, Wrong};
 use super::globe::Shift;
 use super::network::Network;
 use super::trips::Trip;
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::modem::Course;
 use crate::plant::{Difference, Kind, Machine, Plant};
@@ -117,11 +121,21 @@ struct Traveller {
     vehicle: Box<Vehicle>,
     ground: Ground,
     dark: Window,
+    log: Option<MemoryNode>,
 }
 
 impl Traveller {
     fn way_m(&self) -> f64 {
         self.vehicle.plant.position_m - self.ground.odometer_m
+    }
+
+    /// What has been on its bus, if that is logged.
+    fn hand_in(&mut self, log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let Some(node) = &mut self.log else { return Ok(()) };
+        while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+            log.push((self.vehicle.time_of(at), frame));
+        }
+        Ok(())
     }
 
     fn is_dark(&self, at_s: f64) -> bool {
@@ -141,8 +155,8 @@ pub struct Traffic<'a> {
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
     air: Air,
-    refusals: u64,
-    turned_away: u64,
+    remains: Remains,
+    logged: Option<usize>,
 }
 
 /// What is left of a run.
@@ -152,8 +166,19 @@ pub struct Remains {
     pub unserved: usize,
     /// Refusals of all units.
     pub refusals: u64,
+    /// Times that a unit made way for one that had overlooked it.
+    pub disagreements: u64,
     /// Messages that found no slot.
     pub turned_away: u64,
+}
+
+impl Remains {
+    fn add(&mut self, vehicle: &Vehicle) {
+        let health = vehicle.unit.health();
+        self.refusals += Refusal::ALL.iter().map(|cause| u64::from(health.of(*cause))).sum::<u64>();
+        self.disagreements += u64::from(health.of(Refusal::Overlooked));
+        self.turned_away += vehicle.turned_away();
+    }
 }
 
 impl<'a> Traffic<'a> {
@@ -181,16 +206,25 @@ impl<'a> Traffic<'a> {
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
-            refusals: 0,
-            turned_away: 0,
+            remains: Remains::default(),
+            logged: None,
         }
+    }
+
+    /// Keeps the traffic on the bus of that trip's vehicle.
+    pub fn log(&mut self, trip: Option<usize>) {
+        self.logged = trip;
     }
 
     /// Runs it until everyone has left, or for twice as long as it lasts and five minutes.
     ///
     /// # Errors
     /// The buses', and a configuration that the units refuse, as an error of invalid input.
-    pub fn run(mut self, watches: &mut [&mut dyn Watch], mut progress: impl FnMut(f64)) -> io::Result<Remains> {
+    pub fn run(
+        mut self,
+        watches: &mut [&mut dyn Watch],
+        log: &mut Vec<(f64, Frame)>,
+    ) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
         let mut tick = 0u64;
         loop {
@@ -202,23 +236,20 @@ impl<'a> Traffic<'a> {
             if is_over || at_s > longest_s {
                 break;
             }
-            self.tick(at_s, watches)?;
-            if tick.is_multiple_of(1000) {
-                progress((at_s / self.corridor.duration_s).min(1.0));
-            }
+            self.tick(at_s, watches, log)?;
             tick += 1;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
         let unserved =
             self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
-        self.travellers.values().for_each(|traveller| {
-            self.turned_away += traveller.vehicle.turned_away();
-            self.refusals += refusals(&traveller.vehicle);
-        });
-        Ok(Remains { unserved, refusals: self.refusals, turned_away: self.turned_away })
+        for mut traveller in std::mem::take(&mut self.travellers).into_values() {
+            self.remains.add(&traveller.vehicle);
+            traveller.hand_in(log)?;
+        }
+        Ok(Remains { unserved, ..self.remains })
     }
 
-    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
+    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         self.admit(at_s)?;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
@@ -244,8 +275,7 @@ impl<'a> Traffic<'a> {
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
         }
-        self.dismiss(at_s, watches);
-        Ok(())
+        self.dismiss(at_s, watches, log)
     }
 
     /// Whether one is within the radio's range of another one.
@@ -324,7 +354,7 @@ impl<'a> Traffic<'a> {
             target_speed: speed(self.corridor.traffic.target_speed_mps),
             time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
         };
-        let config = self.config(index, trip.kind);
+        let config = config(self.corridor, &self.conditions, index, trip.kind);
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let sensors = Sensors::blind(ACCURACY);
         let mut vehicle = Box::new(
@@ -336,33 +366,10 @@ impl<'a> Traffic<'a> {
             .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
             .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;
         let period_s = self.corridor.period_s;
+        let log = (self.logged == Some(index)).then(|| vehicle.listen());
         vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
-        let from_s = trip.at_s + trip.dark_after_s;
-        let dark = Window { from_s, to_s: from_s + self.conditions.radio.dark_s };
-        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark })
-    }
-
-    /// The configuration of a vehicle's unit.
-    #[must_use]
-    pub fn config(&self, index: usize, kind: Kind) -> Config {
-        let (corridor, traffic) = (self.corridor, &self.corridor.traffic);
-        let mut config = Config::car(station(index));
-        config.period = duration(corridor.period_s);
-        config.length = distance(kind.length_m());
-        config.lag = fine_seconds(kind.lag_s());
-        config.body = kind.body();
-        config.limits = kind.limits();
-        config.law.time_gap = seconds(traffic.time_gap_s);
-        config.law.standstill = distance(traffic.standstill_m);
-        config.law.target_speed = speed(traffic.target_speed_mps);
-        config.link.period = duration(1.0 / corridor.message_rate_hz);
-        config.prediction.step = duration(self.conditions.step_s);
-        config.prediction.horizon = horizon(self.conditions.step_s);
-        let capable: Acceleration = config.limits.emergency_braking;
-        let limits = self.conditions.envelope.limits();
-        config.envelope =
-            limits.map(|limits| holdover::config::Envelope { braking: limits.braking.min(capable), ..limits });
-        config
+        let dark = trip.dark(&self.conditions.radio);
+        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
     }
 
     fn drive_alone(&mut self) {
@@ -376,7 +383,7 @@ impl<'a> Traffic<'a> {
     }
 
     /// Those who have driven to the end of their way leave, and vanish a little later.
-    fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
+    fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let trips = self.trips;
         let beyond_m = |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
         for (index, traveller) in &mut self.travellers {
@@ -389,23 +396,43 @@ impl<'a> Traffic<'a> {
         let gone: Vec<usize> =
             self.travellers.iter().filter(|(_, traveller)| has_gone(traveller)).map(|(index, _)| *index).collect();
         for index in gone {
-            if let Some(traveller) = self.travellers.remove(&index) {
-                self.turned_away += traveller.vehicle.turned_away();
-                self.refusals += refusals(&traveller.vehicle);
+            if let Some(mut traveller) = self.travellers.remove(&index) {
+                self.remains.add(&traveller.vehicle);
+                traveller.hand_in(log)?;
             }
             self.air.forget(index);
         }
+        Ok(())
     }
+}
+
+/// The configuration of a vehicle's unit.
+#[must_use]
+pub fn config(corridor: &Corridor, conditions: &Conditions, index: usize, kind: Kind) -> Config {
+    let traffic = &corridor.traffic;
+    let mut config = Config::car(station(index));
+    config.period = duration(corridor.period_s);
+    config.length = distance(kind.length_m());
+    config.lag = fine_seconds(kind.lag_s());
+    config.body = kind.body();
+    config.limits = kind.limits();
+    config.law.time_gap = seconds(traffic.time_gap_s);
+    config.law.standstill = distance(traffic.standstill_m);
+    config.law.target_speed = speed(traffic.target_speed_mps);
+    config.link.period = duration(1.0 / corridor.message_rate_hz);
+    config.prediction.step = duration(conditions.step_s);
+    config.prediction.horizon = horizon(conditions.step_s);
+    let capable: Acceleration = config.limits.emergency_braking;
+    let limits = conditions.envelope.limits();
+    config.envelope =
+        limits.map(|limits| holdover::config::Envelope { braking: limits.braking.min(capable), ..limits });
+    config
 }
 
 /// Whom a vehicle's unit follows.
 fn followed(vehicle: &Vehicle) -> Option<StationHash> {
     let target = vehicle.unit.coordination().choice().target?;
     vehicle.unit.peers().get(target.into())?.station()
-}
-
-fn refusals(vehicle: &Vehicle) -> u64 {
-    holdover::health::Refusal::ALL.iter().map(|cause| u64::from(vehicle.unit.health().of(*cause))).sum()
 }
 
 fn refused(cause: &ConfigError) -> io::Error {

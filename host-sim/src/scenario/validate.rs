@@ -40,6 +40,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let document = Document::new(file, text);
     let table = document.parse()?;
     let mut top = document.top(&table);
+    let _ = (top.value("kind"), top.text("about")?); // the kind has been asked for already
 
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let duration = top.number(&DURATION)?;
