@@ -55,6 +55,8 @@ pub struct Scenario {
 pub struct Leader {
     /// Speed that it wants on the free road, `v_∞`; 0 to 65.534 m/s.
     pub target_speed_mps: f64,
+    /// The speeds that it wants from those times on: `(s, m/s)`, in order of time; empty: always the one above.
+    pub program: Vec<(f64, f64)>,
     /// The drive that it follows instead, from its first sample on. A leader on a recording publishes no intent.
     pub motion: Option<Motion>,
 }

@@ -181,6 +181,11 @@ impl Vehicle {
         self.unit.set_out(itinerary)
     }
 
+    /// Lets the driver want another speed from now on.
+    pub fn want(&mut self, target_speed_mps: f64) {
+        self.wish.target_speed = speed(target_speed_mps);
+    }
+
     /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
     #[must_use]
     pub fn listen(&self) -> MemoryNode {

@@ -17,6 +17,9 @@ use crate::vehicle::station;
 /// For so long after a target's own association has changed, errors stand apart.
 pub const CHANGED_S: f64 = 1.0;
 
+/// An error that is worth a second look, in metres.
+pub const BEYOND_M: f64 = 0.2;
+
 /// Errors of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Class {
@@ -86,6 +89,8 @@ pub struct Beliefs<'a> {
     pub changing: Class,
     /// It has changed before that, and nothing has been heard from the target since.
     pub unheard: Class,
+    /// For each unit and target whose error was in the first class and beyond [`BEYOND_M`], the largest.
+    pub beyond: BTreeMap<(usize, usize), Worst>,
     /// Changes of whom somebody follows.
     pub changes: u64,
     /// Ticks at which what is certain did not hold the truth; in the first of the classes.
@@ -105,6 +110,7 @@ impl<'a> Beliefs<'a> {
             settled: Class::default(),
             changing: Class::default(),
             unheard: Class::default(),
+            beyond: BTreeMap::new(),
             changes: 0,
             violations: 0,
             watched: Vec::new(),
@@ -152,6 +158,12 @@ impl Watch for Beliefs<'_> {
                 self.unheard.add(worst);
             } else {
                 self.settled.add(worst);
+                if error_m.abs() > BEYOND_M {
+                    let held = self.beyond.entry((own.trip, target.trip)).or_insert(worst);
+                    if held.error_m.abs() < error_m.abs() {
+                        *held = worst;
+                    }
+                }
             }
             let truth_m = truth_m + own.odometer_m;
             if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {

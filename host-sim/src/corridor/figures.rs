@@ -28,6 +28,8 @@ pub struct Outcome {
     pub ticks: [u64; 2],
     /// Errors: settled, within a second of a change, unheard since.
     pub errors: [Class; 3],
+    /// Pairs of a unit and its target whose settled error was beyond 0.2 m.
+    pub beyond: usize,
     /// Changes of association.
     pub changes: u64,
     /// Ticks outside the bound.
@@ -51,6 +53,7 @@ impl Outcome {
             lowest_speed_mps: referee.lowest_speed_mps,
             ticks: referee.ticks,
             errors: [beliefs.settled, beliefs.changing, beliefs.unheard],
+            beyond: beliefs.beyond.len(),
             changes: beliefs.changes,
             violations: beliefs.violations,
             remains,
@@ -104,6 +107,8 @@ pub struct Side {
     pub position_error_after_change: ErrorFigures,
     /// Where it has before, and nothing has been heard from it since.
     pub position_error_unheard: ErrorFigures,
+    /// Pairs of a unit and its target whose error in the first of these classes was beyond 0.2 m.
+    pub pairs_beyond: usize,
     /// Changes of association.
     pub association_changes: u64,
     /// Ticks at which a target was outside its bound.
@@ -142,6 +147,7 @@ impl Side {
             position_error: class(0),
             position_error_after_change: class(1),
             position_error_unheard: class(2),
+            pairs_beyond: all().map(|outcome| outcome.beyond).sum(),
             association_changes: all().map(|outcome| outcome.changes).sum(),
             bound_violations: all().map(|outcome| outcome.violations).sum(),
             limited_share: ticks[1] as f64 / ticks[0].max(1) as f64,

@@ -25,6 +25,7 @@ pub const LINES: &[Line] = &[
     ("shortest clearance, s", |side| number(side.smallest_clearance_s, 2)),
     ("lowest speed, m/s", |side| number(side.lowest_speed_mps, 2)),
     ("position error, max, m", |side| number(side.position_error.max_m, 3)),
+    ("  pairs beyond 0.2 m", |side| side.pairs_beyond.to_string()),
     ("position error, rms, m", |side| number(side.position_error.rms_m, 4)),
     ("  within 1 s of a change, max", |side| number(side.position_error_after_change.max_m, 3)),
     ("  change not heard of, max", |side| number(side.position_error_unheard.max_m, 3)),

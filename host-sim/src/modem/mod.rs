@@ -8,7 +8,7 @@
 //! until nothing has been said in it for [`SLOT_REUSE_S`], because before that the unit takes the new station for a mistake.
 //! A station that cannot matter is not relayed even if there is room.
 //!
-//! *Intents* are relayed when a station gets its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
+//! *Intents* are relayed with the first messages after a station got its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
 //! eight peers fit the bus.
 
 use holdover::wire::horizon::Knots;
@@ -26,6 +26,10 @@ pub const PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
+
+/// An intent is relayed with each of the first messages in a slot but this one, because the unit trusts an identifier from its
+/// second frame on, and a vehicle may fall silent before half a second has gone by.
+const NEWS: u8 = 4;
 
 /// Where a station said it was is forgotten after so long.
 const FORGOTTEN_S: f64 = 10.0;
@@ -84,6 +88,8 @@ struct Tenant {
     relayed_s: f64,
     /// Nothing is relayed before.
     from_s: f64,
+    /// How often it has been relayed, up to [`NEWS`].
+    relayed: u8,
     intent: Option<(Intent, f64)>,
 }
 
@@ -143,7 +149,10 @@ impl Relay {
             return;
         };
         match &mut self.slots[slot] {
-            Some(tenant) if at_s >= tenant.from_s - 1e-9 => tenant.relayed_s = at_s,
+            Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
+                tenant.relayed_s = at_s;
+                tenant.relayed = tenant.relayed.saturating_add(1).min(NEWS);
+            }
             _ => return,
         }
         // The unit puts positions on its own axis by the route, so that has to be there first.
@@ -178,7 +187,7 @@ impl Relay {
             Some(free) => (free, at_s),
             None => self.least_relevant(rank, at_s)?,
         };
-        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, intent: None });
+        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, intent: None });
         Some(slot)
     }
 
@@ -219,8 +228,8 @@ impl Relay {
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due =
-            tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
+        let is_due = tenant.relayed < NEWS
+            || tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
         if is_due {
             tenant.intent = Some((*intent, at_s));
         }
