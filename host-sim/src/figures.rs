@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use crate::channel::Link;
-use crate::metrics::{STANDING_BELOW_MPS, ErrorStatistics, SETTLED_FROM_S, collisions, full_stops, lowest_speed, smallest_gap};
+use crate::metrics::{
+    ErrorStatistics, SETTLED_FROM_S, STANDING_BELOW_MPS, collisions, full_stops, lowest_speed, smallest_gap,
+};
 use crate::scenario::Scenario;
 use crate::world::{Tick, Trace};
 

@@ -6,7 +6,7 @@
 
 use super::description::Traffic;
 use super::network::Network;
-use super::traffic::Sighting;
+use super::watch::Sighting;
 
 /// Largest acceleration of the model.
 const ACCELERATION_MPS2: f64 = 1.5;

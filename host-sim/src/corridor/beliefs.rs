@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use holdover::wire::StationHash;
 
 use super::network::Network;
-use super::traffic::{Sighting, Watch};
+use super::watch::{Sighting, Watch};
 use crate::vehicle::station;
 
 /// For so long after a target's own association has changed, errors stand apart.

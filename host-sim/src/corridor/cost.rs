@@ -21,12 +21,7 @@ pub struct Cost {
 
 /// Measures it, on this thread alone; `None` without traffic.
 #[must_use]
-pub fn measure(
-    step_s: f64,
-    config: &Config,
-    itinerary: &'static Itinerary,
-    log: &[(f64, Frame)],
-) -> Option<Cost> {
+pub fn measure(step_s: f64, config: &Config, itinerary: &'static Itinerary, log: &[(f64, Frame)]) -> Option<Cost> {
     let mut unit = Unit::new(config).ok()?;
     unit.set_out(itinerary).ok()?;
     let timing = of_log(&unit, config, log)?;

@@ -7,14 +7,16 @@ use holdover::coordination::Itinerary;
 use rayon::prelude::*;
 
 use super::beliefs::Beliefs;
+use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Wrong};
 use super::figures::{Outcome, Side, StepRow, WrongRow};
 use super::journal::Journal;
 use super::map::itineraries;
 use super::network::Network;
 use super::referee::Referee;
-use super::traffic::{Conditions, Traffic, Watch, WhenLost};
+use super::traffic::Traffic;
 use super::trips::{Trip, trips};
+use super::watch::Watch;
 use crate::error::Error;
 
 /// Prediction steps of the figures over `δt`.
@@ -58,8 +60,7 @@ impl Experiment {
     #[must_use]
     pub fn trips(&self, seed: u64) -> (Vec<Trip>, Option<usize>) {
         let trips = trips(&self.corridor, &self.network, seed);
-        let is_ego =
-            |trip: &Trip| trip.road == self.corridor.ego_road && trip.at_s >= self.corridor.ego_after_s;
+        let is_ego = |trip: &Trip| trip.road == self.corridor.ego_road && trip.at_s >= self.corridor.ego_after_s;
         let ego = trips.iter().position(is_ego);
         (trips, ego)
     }
@@ -72,8 +73,7 @@ impl Experiment {
         let (trips, _) = self.trips(seed);
         let logged = journal.as_ref().and_then(|journal| journal.ego);
         let (mut referee, mut beliefs) = (Referee::new(&self.network, &trips), Beliefs::new(&self.network, logged));
-        let mut traffic =
-            Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
+        let mut traffic = Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
         traffic.log(logged);
         let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs];
         let mut log = Vec::new();
@@ -160,7 +160,7 @@ impl Experiment {
         let (trips, ego) = self.excerpt().trips(seed);
         let trip = trips.get(ego?)?;
         let conditions = Conditions { step_s, ..Conditions::of(&self.corridor) };
-        let config = super::traffic::config(&self.corridor, &conditions, ego?, trip.kind);
+        let config = super::conditions::config(&self.corridor, &conditions, ego?, trip.kind);
         Some((config, self.itineraries[trip.road]))
     }
 

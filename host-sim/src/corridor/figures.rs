@@ -131,7 +131,8 @@ impl Side {
         let all = || outcomes.iter().copied();
         let times: Vec<f64> = all().flat_map(|outcome| outcome.travel_times_s.iter().copied()).collect();
         let least = |of: fn(&Outcome) -> Option<f64>| all().filter_map(of).reduce(f64::min);
-        let class = |index: usize| all().map(|outcome| outcome.errors[index]).fold(Class::default(), Class::with).into();
+        let class =
+            |index: usize| all().map(|outcome| outcome.errors[index]).fold(Class::default(), Class::with).into();
         let ticks: [u64; 2] = [0, 1].map(|which| all().map(|outcome| outcome.ticks[which]).sum());
         Self {
             served: times.len(),

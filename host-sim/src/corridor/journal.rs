@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::traffic::{Sighting, Watch};
+use super::watch::{Sighting, Watch};
 use crate::bus::Frame;
 use crate::channel::Window;
 

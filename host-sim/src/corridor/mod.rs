@@ -9,6 +9,7 @@
 pub mod alone;
 pub mod beliefs;
 pub mod command;
+pub mod conditions;
 pub mod cost;
 pub mod description;
 pub mod experiment;
@@ -28,6 +29,7 @@ pub mod table;
 pub mod traffic;
 pub mod trips;
 pub mod verdict;
+pub mod watch;
 
 pub use description::Corridor;
 pub use network::Network;

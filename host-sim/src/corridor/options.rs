@@ -41,7 +41,9 @@ impl CorridorOptions {
             ("--candump", settings.candump.is_some()),
         ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
-            return Err(Error::new("is for a string of vehicles, and this is a corridor", "leave it out").in_option(option));
+            return Err(
+                Error::new("is for a string of vehicles, and this is a corridor", "leave it out").in_option(option)
+            );
         }
         let overrides = Overrides {
             seed: settings.seed,

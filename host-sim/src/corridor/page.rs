@@ -48,7 +48,8 @@ pub fn render(
             Cell::number(row.side.collisions().to_string()),
         ]
     });
-    let caption = "How the largest position error grows when every vehicle differs from what its unit believes and publishes.";
+    let caption =
+        "How the largest position error grows when every vehicle differs from what its unit believes and publishes.";
     page.table(
         caption,
         &["What is wrong", "Largest error, m", "rms, m", "Mean travel time, s", "Collisions"],

@@ -74,7 +74,13 @@ fn trajectories(experiment: &Experiment, journal: &Journal) -> Option<Plot> {
     );
     let axes = (Axis::linear("time", "s").over(span_s.0, span_s.1), Axis::linear("beyond the crossing point", "m"));
     let guides = [-half_m, half_m].map(|at| Guide { at, label: String::new() }).to_vec();
-    let chart = Chart { layers, guides, shades: shades.into_iter().collect(), height: 320.0, ..Chart::new(title, axes.0, axes.1) };
+    let chart = Chart {
+        layers,
+        guides,
+        shades: shades.into_iter().collect(),
+        height: 320.0,
+        ..Chart::new(title, axes.0, axes.1)
+    };
     Some(plot(title, caption, chart))
 }
 
@@ -101,7 +107,8 @@ fn errors_over_time(steps: &[(StepRow, Journal)]) -> Option<Plot> {
 fn largest_errors(steps: &[(StepRow, Journal)]) -> Plot {
     let points = steps.iter().filter_map(|(row, _)| Some((row.step_s, row.side.position_error.max_m?)));
     let [fine, coarse] = PUBLISHED;
-    let mark = |name: &str, point| Layer::Line { series: Series::new(name, [point]), tone: Tone::Other(1), marked: true };
+    let mark =
+        |name: &str, point| Layer::Line { series: Series::new(name, [point]), tone: Tone::Other(1), marked: true };
     let layers = vec![
         Layer::Line { series: Series::new("holdover", points), tone: Tone::Ours, marked: true },
         mark("", fine),
@@ -123,7 +130,8 @@ fn costs(results: &Results) -> Option<Plot> {
     }
     let layers = vec![Layer::Line { series: Series::new("", points), tone: Tone::Ours, marked: true }];
     let title = "Updates per second on one core over prediction step";
-    let caption = "How many ticks of the ego's unit, with the traffic that it heard, this machine does in a second.".to_owned();
+    let caption =
+        "How many ticks of the ego's unit, with the traffic that it heard, this machine does in a second.".to_owned();
     let axes = (Axis::logarithmic("prediction step δt", "s"), Axis::logarithmic("updates per second", ""));
     Some(plot(title, caption, Chart { layers, ..Chart::new(title, axes.0, axes.1) }))
 }

@@ -60,7 +60,11 @@ pub fn text(results: &Results) -> String {
         });
         text.push('\n');
     }
-    let _ = writeln!(text, "\n{:22}{:>10}{:>10}{:>12}{:>12}", "what is wrong", "max, m", "rms, m", "travel, s", "collisions");
+    let _ = writeln!(
+        text,
+        "\n{:22}{:>10}{:>10}{:>12}{:>12}",
+        "what is wrong", "max, m", "rms, m", "travel, s", "collisions"
+    );
     for row in &results.wrong {
         let error = row.side.position_error;
         let _ = writeln!(

@@ -8,29 +8,31 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
 
+use holdover::ConfigError;
 use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
 use holdover::health::Refusal;
 use holdover::time::Instant;
-use holdover::units::Acceleration;
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::{Predecessor, StationHash};
-use holdover::{Config, ConfigError};
 
 use super::alone;
-use super::description::{Corridor, Radio, Wrong};
+use super::conditions::{Conditions, WhenLost, config};
+use super::description::{Corridor, Radio};
 use super::globe::Shift;
 use super::network::Network;
+use super::road::Ground;
 use super::trips::Trip;
+use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::modem::Course;
-use crate::plant::{Difference, Kind, Machine, Plant};
-use crate::scenario::{Accuracy, Envelope};
+use crate::plant::{Difference, Machine, Plant};
+use crate::scenario::Accuracy;
 use crate::sensors::Sensors;
-use crate::vehicle::{Ground, Vehicle, distance, duration, fine_seconds, seconds, speed, station};
-use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, horizon, warm_up_ticks};
+use crate::vehicle::{Vehicle, seconds, speed};
+use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, warm_up_ticks};
 
 /// How well every vehicle knows its own motion, as it publishes it.
 const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
@@ -40,79 +42,6 @@ const ENTRY_BRAKING_MPS2: f64 = 2.0;
 
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
 pub const RUN_OUT_M: f64 = 100.0;
-
-/// What is done when the link to the target is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhenLost {
-    /// What the unit does: it goes by its estimate.
-    Holdover,
-    /// The vehicle drives alone, [`alone`].
-    Alone,
-}
-
-/// What is varied between runs of the same trips.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conditions {
-    /// The links.
-    pub radio: Radio,
-    /// How vehicles differ from what they publish.
-    pub wrong: Wrong,
-    /// The last gate.
-    pub envelope: Envelope,
-    /// The reference drives otherwise.
-    pub when_lost: WhenLost,
-    /// Prediction step.
-    pub step_s: f64,
-}
-
-impl Conditions {
-    /// As the scenario says.
-    #[must_use]
-    pub fn of(corridor: &Corridor) -> Self {
-        Self {
-            radio: corridor.radio,
-            wrong: corridor.wrong,
-            envelope: corridor.envelope,
-            when_lost: WhenLost::Holdover,
-            step_s: corridor.step_s,
-        }
-    }
-}
-
-/// A vehicle at a tick, as those who watch see it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighting {
-    /// Its trip.
-    pub trip: usize,
-    /// Its road.
-    pub road: usize,
-    /// The way of its front bumper along its road.
-    pub way_m: f64,
-    /// Bumper to bumper.
-    pub length_m: f64,
-    /// Its speed.
-    pub speed_mps: f64,
-    /// What its odometer shows where the road begins.
-    pub odometer_m: f64,
-    /// Its unit's mode.
-    pub mode: Mode,
-    /// Whom its unit follows.
-    pub followed: Option<StationHash>,
-    /// Where its unit believes that one is, on its own odometer's axis.
-    pub belief: Option<TargetBelief>,
-    /// Whether its envelope changed the command.
-    pub limited: bool,
-    /// Whether its radio is silent.
-    pub dark: bool,
-}
-
-/// Someone who watches a run.
-pub trait Watch {
-    /// A tick, with everyone on his way in the order of their trips.
-    fn tick(&mut self, at_s: f64, sightings: &[Sighting]);
-    /// A vehicle has left.
-    fn left(&mut self, at_s: f64, trip: usize);
-}
 
 /// A vehicle on the roads.
 struct Traveller {
@@ -220,11 +149,7 @@ impl<'a> Traffic<'a> {
     ///
     /// # Errors
     /// The buses', and a configuration that the units refuse, as an error of invalid input.
-    pub fn run(
-        mut self,
-        watches: &mut [&mut dyn Watch],
-        log: &mut Vec<(f64, Frame)>,
-    ) -> io::Result<Remains> {
+    pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
         let mut tick = 0u64;
         loop {
@@ -240,8 +165,7 @@ impl<'a> Traffic<'a> {
             tick += 1;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
-        let unserved =
-            self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
+        let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
         for mut traveller in std::mem::take(&mut self.travellers).into_values() {
             self.remains.add(&traveller.vehicle);
             traveller.hand_in(log)?;
@@ -361,10 +285,13 @@ impl<'a> Traffic<'a> {
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane.stops.iter().map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
-        vehicle
-            .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
-            .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;
+        let crossings = lane
+            .stops
+            .iter()
+            .map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
+        vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
+            |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
+        )?;
         let period_s = self.corridor.period_s;
         let log = (self.logged == Some(index)).then(|| vehicle.listen());
         vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
@@ -385,7 +312,8 @@ impl<'a> Traffic<'a> {
     /// Those who have driven to the end of their way leave, and vanish a little later.
     fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let trips = self.trips;
-        let beyond_m = |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
+        let beyond_m =
+            |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
         for (index, traveller) in &mut self.travellers {
             if !traveller.has_left && beyond_m(traveller) >= 0.0 {
                 traveller.has_left = true;
@@ -404,29 +332,6 @@ impl<'a> Traffic<'a> {
         }
         Ok(())
     }
-}
-
-/// The configuration of a vehicle's unit.
-#[must_use]
-pub fn config(corridor: &Corridor, conditions: &Conditions, index: usize, kind: Kind) -> Config {
-    let traffic = &corridor.traffic;
-    let mut config = Config::car(station(index));
-    config.period = duration(corridor.period_s);
-    config.length = distance(kind.length_m());
-    config.lag = fine_seconds(kind.lag_s());
-    config.body = kind.body();
-    config.limits = kind.limits();
-    config.law.time_gap = seconds(traffic.time_gap_s);
-    config.law.standstill = distance(traffic.standstill_m);
-    config.law.target_speed = speed(traffic.target_speed_mps);
-    config.link.period = duration(1.0 / corridor.message_rate_hz);
-    config.prediction.step = duration(conditions.step_s);
-    config.prediction.horizon = horizon(conditions.step_s);
-    let capable: Acceleration = config.limits.emergency_braking;
-    let limits = conditions.envelope.limits();
-    config.envelope =
-        limits.map(|limits| holdover::config::Envelope { braking: limits.braking.min(capable), ..limits });
-    config
 }
 
 /// Whom a vehicle's unit follows.

@@ -8,10 +8,10 @@ use super::experiment::Sides;
 pub fn failures(corridor: &Corridor, sides: &Sides) -> Vec<String> {
     let (limits, main) = (&corridor.limits, &sides.holdover);
     let mut failures = Vec::new();
-    let both = [(if corridor.envelope.engaged { " with the envelope" } else { "" }, main), (
-        if corridor.envelope.engaged { " without the envelope" } else { " with the envelope" },
-        &sides.envelope,
-    )];
+    let both = [
+        (if corridor.envelope.engaged { " with the envelope" } else { "" }, main),
+        (if corridor.envelope.engaged { " without the envelope" } else { " with the envelope" }, &sides.envelope),
+    ];
     for (how, side) in both {
         if side.collisions() > 0 {
             let (roads, crossings) = (side.collisions_on_roads, side.collisions_at_intersections);

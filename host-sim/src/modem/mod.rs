@@ -4,7 +4,7 @@
 //! *Slots:* a station keeps its slot while nobody takes it. One without a slot gets a free one. If there is none, it takes
 //! that of the least relevant station ([`Rank`]), if it is more relevant itself; or if it is as relevant and that station has
 //! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
-//! less relevant one, and whom the unit follows is not pushed out at all, even by a silence. A slot that changes hands rests
+//! less relevant one, whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a silence. A slot that changes hands rests
 //! until nothing has been said in it for [`SLOT_REUSE_S`], because before that the unit takes the new station for a mistake.
 //! A station that cannot matter is not relayed even if there is room.
 //!
@@ -183,12 +183,20 @@ impl Relay {
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
-        let (slot, from_s) = match self.slots.iter().position(Option::is_none) {
-            Some(free) => (free, at_s),
-            None => self.least_relevant(rank, at_s)?,
+        let mut free = self.slots.iter().enumerate().filter(|(_, tenant)| tenant.is_none());
+        let (slot, from_s) = match (free.next(), free.next()) {
+            (Some(_), None) if rank > Rank::Followed && self.awaits() => return None,
+            (Some((free, _)), _) => (free, at_s),
+            (None, _) => self.least_relevant(rank, at_s)?,
         };
         self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, intent: None });
         Some(slot)
+    }
+
+    /// Whether whom the unit follows has not been heard yet.
+    fn awaits(&self) -> bool {
+        let followed = self.course.followed();
+        followed.is_some_and(|followed| !self.slots.iter().flatten().any(|tenant| tenant.station == followed))
     }
 
     /// The slot of the least relevant station, of several the one silent for longest, if one of that rank may have it; and
@@ -206,9 +214,8 @@ impl Relay {
     /// How much a station matters now, if it has gone on at its speed.
     fn rank(&self, station: StationHash, at_s: f64) -> Rank {
         let placed = self.places.iter().find(|placed| placed.station == station);
-        let way_m = |placed: &Placed| {
-            placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s)
-        };
+        let way_m =
+            |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
         self.course.rank(station, placed.map(|placed| (placed.route, way_m(placed))), self.steps_to(station))
     }
 
