@@ -64,8 +64,8 @@ pub enum Command {
 /// What can follow `run`.
 #[derive(Clone, Debug, Default, Args)]
 pub struct RunArguments {
-    /// The scenario; the paper's if none is given (scenarios/paper.toml states and explains it)
-    #[arg(value_name = "SCENARIO.toml")]
+    /// The scenario, a file or one of `--list`; the paper's if none is given (scenarios/paper.toml explains it)
+    #[arg(value_name = "SCENARIO")]
     pub scenario: Option<PathBuf>,
     /// The rest.
     #[command(flatten)]
@@ -78,6 +78,18 @@ pub struct RunSettings {
     /// Seed of everything random, instead of the scenario's
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+
+    /// So many seeds, from `--seed` on, on all cores; for a corridor
+    #[arg(long, value_name = "N")]
+    pub seeds: Option<u64>,
+
+    /// List the scenarios that come with the program
+    #[arg(long)]
+    pub list: bool,
+
+    /// Draw a one-page picture, for a corridor
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
 
     /// Prediction step of the core, instead of the scenario's
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
@@ -125,6 +137,8 @@ Examples:
   holdover-sim                           the paper's scenario
   holdover-sim --seed 3 --json           with other random numbers, as JSON
   holdover-sim run city.toml --out city  your scenario, its report in city/
+  holdover-sim run --list                the scenarios that come with it
+  holdover-sim run corridor --seeds 10   four intersections, ten seeds
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
   holdover-sim --envelope                with every unit's last gate engaged

@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use crate::channel::Link;
-use crate::metrics::{ErrorStatistics, SETTLED_FROM_S, collisions, full_stops, lowest_speed, smallest_gap};
+use crate::metrics::{
+    ErrorStatistics, SETTLED_FROM_S, STANDING_BELOW_MPS, collisions, full_stops, lowest_speed, smallest_gap,
+};
 use crate::scenario::Scenario;
 use crate::world::{Tick, Trace};
 
@@ -156,9 +158,11 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     if summary.bound.violations > 0 {
         failures.push(format!("{} tick(s) at which a target was outside its bound", summary.bound.violations));
     }
-    // A recorded leader may stop, and everyone behind it then has to; and stopping in a silence is what the envelope is
+    // A recorded or programmed leader may stop, and everyone behind it then has to; and stopping in a silence is what the envelope is
     // for.
-    if summary.full_stops > 0 && scenario.leader.motion.is_none() && !scenario.envelope.engaged {
+    let stops = scenario.leader.program.iter().any(|(_, speed_mps)| *speed_mps < STANDING_BELOW_MPS);
+    let may_stop = scenario.leader.motion.is_some() || stops || scenario.envelope.engaged;
+    if summary.full_stops > 0 && !may_stop {
         failures.push(format!("{} full stop(s)", summary.full_stops));
     }
     if summary.ours.max_position_error_m.is_none() {

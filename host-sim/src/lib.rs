@@ -15,6 +15,7 @@ pub mod figures;
 pub mod ground;
 pub mod heard;
 pub mod hil;
+pub mod library;
 pub mod metrics;
 pub mod modem;
 pub mod observer;

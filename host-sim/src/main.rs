@@ -4,12 +4,14 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{capture, ecu, evaluate, hil, output, price, replay, run, string, sweep};
+use holdover_sim::{capture, corridor, ecu, evaluate, hil, library, output, price, replay, run, string, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let verdict = Options::read(Cli::parse()).and_then(|options| match options {
         Options::Run(options) => run::run(&options),
+        Options::Corridor(options) => corridor::command::run(&options),
+        Options::List => output::print(&library::list()).map(|()| Verdict::Pass),
         Options::Evaluate(options) => evaluate::evaluate(&options),
         Options::Sweep(options) => sweep::sweep(&options),
         Options::String(options) => string::string(&options),

@@ -3,10 +3,12 @@
 
 use crate::capture::CaptureOptions;
 use crate::cli::{Cli, Command, RunArguments};
+use crate::corridor::options::CorridorOptions;
 use crate::ecu::options::EcuOptions;
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
 use crate::hil::options::HilOptions;
+use crate::library;
 use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
@@ -17,8 +19,12 @@ use std::path::{Path, PathBuf};
 /// What to do.
 #[derive(Clone, Debug)]
 pub enum Options {
-    /// Run a scenario.
+    /// Run a string of vehicles.
     Run(RunOptions),
+    /// Run a corridor.
+    Corridor(CorridorOptions),
+    /// List the scenarios that come with the program.
+    List,
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
     /// Run a scenario at several steps with many seeds.
@@ -72,7 +78,7 @@ impl Options {
     /// Whatever makes the input unusable, and places for output that cannot be written.
     pub fn read(cli: Cli) -> Result<Self, Error> {
         match cli.command {
-            Some(Command::Run(arguments)) => RunOptions::read(arguments).map(Self::Run),
+            Some(Command::Run(arguments)) => Self::of_run(arguments),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
@@ -81,13 +87,32 @@ impl Options {
             Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
             Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
-            None => RunOptions::read(RunArguments { scenario: None, settings: cli.run }).map(Self::Run),
+            None => Self::of_run(RunArguments { scenario: None, settings: cli.run }),
+        }
+    }
+
+    fn of_run(arguments: RunArguments) -> Result<Self, Error> {
+        if arguments.settings.list {
+            return Ok(Self::List);
+        }
+        let Some(named) = &arguments.scenario else { return RunOptions::read(arguments).map(Self::Run) };
+        let (file, text) = library::text(named)?;
+        match library::kind(&file, &text)? {
+            library::Kind::String => RunOptions::read(arguments).map(Self::Run),
+            library::Kind::Corridor => {
+                CorridorOptions::read(named, &file, &text, arguments.settings).map(Self::Corridor)
+            }
         }
     }
 }
 
 impl RunOptions {
     fn read(RunArguments { scenario: scenario_file, settings }: RunArguments) -> Result<Self, Error> {
+        let foreign = [("--seeds", settings.seeds.is_some()), ("--picture", settings.picture.is_some())];
+        if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
+            let remedy = "leave it out; `sweep` runs a string with many seeds";
+            return Err(Error::new("is for a corridor, and this is a string of vehicles", remedy).in_option(option));
+        }
         let overrides = Overrides {
             seed: settings.seed,
             step_s: settings.step,

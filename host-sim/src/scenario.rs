@@ -16,6 +16,7 @@ pub use sensors::{Accuracy, RangeSensor};
 
 use crate::channel::ChannelModel;
 use crate::error::Error;
+use crate::library;
 use crate::plant::{Difference, Kind};
 use crate::recording::Motion;
 use std::path::{Path, PathBuf};
@@ -54,6 +55,8 @@ pub struct Scenario {
 pub struct Leader {
     /// Speed that it wants on the free road, `v_∞`; 0 to 65.534 m/s.
     pub target_speed_mps: f64,
+    /// The speeds that it wants from those times on: `(s, m/s)`, in order of time; empty: always the one above.
+    pub program: Vec<(f64, f64)>,
     /// The drive that it follows instead, from its first sample on. A leader on a recording publishes no intent.
     pub motion: Option<Motion>,
 }
@@ -136,17 +139,18 @@ pub struct Overrides {
 }
 
 impl Scenario {
-    /// The scenario in that file, or the paper's if there is none, with what the command line says instead.
+    /// The scenario in that file or of that name in the library, or the paper's if there is none, with what the command line says instead.
     ///
     /// # Errors
     /// A file that cannot be read, text that is not TOML, unknown keys, wrong types, impossible values.
     pub fn read(file: Option<&Path>, overrides: &Overrides) -> Result<Self, Error> {
         let Some(file) = file else { return Self::parse(Path::new(""), "", overrides) };
-        let bytes = std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?;
-        let text = String::from_utf8(bytes).map_err(|_| {
-            Error::new("is not a text file", "give a scenario in TOML, such as scenarios/paper.toml").in_file(file)
-        })?;
-        Self::parse(file, &text, overrides)
+        let (file, text) = library::text(file)?;
+        if library::kind(&file, &text)? == library::Kind::Corridor {
+            let error = Error::new("is a corridor, and this needs a string of vehicles", "give it to `run`");
+            return Err(error.in_file(&file));
+        }
+        Self::parse(&file, &text, overrides)
     }
 
     /// The scenario in the text of that file; relative paths in it start from the file's folder.

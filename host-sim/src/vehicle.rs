@@ -5,18 +5,18 @@
 use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
-use holdover::time::{GnssTime, Instant};
+use holdover::time::Instant;
 use holdover::wire::command::{Effort, ModeCode};
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender, StationHash};
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
 use holdover::{Config, ConfigError, OnboardUnit};
 
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
-use crate::corridor::road::Road;
+use crate::corridor::road::Ground;
 use crate::modem::{Course, PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
@@ -25,9 +25,13 @@ use actuators::Actuators;
 pub mod actuators;
 pub mod alias;
 mod quantities;
+mod station;
+mod time;
 
 pub use alias::Alias;
 pub use quantities::{acceleration, distance, duration, fine_seconds, metres, seconds, speed};
+pub use station::{index_of, station, wish};
+pub use time::{EPOCH_US, gnss, micros};
 
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
@@ -44,44 +48,6 @@ const LOCATE_EVERY_S: f64 = 0.1;
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
 /// Cycle of the driver's wish, in seconds.
 const WISH_EVERY_S: f64 = 0.1;
-
-/// GNSS time at the start of every run, in microseconds: some moment, with all digits in use.
-pub const EPOCH_US: u64 = 1_465_000_123_456_700;
-
-/// The station of the vehicle with that index. Stations repeat after 255 vehicles, when the first of them is long gone.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // up to 255
-pub const fn station(index: usize) -> StationHash {
-    StationHash((index % 255) as u8 + 1)
-}
-
-/// The vehicle of a station, in a run of up to 255 vehicles.
-#[must_use]
-pub const fn index_of(station: StationHash) -> Option<usize> {
-    (station.0 as usize).checked_sub(1)
-}
-
-/// GNSS time at a time of the run.
-#[must_use]
-pub fn gnss(at_s: f64) -> GnssTime {
-    GnssTime::from_micros(EPOCH_US.saturating_add_signed(micros(at_s)))
-}
-
-/// Microseconds, to nearest.
-#[must_use]
-#[allow(clippy::cast_possible_truncation)] // runs last a day at most
-pub fn micros(seconds: f64) -> i64 {
-    (seconds * 1e6).round() as i64
-}
-
-/// Where on the globe a vehicle drives.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
-    /// Its road.
-    pub road: Road,
-    /// What its odometer shows where the road begins.
-    pub odometer_m: f64,
-}
 
 /// A vehicle of a run.
 pub struct Vehicle {
@@ -141,6 +107,10 @@ impl Vehicle {
         sensors: Sensors,
     ) -> Result<Self, ConfigError> {
         let bus = MemoryBus::new();
+        let mut relay = Relay::new(config.base_id);
+        if let Predecessor::Station(ahead) = wish.predecessor {
+            relay.set_out(Course::behind(ahead));
+        }
         Ok(Self {
             index,
             plant,
@@ -157,7 +127,7 @@ impl Vehicle {
             sensors,
             ground: None,
             sender: Sender::new(config.base_id),
-            relay: Relay::new(config.base_id),
+            relay,
             listener: Receiver::new(config.base_id, Role::Modem),
             transmitter: Transmitter::default(),
             ecu: Some(bus.node()),
@@ -179,6 +149,11 @@ impl Vehicle {
         self.ground = Some(ground);
         self.relay.set_out(course);
         self.unit.set_out(itinerary)
+    }
+
+    /// Lets the driver want another speed from now on.
+    pub fn want(&mut self, target_speed_mps: f64) {
+        self.wish.target_speed = speed(target_speed_mps);
     }
 
     /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
@@ -422,15 +397,4 @@ impl Vehicle {
 fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
     let phase = (at_s + 1e-9).rem_euclid(cycle_s);
     phase < period_s - 1e-9
-}
-
-/// What the driver of a follower, or of a leader, wants.
-#[must_use]
-pub fn wish(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap_s: f64) -> EgoIntent {
-    EgoIntent {
-        engaged,
-        predecessor: ahead.map_or(Predecessor::None, |ahead| Predecessor::Station(station(ahead))),
-        target_speed: speed(target_speed_mps),
-        time_gap: Some(seconds(time_gap_s)),
-    }
 }

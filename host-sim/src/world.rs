@@ -240,6 +240,10 @@ impl<'a> World<'a> {
         self.deliver(at_s)?;
         self.place_recorded_leader(at_s);
         self.show_to_paper(at_s)?;
+        let program = &self.scenario.leader.program;
+        if let Some((_, speed_mps)) = program.iter().rfind(|(from_s, _)| *from_s <= at_s + 1e-9) {
+            self.vehicles[0].want(*speed_mps);
+        }
         let mut ahead = None;
         for vehicle in &mut self.vehicles {
             vehicle.speak(at_s, self.scenario.period_s, ahead)?;

@@ -6,7 +6,7 @@
 
 use super::description::Traffic;
 use super::network::Network;
-use super::traffic::Sighting;
+use super::watch::Sighting;
 
 /// Largest acceleration of the model.
 const ACCELERATION_MPS2: f64 = 1.5;
@@ -14,6 +14,8 @@ const ACCELERATION_MPS2: f64 = 1.5;
 const BRAKING_MPS2: f64 = 2.0;
 /// Who would have to brake harder than this to stop before the conflict area goes on.
 const HARDEST_MPS2: f64 = 4.0;
+/// Nobody brakes harder than a bus can.
+const EMERGENCY_MPS2: f64 = 6.0;
 /// How far before the conflict area the stop line is.
 const LINE_M: f64 = 1.0;
 
@@ -36,7 +38,7 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
     if let Some(gap_m) = to_stop_line(own, network) {
         presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
     }
-    (ACCELERATION_MPS2 * (free - presses)).max(-2.0 * HARDEST_MPS2)
+    (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
 }
 
 /// The way to the stop line of the next intersection, if it can still stop there.

@@ -11,11 +11,14 @@ use std::collections::BTreeMap;
 use holdover::wire::StationHash;
 
 use super::network::Network;
-use super::traffic::{Sighting, Watch};
+use super::watch::{Sighting, Watch};
 use crate::vehicle::station;
 
 /// For so long after a target's own association has changed, errors stand apart.
 pub const CHANGED_S: f64 = 1.0;
+
+/// An error that is worth a second look, in metres.
+pub const BEYOND_M: f64 = 0.2;
 
 /// Errors of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,27 +89,32 @@ pub struct Beliefs<'a> {
     pub changing: Class,
     /// It has changed before that, and nothing has been heard from the target since.
     pub unheard: Class,
+    /// For each unit and target whose error was in the first class and beyond [`BEYOND_M`], the largest.
+    pub beyond: BTreeMap<(usize, usize), Worst>,
     /// Changes of whom somebody follows.
     pub changes: u64,
     /// Ticks at which what is certain did not hold the truth; in the first of the classes.
     pub violations: u64,
-    /// Errors over time of the trips that are watched: `(time, error)`.
-    pub watched: BTreeMap<usize, Vec<(f64, f64)>>,
+    /// Errors over time of the unit that is watched: `(time, error)`.
+    pub watched: Vec<(f64, f64)>,
+    watch: Option<usize>,
     associations: BTreeMap<usize, (Option<StationHash>, f64)>,
 }
 
 impl<'a> Beliefs<'a> {
-    /// Nothing is known yet; errors over time are kept of the units of those trips.
+    /// Nothing is known yet; errors over time are kept of the unit of that trip.
     #[must_use]
-    pub fn new(network: &'a Network, watched: &[usize]) -> Self {
+    pub fn new(network: &'a Network, watch: Option<usize>) -> Self {
         Self {
             network,
             settled: Class::default(),
             changing: Class::default(),
             unheard: Class::default(),
+            beyond: BTreeMap::new(),
             changes: 0,
             violations: 0,
-            watched: watched.iter().map(|trip| (*trip, Vec::new())).collect(),
+            watched: Vec::new(),
+            watch,
             associations: BTreeMap::new(),
         }
     }
@@ -117,16 +125,13 @@ impl<'a> Beliefs<'a> {
             return Some(target.way_m);
         }
         let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
-        let shared = |stop: &&super::network::Stop| stops.iter().any(|other| other.intersection == stop.intersection);
-        // Two roads that share several intersections run side by side: then it is about the next one.
-        let shared: Vec<_> = own_stops.iter().filter(shared).collect();
-        let is_ahead = |stop: &&&super::network::Stop| {
+        // The two directions of a street share several intersections: it is about the one that the ego comes to next.
+        let here = own_stops.iter().find(|stop| {
             let half_m = self.network.junctions[stop.intersection].half_m;
             own.way_m - own.length_m < stop.at_m + half_m
-        };
-        let stop = shared.iter().find(is_ahead).or(shared.last())?;
-        let other = stops.iter().find(|other| other.intersection == stop.intersection)?;
-        Some(stop.at_m - other.at_m + target.way_m)
+        })?;
+        let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
+        Some(here.at_m - there.at_m + target.way_m)
     }
 }
 
@@ -153,13 +158,19 @@ impl Watch for Beliefs<'_> {
                 self.unheard.add(worst);
             } else {
                 self.settled.add(worst);
+                if error_m.abs() > BEYOND_M {
+                    let held = self.beyond.entry((own.trip, target.trip)).or_insert(worst);
+                    if held.error_m.abs() < error_m.abs() {
+                        *held = worst;
+                    }
+                }
             }
             let truth_m = truth_m + own.odometer_m;
             if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
                 self.violations += 1;
             }
-            if let Some(errors) = self.watched.get_mut(&own.trip) {
-                errors.push((at_s, error_m));
+            if self.watch == Some(own.trip) {
+                self.watched.push((at_s, error_m));
             }
         }
     }

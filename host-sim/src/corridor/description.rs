@@ -29,6 +29,8 @@ pub struct Corridor {
     pub wrong: Wrong,
     /// The last gate of every unit.
     pub envelope: Envelope,
+    /// What the verdict asks for.
+    pub limits: Limits,
     /// The roads: one to 32.
     pub roads: Vec<RoadPlan>,
     /// The intersections: one to 16.
@@ -97,6 +99,17 @@ pub struct Wrong {
 impl Wrong {
     /// Everything is as believed.
     pub const NOTHING: Self = Self { mass_scale: 1.0, grade: 0.0, headwind_mps: 0.0, lag_scale: 1.0 };
+}
+
+/// What the verdict asks for beside no collision, everyone served and the truth inside every bound; `None`: nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest position error of a target whose own association has not changed within a second.
+    pub position_error_m: Option<f64>,
+    /// Mean travel time, as so many times that with a perfect link.
+    pub travel_time_ratio: Option<f64>,
+    /// Full stops while the envelope is not engaged.
+    pub full_stops: Option<u64>,
 }
 
 /// One lane of traffic in one direction.

@@ -8,15 +8,28 @@
 
 pub mod alone;
 pub mod beliefs;
+pub mod command;
+pub mod conditions;
+pub mod cost;
 pub mod description;
+pub mod experiment;
+pub mod figures;
 pub mod globe;
+pub mod journal;
 pub mod map;
 pub mod network;
+pub mod options;
+pub mod page;
+pub mod picture;
+pub mod plots;
 pub mod read;
 pub mod referee;
 pub mod road;
+pub mod table;
 pub mod traffic;
 pub mod trips;
+pub mod verdict;
+pub mod watch;
 
 pub use description::Corridor;
 pub use network::Network;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::description::{Corridor, IntersectionPlan, Radio, RoadPlan, Traffic, Wrong};
+use super::description::{Corridor, IntersectionPlan, Limits, Radio, RoadPlan, Traffic, Wrong};
 use super::globe::Shift;
 use super::network::Network;
 use crate::error::{Error, quoted};
@@ -40,6 +40,9 @@ const PER_MINUTE: Number =
 const HALF: Number = Number { key: "half_m", unit: "metres", limits: 1.0..=5.0, default: 3.5 };
 const DEGREES: Number = Number { key: "points", unit: "degrees", limits: -180.0..=180.0, default: 0.0 };
 
+const ERROR_LIMIT: Number = Number { key: "position_error_m", unit: "metres", limits: 0.0..=1000.0, default: 0.0 };
+const RATIO_LIMIT: Number = Number { key: "travel_time_ratio", unit: "a factor", limits: 1.0..=100.0, default: 1.0 };
+
 const ROADS: usize = 32;
 const INTERSECTIONS: usize = 16;
 
@@ -60,6 +63,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let radio = radio(top.section("channel")?)?;
     let wrong = wrong(top.section("wrong")?)?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
+    let limits = limits(top.section("limits")?)?;
     let roads = roads(&document, top.sections("road")?, &traffic)?;
     let intersections = intersections(&document, top.sections("intersection")?)?;
     top.finish()?;
@@ -92,6 +96,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         radio,
         wrong,
         envelope,
+        limits,
         roads,
         intersections,
     };
@@ -142,6 +147,19 @@ fn wrong(mut section: Section) -> Result<Wrong, Error> {
     };
     section.finish()?;
     Ok(wrong)
+}
+
+/// A limit that is left out is not asked for.
+fn limits(mut section: Section) -> Result<Limits, Error> {
+    let error = section.number(&ERROR_LIMIT)?;
+    let ratio = section.number(&RATIO_LIMIT)?;
+    let limits = Limits {
+        position_error_m: error.line.map(|_| error.value),
+        travel_time_ratio: ratio.line.map(|_| ratio.value),
+        full_stops: section.whole("full_stops")?.map(|most| most.value),
+    };
+    section.finish()?;
+    Ok(limits)
 }
 
 fn roads(document: &Document, sections: Option<Vec<Section>>, traffic: &Traffic) -> Result<Vec<RoadPlan>, Error> {

@@ -15,6 +15,15 @@ pub struct Road {
     pub path: &'static Path,
 }
 
+/// Where on the globe a vehicle drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Its road.
+    pub road: Road,
+    /// What its odometer shows where the road begins.
+    pub odometer_m: f64,
+}
+
 impl Road {
     /// A lane that lies `right_m` to the right of a line through those points, which are at least two and all different;
     /// it begins `before_m` before the first and ends `beyond_m` beyond the last.

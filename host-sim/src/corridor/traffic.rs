@@ -8,25 +8,31 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
 
+use holdover::ConfigError;
 use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
-use holdover::units::Acceleration;
+use holdover::health::Refusal;
+use holdover::time::Instant;
 use holdover::wire::ego_intent::EgoIntent;
 use holdover::wire::{Predecessor, StationHash};
-use holdover::{Config, ConfigError};
 
 use super::alone;
-use super::description::{Corridor, Radio, Wrong};
+use super::conditions::{Conditions, WhenLost, config};
+use super::description::{Corridor, Radio};
 use super::globe::Shift;
 use super::network::Network;
+use super::road::Ground;
 use super::trips::Trip;
+use super::watch::{Sighting, Watch};
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::modem::Course;
-use crate::plant::{Difference, Kind, Machine, Plant};
-use crate::scenario::{Accuracy, Envelope};
+use crate::plant::{Difference, Machine, Plant};
+use crate::scenario::Accuracy;
 use crate::sensors::Sensors;
-use crate::vehicle::{Ground, Vehicle, distance, duration, fine_seconds, seconds, speed, station};
-use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, horizon, warm_up_ticks};
+use crate::vehicle::{Vehicle, seconds, speed};
+use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, warm_up_ticks};
 
 /// How well every vehicle knows its own motion, as it publishes it.
 const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
@@ -37,79 +43,6 @@ const ENTRY_BRAKING_MPS2: f64 = 2.0;
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
 pub const RUN_OUT_M: f64 = 100.0;
 
-/// What is done when the link to the target is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WhenLost {
-    /// What the unit does: it goes by its estimate.
-    Holdover,
-    /// The vehicle drives alone, [`alone`].
-    Alone,
-}
-
-/// What is varied between runs of the same trips.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conditions {
-    /// The links.
-    pub radio: Radio,
-    /// How vehicles differ from what they publish.
-    pub wrong: Wrong,
-    /// The last gate.
-    pub envelope: Envelope,
-    /// The reference drives otherwise.
-    pub when_lost: WhenLost,
-    /// Prediction step.
-    pub step_s: f64,
-}
-
-impl Conditions {
-    /// As the scenario says.
-    #[must_use]
-    pub fn of(corridor: &Corridor) -> Self {
-        Self {
-            radio: corridor.radio,
-            wrong: corridor.wrong,
-            envelope: corridor.envelope,
-            when_lost: WhenLost::Holdover,
-            step_s: corridor.step_s,
-        }
-    }
-}
-
-/// A vehicle at a tick, as those who watch see it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sighting {
-    /// Its trip.
-    pub trip: usize,
-    /// Its road.
-    pub road: usize,
-    /// The way of its front bumper along its road.
-    pub way_m: f64,
-    /// Bumper to bumper.
-    pub length_m: f64,
-    /// Its speed.
-    pub speed_mps: f64,
-    /// What its odometer shows where the road begins.
-    pub odometer_m: f64,
-    /// Its unit's mode.
-    pub mode: Mode,
-    /// Whom its unit follows.
-    pub followed: Option<StationHash>,
-    /// Where its unit believes that one is, on its own odometer's axis.
-    pub belief: Option<TargetBelief>,
-    /// Whether its envelope changed the command.
-    pub limited: bool,
-    /// Whether its radio is silent.
-    pub dark: bool,
-}
-
-/// Someone who watches a run.
-pub trait Watch {
-    /// A tick, with everyone on his way in the order of their trips.
-    fn tick(&mut self, at_s: f64, sightings: &[Sighting]);
-    /// A vehicle has left.
-    fn left(&mut self, at_s: f64, trip: usize);
-}
-
 /// A vehicle on the roads.
 struct Traveller {
     trip: usize,
@@ -117,11 +50,21 @@ struct Traveller {
     vehicle: Box<Vehicle>,
     ground: Ground,
     dark: Window,
+    log: Option<MemoryNode>,
 }
 
 impl Traveller {
     fn way_m(&self) -> f64 {
         self.vehicle.plant.position_m - self.ground.odometer_m
+    }
+
+    /// What has been on its bus, if that is logged.
+    fn hand_in(&mut self, log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let Some(node) = &mut self.log else { return Ok(()) };
+        while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+            log.push((self.vehicle.time_of(at), frame));
+        }
+        Ok(())
     }
 
     fn is_dark(&self, at_s: f64) -> bool {
@@ -141,8 +84,8 @@ pub struct Traffic<'a> {
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
     air: Air,
-    refusals: u64,
-    turned_away: u64,
+    remains: Remains,
+    logged: Option<usize>,
 }
 
 /// What is left of a run.
@@ -152,8 +95,19 @@ pub struct Remains {
     pub unserved: usize,
     /// Refusals of all units.
     pub refusals: u64,
+    /// Times that a unit made way for one that had overlooked it.
+    pub disagreements: u64,
     /// Messages that found no slot.
     pub turned_away: u64,
+}
+
+impl Remains {
+    fn add(&mut self, vehicle: &Vehicle) {
+        let health = vehicle.unit.health();
+        self.refusals += Refusal::ALL.iter().map(|cause| u64::from(health.of(*cause))).sum::<u64>();
+        self.disagreements += u64::from(health.of(Refusal::Overlooked));
+        self.turned_away += vehicle.turned_away();
+    }
 }
 
 impl<'a> Traffic<'a> {
@@ -181,16 +135,21 @@ impl<'a> Traffic<'a> {
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
-            refusals: 0,
-            turned_away: 0,
+            remains: Remains::default(),
+            logged: None,
         }
+    }
+
+    /// Keeps the traffic on the bus of that trip's vehicle.
+    pub fn log(&mut self, trip: Option<usize>) {
+        self.logged = trip;
     }
 
     /// Runs it until everyone has left, or for twice as long as it lasts and five minutes.
     ///
     /// # Errors
     /// The buses', and a configuration that the units refuse, as an error of invalid input.
-    pub fn run(mut self, watches: &mut [&mut dyn Watch], mut progress: impl FnMut(f64)) -> io::Result<Remains> {
+    pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
         let mut tick = 0u64;
         loop {
@@ -202,23 +161,19 @@ impl<'a> Traffic<'a> {
             if is_over || at_s > longest_s {
                 break;
             }
-            self.tick(at_s, watches)?;
-            if tick.is_multiple_of(1000) {
-                progress((at_s / self.corridor.duration_s).min(1.0));
-            }
+            self.tick(at_s, watches, log)?;
             tick += 1;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
-        let unserved =
-            self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
-        self.travellers.values().for_each(|traveller| {
-            self.turned_away += traveller.vehicle.turned_away();
-            self.refusals += refusals(&traveller.vehicle);
-        });
-        Ok(Remains { unserved, refusals: self.refusals, turned_away: self.turned_away })
+        let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
+        for mut traveller in std::mem::take(&mut self.travellers).into_values() {
+            self.remains.add(&traveller.vehicle);
+            traveller.hand_in(log)?;
+        }
+        Ok(Remains { unserved, ..self.remains })
     }
 
-    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
+    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         self.admit(at_s)?;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
@@ -244,8 +199,7 @@ impl<'a> Traffic<'a> {
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
         }
-        self.dismiss(at_s, watches);
-        Ok(())
+        self.dismiss(at_s, watches, log)
     }
 
     /// Whether one is within the radio's range of another one.
@@ -324,45 +278,25 @@ impl<'a> Traffic<'a> {
             target_speed: speed(self.corridor.traffic.target_speed_mps),
             time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
         };
-        let config = self.config(index, trip.kind);
+        let config = config(self.corridor, &self.conditions, index, trip.kind);
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let sensors = Sensors::blind(ACCURACY);
         let mut vehicle = Box::new(
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane.stops.iter().map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
-        vehicle
-            .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
-            .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;
+        let crossings = lane
+            .stops
+            .iter()
+            .map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
+        vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
+            |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
+        )?;
         let period_s = self.corridor.period_s;
+        let log = (self.logged == Some(index)).then(|| vehicle.listen());
         vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
-        let from_s = trip.at_s + trip.dark_after_s;
-        let dark = Window { from_s, to_s: from_s + self.conditions.radio.dark_s };
-        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark })
-    }
-
-    /// The configuration of a vehicle's unit.
-    #[must_use]
-    pub fn config(&self, index: usize, kind: Kind) -> Config {
-        let (corridor, traffic) = (self.corridor, &self.corridor.traffic);
-        let mut config = Config::car(station(index));
-        config.period = duration(corridor.period_s);
-        config.length = distance(kind.length_m());
-        config.lag = fine_seconds(kind.lag_s());
-        config.body = kind.body();
-        config.limits = kind.limits();
-        config.law.time_gap = seconds(traffic.time_gap_s);
-        config.law.standstill = distance(traffic.standstill_m);
-        config.law.target_speed = speed(traffic.target_speed_mps);
-        config.link.period = duration(1.0 / corridor.message_rate_hz);
-        config.prediction.step = duration(self.conditions.step_s);
-        config.prediction.horizon = horizon(self.conditions.step_s);
-        let capable: Acceleration = config.limits.emergency_braking;
-        let limits = self.conditions.envelope.limits();
-        config.envelope =
-            limits.map(|limits| holdover::config::Envelope { braking: limits.braking.min(capable), ..limits });
-        config
+        let dark = trip.dark(&self.conditions.radio);
+        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
     }
 
     fn drive_alone(&mut self) {
@@ -376,9 +310,10 @@ impl<'a> Traffic<'a> {
     }
 
     /// Those who have driven to the end of their way leave, and vanish a little later.
-    fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
+    fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let trips = self.trips;
-        let beyond_m = |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
+        let beyond_m =
+            |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
         for (index, traveller) in &mut self.travellers {
             if !traveller.has_left && beyond_m(traveller) >= 0.0 {
                 traveller.has_left = true;
@@ -389,12 +324,13 @@ impl<'a> Traffic<'a> {
         let gone: Vec<usize> =
             self.travellers.iter().filter(|(_, traveller)| has_gone(traveller)).map(|(index, _)| *index).collect();
         for index in gone {
-            if let Some(traveller) = self.travellers.remove(&index) {
-                self.turned_away += traveller.vehicle.turned_away();
-                self.refusals += refusals(&traveller.vehicle);
+            if let Some(mut traveller) = self.travellers.remove(&index) {
+                self.remains.add(&traveller.vehicle);
+                traveller.hand_in(log)?;
             }
             self.air.forget(index);
         }
+        Ok(())
     }
 }
 
@@ -402,10 +338,6 @@ impl<'a> Traffic<'a> {
 fn followed(vehicle: &Vehicle) -> Option<StationHash> {
     let target = vehicle.unit.coordination().choice().target?;
     vehicle.unit.peers().get(target.into())?.station()
-}
-
-fn refusals(vehicle: &Vehicle) -> u64 {
-    holdover::health::Refusal::ALL.iter().map(|cause| u64::from(vehicle.unit.health().of(*cause))).sum()
 }
 
 fn refused(cause: &ConfigError) -> io::Error {

@@ -3,8 +3,9 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::description::Corridor;
+use super::description::{Corridor, Radio};
 use super::network::Network;
+use crate::channel::Window;
 use crate::plant::Kind;
 use crate::streams::{Purpose, stream, unit};
 
@@ -23,6 +24,15 @@ pub struct Trip {
     pub dark_after_s: f64,
     /// What its odometer shows at the beginning of the road.
     pub odometer_m: f64,
+}
+
+impl Trip {
+    /// When its radio is silent.
+    #[must_use]
+    pub fn dark(&self, radio: &Radio) -> Window {
+        let from_s = self.at_s + self.dark_after_s;
+        Window { from_s, to_s: from_s + radio.dark_s }
+    }
 }
 
 /// The trips, in the order of their arrival.

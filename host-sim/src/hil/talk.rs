@@ -228,4 +228,3 @@ pub fn payload(frame: &Frame) -> Payload {
 fn follow_up_line() -> Option<&'static catalogue::Line> {
     catalogue::CATALOGUE.iter().find(|line| line.content == Content::FollowUp)
 }
-

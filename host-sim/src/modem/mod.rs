@@ -4,11 +4,11 @@
 //! *Slots:* a station keeps its slot while nobody takes it. One without a slot gets a free one. If there is none, it takes
 //! that of the least relevant station ([`Rank`]), if it is more relevant itself; or if it is as relevant and that station has
 //! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
-//! less relevant one, and whom the unit follows is not pushed out at all, even by a silence. A slot that changes hands rests
+//! less relevant one, whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a silence. A slot that changes hands rests
 //! until nothing has been said in it for [`SLOT_REUSE_S`], because before that the unit takes the new station for a mistake.
 //! A station that cannot matter is not relayed even if there is room.
 //!
-//! *Intents* are relayed when a station gets its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
+//! *Intents* are relayed with the first messages after a station got its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
 //! eight peers fit the bus.
 
 use holdover::wire::horizon::Knots;
@@ -26,6 +26,10 @@ pub const PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
+
+/// An intent is relayed with each of the first messages in a slot but this one, because the unit trusts an identifier from its
+/// second frame on, and a vehicle may fall silent before half a second has gone by.
+const NEWS: u8 = 4;
 
 /// Where a station said it was is forgotten after so long.
 const FORGOTTEN_S: f64 = 10.0;
@@ -84,6 +88,8 @@ struct Tenant {
     relayed_s: f64,
     /// Nothing is relayed before.
     from_s: f64,
+    /// How often it has been relayed, up to [`NEWS`].
+    relayed: u8,
     intent: Option<(Intent, f64)>,
 }
 
@@ -143,7 +149,10 @@ impl Relay {
             return;
         };
         match &mut self.slots[slot] {
-            Some(tenant) if at_s >= tenant.from_s - 1e-9 => tenant.relayed_s = at_s,
+            Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
+                tenant.relayed_s = at_s;
+                tenant.relayed = tenant.relayed.saturating_add(1).min(NEWS);
+            }
             _ => return,
         }
         // The unit puts positions on its own axis by the route, so that has to be there first.
@@ -174,12 +183,20 @@ impl Relay {
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
-        let (slot, from_s) = match self.slots.iter().position(Option::is_none) {
-            Some(free) => (free, at_s),
-            None => self.least_relevant(rank, at_s)?,
+        let mut free = self.slots.iter().enumerate().filter(|(_, tenant)| tenant.is_none());
+        let (slot, from_s) = match (free.next(), free.next()) {
+            (Some(_), None) if rank > Rank::Followed && self.awaits() => return None,
+            (Some((free, _)), _) => (free, at_s),
+            (None, _) => self.least_relevant(rank, at_s)?,
         };
-        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, intent: None });
+        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, intent: None });
         Some(slot)
+    }
+
+    /// Whether whom the unit follows has not been heard yet.
+    fn awaits(&self) -> bool {
+        let followed = self.course.followed();
+        followed.is_some_and(|followed| !self.slots.iter().flatten().any(|tenant| tenant.station == followed))
     }
 
     /// The slot of the least relevant station, of several the one silent for longest, if one of that rank may have it; and
@@ -197,9 +214,8 @@ impl Relay {
     /// How much a station matters now, if it has gone on at its speed.
     fn rank(&self, station: StationHash, at_s: f64) -> Rank {
         let placed = self.places.iter().find(|placed| placed.station == station);
-        let way_m = |placed: &Placed| {
-            placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s)
-        };
+        let way_m =
+            |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
         self.course.rank(station, placed.map(|placed| (placed.route, way_m(placed))), self.steps_to(station))
     }
 
@@ -219,8 +235,8 @@ impl Relay {
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due =
-            tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
+        let is_due = tenant.relayed < NEWS
+            || tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
         if is_due {
             tenant.intent = Some((*intent, at_s));
         }

@@ -72,6 +72,12 @@ impl Course {
         Self { crossings, ..Self::default() }
     }
 
+    /// The way of a string, behind that station.
+    #[must_use]
+    pub fn behind(station: StationHash) -> Self {
+        Self { followed: Some(station), ..Self::default() }
+    }
+
     /// Takes in one of the unit's own messages.
     pub fn take(&mut self, said: &Said) {
         match said {
@@ -115,10 +121,6 @@ impl Course {
         let own_m = here_m + self.crossings[there].1 - self.crossings[here].1;
         let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
         let has_gone = way_m < -CLEAR_M && !is_on_lane;
-        (!has_gone).then(|| Rank::Meets {
-            after: there - here,
-            behind: way_m > own_m,
-            apart_m: (way_m - own_m).abs(),
-        })
+        (!has_gone).then(|| Rank::Meets { after: there - here, behind: way_m > own_m, apart_m: (way_m - own_m).abs() })
     }
 }

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeValue;
 
 // The limits of what a vehicle publishes are those of its messages. `scenarios/paper.toml` gives the reasons.
+const PROGRAM: Number = Number { key: "program", unit: "seconds and m/s", limits: 0.0..=86_400.0, default: 0.0 };
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 2.0..=86_400.0, default: 20.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
 const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.01 };
@@ -40,6 +41,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let document = Document::new(file, text);
     let table = document.parse()?;
     let mut top = document.top(&table);
+    let _ = (top.value("kind"), top.text("about")?); // the kind has been asked for already
 
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let duration = top.number(&DURATION)?;
@@ -98,10 +100,11 @@ fn duration_s(document: &Document, given: Found<f64>, motion: Option<&Motion>) -
 
 fn leader(document: &Document, mut section: Section, overrides: &Overrides) -> Result<Leader, Error> {
     let target_speed_mps = section.number(&TARGET)?.value;
+    let program = program(document, &mut section)?;
     let named = section.path("motion")?;
     section.finish()?;
     let Some(file) = recording(document, "motion", named, overrides.leader_motion.as_ref())? else {
-        return Ok(Leader { target_speed_mps, motion: None });
+        return Ok(Leader { target_speed_mps, program, motion: None });
     };
     let motion = Motion::read(&file)?;
     let least = *DURATION.limits.start();
@@ -109,7 +112,22 @@ fn leader(document: &Document, mut section: Section, overrides: &Overrides) -> R
         let cause = format!("lasts only {} s", motion.duration_s());
         return Err(Error::new(cause, format!("give the leader a recording of at least {least} s")).in_file(&file));
     }
-    Ok(Leader { target_speed_mps, motion: Some(motion) })
+    Ok(Leader { target_speed_mps, program, motion: Some(motion) })
+}
+
+fn program(document: &Document, section: &mut Section) -> Result<Vec<(f64, f64)>, Error> {
+    let Some(pairs) = section.pairs(&PROGRAM)? else { return Ok(Vec::new()) };
+    let mut program: Vec<(f64, f64)> = Vec::new();
+    for Found { value: [at_s, speed_mps], line } in pairs.value {
+        let is_later = program.last().is_none_or(|(last_s, _)| at_s > *last_s);
+        if !is_later || !TARGET.limits.contains(&speed_mps) {
+            let cause = format!("`program` wants {speed_mps} m/s from {at_s} s on");
+            let remedy = format!("give later and later times, each with a speed up to {} m/s", TARGET.limits.end());
+            return Err(document.error_at(line, cause, remedy));
+        }
+        program.push((at_s, speed_mps));
+    }
+    Ok(program)
 }
 
 /// The file of a recording: what the command line names, or else what the scenario names and what can be read.

@@ -12,6 +12,8 @@ pub mod rows;
 pub mod table;
 pub mod timing;
 
+pub use timing::of_log;
+
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 

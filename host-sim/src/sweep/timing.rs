@@ -44,14 +44,23 @@ pub fn measure(scenario: &Scenario, seed: u64) -> Result<Timing, Error> {
     let config = config(&scenario, by);
     let unit = Unit::new(&config)
         .map_err(|cause| Error::new(format!("the units refuse the scenario: {cause}"), "change it accordingly"))?;
-    let mut fastest = pass(unit.clone(), &config, &trace.log);
+    of_log(&unit, &config, &trace.log).ok_or_else(|| Error::new("nothing was on the bus", "lengthen the run"))
+}
+
+/// The cost of a unit that receives this traffic; `None` without any.
+#[must_use]
+pub fn of_log(unit: &Unit, config: &Config, log: &[(f64, Frame)]) -> Option<Timing> {
+    let mut fastest = pass(unit.clone(), config, log);
     for _ in 1..PASSES {
-        let again = pass(unit.clone(), &config, &trace.log);
+        let again = pass(unit.clone(), config, log);
         fastest.iter_mut().zip(again).for_each(|(tick, again)| *tick = again.min(*tick));
     }
+    if fastest.is_empty() {
+        return None;
+    }
     #[allow(clippy::cast_precision_loss)] // microseconds, a few thousand times
-    let ns_per_tick = fastest.iter().sum::<time::Duration>().as_nanos() as f64 / fastest.len().max(1) as f64;
-    Ok(Timing { ns_per_tick, updates_per_s: 1e9 / ns_per_tick })
+    let ns_per_tick = fastest.iter().sum::<time::Duration>().as_nanos() as f64 / fastest.len() as f64;
+    Some(Timing { ns_per_tick, updates_per_s: 1e9 / ns_per_tick })
 }
 
 /// The time of each tick of the run from time 0 on; the unit ticks from the first frame on, as it did then.

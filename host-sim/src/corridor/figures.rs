@@ -1,0 +1,186 @@
+//! The figures of a corridor: what the referee and the beliefs of runs say enters, the figures of all seeds together and why
+//! they fail, if they do, leave.
+
+use serde::Serialize;
+
+use super::beliefs::{Beliefs, Class};
+use super::referee::{Place, Referee};
+use super::traffic::Remains;
+
+/// One run under one seed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The seed.
+    pub seed: u64,
+    /// Travel times of those who have left.
+    pub travel_times_s: Vec<f64>,
+    /// Full stops.
+    pub full_stops: usize,
+    /// Collisions on a road, and in a conflict area.
+    pub collisions: [usize; 2],
+    /// As the referee has them.
+    pub smallest_gap_m: Option<f64>,
+    /// As the referee has them.
+    pub smallest_clearance_s: Option<f64>,
+    /// As the referee has them.
+    pub lowest_speed_mps: Option<f64>,
+    /// Ticks of all vehicles, and those at which an envelope changed the command.
+    pub ticks: [u64; 2],
+    /// Errors: settled, within a second of a change, unheard since.
+    pub errors: [Class; 3],
+    /// Pairs of a unit and its target whose settled error was beyond 0.2 m.
+    pub beyond: usize,
+    /// Changes of association.
+    pub changes: u64,
+    /// Ticks outside the bound.
+    pub violations: u64,
+    /// What is left.
+    pub remains: Remains,
+}
+
+impl Outcome {
+    /// Of a run that is over.
+    #[must_use]
+    pub fn of(seed: u64, referee: &Referee, beliefs: &Beliefs, remains: Remains) -> Self {
+        let on_roads = referee.collisions.iter().filter(|one| matches!(one.place, Place::Road(_))).count();
+        Self {
+            seed,
+            travel_times_s: referee.travel_times_s.iter().flatten().copied().collect(),
+            full_stops: referee.stops.len(),
+            collisions: [on_roads, referee.collisions.len() - on_roads],
+            smallest_gap_m: referee.smallest_gap_m,
+            smallest_clearance_s: referee.smallest_clearance_s,
+            lowest_speed_mps: referee.lowest_speed_mps,
+            ticks: referee.ticks,
+            errors: [beliefs.settled, beliefs.changing, beliefs.unheard],
+            beyond: beliefs.beyond.len(),
+            changes: beliefs.changes,
+            violations: beliefs.violations,
+            remains,
+        }
+    }
+}
+
+/// Position errors of one class.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ErrorFigures {
+    /// Ticks.
+    pub ticks: u64,
+    /// Largest magnitude.
+    pub max_m: Option<f64>,
+    /// Root of the mean square.
+    pub rms_m: Option<f64>,
+}
+
+impl From<Class> for ErrorFigures {
+    fn from(class: Class) -> Self {
+        Self { ticks: class.count, max_m: class.max_m(), rms_m: class.rms_m() }
+    }
+}
+
+/// The figures of all seeds together, under one condition.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Side {
+    /// Vehicles that have driven to the end of their way.
+    pub served: usize,
+    /// Vehicles that had not when the run was given up.
+    pub unserved: usize,
+    /// Bumper gaps below 0 on a road.
+    pub collisions_on_roads: usize,
+    /// Two in one conflict area, on ways that cross.
+    pub collisions_at_intersections: usize,
+    /// Full stops.
+    pub full_stops: usize,
+    /// Mean travel time, from the arrival on.
+    pub mean_travel_time_s: Option<f64>,
+    /// Longest.
+    pub longest_travel_time_s: Option<f64>,
+    /// Smallest bumper gap on a road.
+    pub smallest_gap_m: Option<f64>,
+    /// Shortest time from one leaving a conflict area to the next one entering it.
+    pub smallest_clearance_s: Option<f64>,
+    /// Lowest speed of anyone.
+    pub lowest_speed_mps: Option<f64>,
+    /// Errors of the target's position, where its own association has not changed within a second.
+    pub position_error: ErrorFigures,
+    /// Where it has.
+    pub position_error_after_change: ErrorFigures,
+    /// Where it has before, and nothing has been heard from it since.
+    pub position_error_unheard: ErrorFigures,
+    /// Pairs of a unit and its target whose error in the first of these classes was beyond 0.2 m.
+    pub pairs_beyond: usize,
+    /// Changes of association.
+    pub association_changes: u64,
+    /// Ticks at which a target was outside its bound.
+    pub bound_violations: u64,
+    /// Share of time in which an envelope changed the command.
+    pub limited_share: f64,
+    /// Times that a unit made way for one that had overlooked it.
+    pub order_disagreements: u64,
+    /// Everything that units refused, these included.
+    pub refusals: u64,
+    /// Messages that found no slot.
+    pub turned_away: u64,
+}
+
+impl Side {
+    /// Of the runs of all seeds, in their order.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // counts of vehicles and ticks
+    pub fn of(outcomes: &[&Outcome]) -> Self {
+        let all = || outcomes.iter().copied();
+        let times: Vec<f64> = all().flat_map(|outcome| outcome.travel_times_s.iter().copied()).collect();
+        let least = |of: fn(&Outcome) -> Option<f64>| all().filter_map(of).reduce(f64::min);
+        let class =
+            |index: usize| all().map(|outcome| outcome.errors[index]).fold(Class::default(), Class::with).into();
+        let ticks: [u64; 2] = [0, 1].map(|which| all().map(|outcome| outcome.ticks[which]).sum());
+        Self {
+            served: times.len(),
+            unserved: all().map(|outcome| outcome.remains.unserved).sum(),
+            collisions_on_roads: all().map(|outcome| outcome.collisions[0]).sum(),
+            collisions_at_intersections: all().map(|outcome| outcome.collisions[1]).sum(),
+            full_stops: all().map(|outcome| outcome.full_stops).sum(),
+            mean_travel_time_s: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
+            longest_travel_time_s: times.iter().copied().reduce(f64::max),
+            smallest_gap_m: least(|outcome| outcome.smallest_gap_m),
+            smallest_clearance_s: least(|outcome| outcome.smallest_clearance_s),
+            lowest_speed_mps: least(|outcome| outcome.lowest_speed_mps),
+            position_error: class(0),
+            position_error_after_change: class(1),
+            position_error_unheard: class(2),
+            pairs_beyond: all().map(|outcome| outcome.beyond).sum(),
+            association_changes: all().map(|outcome| outcome.changes).sum(),
+            bound_violations: all().map(|outcome| outcome.violations).sum(),
+            limited_share: ticks[1] as f64 / ticks[0].max(1) as f64,
+            order_disagreements: all().map(|outcome| outcome.remains.disagreements).sum(),
+            refusals: all().map(|outcome| outcome.remains.refusals).sum(),
+            turned_away: all().map(|outcome| outcome.remains.turned_away).sum(),
+        }
+    }
+
+    /// Collisions of both kinds.
+    #[must_use]
+    pub fn collisions(&self) -> usize {
+        self.collisions_on_roads + self.collisions_at_intersections
+    }
+}
+
+/// The largest error under something wrong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WrongRow {
+    /// What is wrong.
+    pub what: String,
+    /// The figures.
+    #[serde(flatten)]
+    pub side: Side,
+}
+
+/// The figures at a prediction step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepRow {
+    /// Prediction step.
+    pub step_s: f64,
+    /// The figures.
+    #[serde(flatten)]
+    pub side: Side,
+}

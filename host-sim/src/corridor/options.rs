@@ -1,0 +1,81 @@
+//! The options of `run` for a corridor: raw values enter, checked options or an error leave.
+
+use std::path::{Path, PathBuf};
+
+use super::description::Corridor;
+use super::read;
+use crate::cli::RunSettings;
+use crate::error::Error;
+use crate::options::{can_be_file, can_be_folder};
+use crate::scenario::Overrides;
+
+/// A corridor and what becomes of its results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorridorOptions {
+    /// The corridor, with what the command line says instead of its file.
+    pub corridor: Corridor,
+    /// What the report calls it.
+    pub name: String,
+    /// The command line that does this again.
+    pub command: String,
+    /// The seeds, from the first on.
+    pub seeds: Vec<u64>,
+    /// Results as JSON.
+    pub json: bool,
+    /// Folder of the report; `None`: no report.
+    pub report: Option<PathBuf>,
+    /// Where to draw the one-page picture.
+    pub picture: Option<PathBuf>,
+}
+
+impl CorridorOptions {
+    /// Reads the corridor in the text of that file, which the user called `named`.
+    ///
+    /// # Errors
+    /// Whatever makes it unusable, options that are not for corridors, and places for output that cannot be written.
+    pub fn read(named: &Path, file: &Path, text: &str, settings: RunSettings) -> Result<Self, Error> {
+        let foreign = [
+            ("--leader-motion", settings.leader_motion.is_some()),
+            ("--channel-trace", settings.channel_trace.is_some()),
+            ("--trace", settings.trace.is_some()),
+            ("--candump", settings.candump.is_some()),
+        ];
+        if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
+            return Err(
+                Error::new("is for a string of vehicles, and this is a corridor", "leave it out").in_option(option)
+            );
+        }
+        let overrides = Overrides {
+            seed: settings.seed,
+            step_s: settings.step,
+            envelope: settings.envelope,
+            ..Overrides::default()
+        };
+        let corridor = read::corridor(file, text, &overrides)?;
+        let count = settings.seeds.unwrap_or(1);
+        let last = count.checked_sub(1).and_then(|more| corridor.seed.checked_add(more));
+        let last = last.ok_or_else(|| {
+            Error::new(format!("is {count}"), "give at least 1, and no seed beyond 2^64").in_option("--seeds")
+        })?;
+        let report = (!settings.no_report).then_some(settings.out);
+        if let Some(folder) = &report {
+            can_be_folder(folder)?;
+        }
+        if let Some(picture) = &settings.picture {
+            can_be_file("--picture", picture, &[named])?;
+        }
+        let mut command = format!("holdover-sim run {} --seed {}", named.display(), corridor.seed);
+        if count > 1 {
+            command += &format!(" --seeds {count}");
+        }
+        if let Some(step_s) = settings.step {
+            command += &format!(" --step {step_s}");
+        }
+        if settings.envelope {
+            command += " --envelope";
+        }
+        let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
+        let seeds = (corridor.seed..=last).collect();
+        Ok(Self { corridor, name, command, seeds, json: settings.json, report, picture: settings.picture })
+    }
+}

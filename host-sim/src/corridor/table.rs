@@ -1,0 +1,101 @@
+//! The results of a corridor as text: figures enter, tables for a terminal leave.
+
+use std::fmt::Write;
+
+use super::command::Results;
+use super::figures::Side;
+
+/// A figure's name and how it is spelled of a side.
+pub type Line = (&'static str, fn(&Side) -> String);
+
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("-".into(), |value| format!("{value:.digits$}"))
+}
+
+/// The figures in the order of the table.
+pub const LINES: &[Line] = &[
+    ("vehicles served", |side| side.served.to_string()),
+    ("not served", |side| side.unserved.to_string()),
+    ("collisions on roads", |side| side.collisions_on_roads.to_string()),
+    ("collisions in conflict areas", |side| side.collisions_at_intersections.to_string()),
+    ("full stops", |side| side.full_stops.to_string()),
+    ("mean travel time, s", |side| number(side.mean_travel_time_s, 2)),
+    ("longest travel time, s", |side| number(side.longest_travel_time_s, 1)),
+    ("smallest gap on a road, m", |side| number(side.smallest_gap_m, 2)),
+    ("shortest clearance, s", |side| number(side.smallest_clearance_s, 2)),
+    ("lowest speed, m/s", |side| number(side.lowest_speed_mps, 2)),
+    ("position error, max, m", |side| number(side.position_error.max_m, 3)),
+    ("  pairs beyond 0.2 m", |side| side.pairs_beyond.to_string()),
+    ("position error, rms, m", |side| number(side.position_error.rms_m, 4)),
+    ("  within 1 s of a change, max", |side| number(side.position_error_after_change.max_m, 3)),
+    ("  change not heard of, max", |side| number(side.position_error_unheard.max_m, 3)),
+    ("changes of association", |side| side.association_changes.to_string()),
+    ("order disagreements", |side| side.order_disagreements.to_string()),
+    ("outside the bound, ticks", |side| side.bound_violations.to_string()),
+    ("limited by the envelope, %", |side| format!("{:.1}", 100.0 * side.limited_share)),
+];
+
+/// The names of the sides, in the order of the table.
+pub const SIDES: [&str; 4] = ["holdover", "perfect link", "drives alone", "envelope"];
+
+/// The sides, in the same order.
+#[must_use]
+pub fn sides(results: &Results) -> [&Side; 4] {
+    let sides = &results.sides;
+    [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
+}
+
+/// The tables.
+#[must_use]
+pub fn text(results: &Results) -> String {
+    let mut text = String::new();
+    let last = results.seed + results.seeds as u64 - 1;
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{}: seeds {} to {last}", results.scenario, results.seed);
+    let _ = writeln!(text, "{:30}{:>14}{:>14}{:>14}{:>14}", "", SIDES[0], SIDES[1], SIDES[2], SIDES[3]);
+    for (name, of) in LINES {
+        let _ = write!(text, "{name:30}");
+        sides(results).iter().for_each(|side| {
+            let _ = write!(text, "{:>14}", of(side));
+        });
+        text.push('\n');
+    }
+    let _ = writeln!(
+        text,
+        "\n{:22}{:>10}{:>10}{:>12}{:>12}",
+        "what is wrong", "max, m", "rms, m", "travel, s", "collisions"
+    );
+    for row in &results.wrong {
+        let error = row.side.position_error;
+        let _ = writeln!(
+            text,
+            "{:22}{:>10}{:>10}{:>12}{:>12}",
+            row.what,
+            number(error.max_m, 3),
+            number(error.rms_m, 4),
+            number(row.side.mean_travel_time_s, 2),
+            row.side.collisions()
+        );
+    }
+    if !results.steps.is_empty() {
+        let _ = writeln!(text, "\n{:22}{:>10}{:>10}{:>12}", "step, s", "max, m", "rms, m", "updates/s");
+        for row in &results.steps {
+            let error = row.side.position_error;
+            let cost = results.timing.cost.iter().find(|cost| cost.step_s == row.step_s);
+            let updates = cost.map_or("-".into(), |cost| format!("{:.0}", cost.updates_per_s));
+            let _ = writeln!(
+                text,
+                "{:22}{:>10}{:>10}{updates:>12}",
+                row.step_s,
+                number(error.max_m, 3),
+                number(error.rms_m, 4)
+            );
+        }
+    }
+    let verdict = if results.failures.is_empty() { "passed" } else { "failed" };
+    let _ = writeln!(text, "\nverdict: {verdict}");
+    results.failures.iter().for_each(|failure| {
+        let _ = writeln!(text, "  {failure}");
+    });
+    text
+}
