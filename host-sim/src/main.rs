@@ -4,7 +4,7 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{capture, ecu, evaluate, hil, output, price, replay, run, string, sweep};
+use holdover_sim::{capture, ecu, evaluate, gains, hil, output, price, replay, run, string, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -12,6 +12,7 @@ fn main() -> ExitCode {
         Options::Run(options) => run::run(&options),
         Options::Evaluate(options) => evaluate::evaluate(&options),
         Options::Sweep(options) => sweep::sweep(&options),
+        Options::Gains(options) => gains::gains(&options),
         Options::String(options) => string::string(&options),
         Options::Price(options) => price::price(&options),
         Options::Replay(options) => replay::replay(&options),
