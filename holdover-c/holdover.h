@@ -267,6 +267,8 @@ typedef struct holdover_law_t {
   uint32_t time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;
+  // 1: the gains come from the table of eq. 6; 0: they are the following two.
+  uint8_t gain_table;
   // Gain in 1/(1000 s^2).
   uint32_t gain_milli;
   // Damping in ms.
@@ -370,6 +372,8 @@ typedef struct holdover_config_t {
   struct holdover_limits_t limits;
   // The vehicle of eqs 1 to 3.
   struct holdover_body_t body;
+  // 1: what the body does not say, such as a grade, is measured and made up for; 0: it is not.
+  uint8_t correction;
   // The law.
   struct holdover_law_t law;
   // The prediction.

@@ -89,6 +89,9 @@ pub struct Law {
     pub time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
+    /// Whether the gains come from the table of eq. 6, which is proved for time gaps from 1 s and lags up to 0.5 s; otherwise
+    /// they are the following two. Where there is no association the two are what is published.
+    pub table: bool,
     /// Gain `k`; 0.01 to 3.999 /s².
     pub gain: Gain,
     /// Damping `γ`; 0 to 3.999 s.
@@ -204,6 +207,7 @@ impl Config {
         law: Law {
             time_gap: Seconds::ZERO,
             standstill: Distance::ZERO,
+            table: false,
             gain: Gain::ZERO,
             damping: Seconds::ZERO,
             free_road_acceleration: Acceleration::ZERO,
@@ -247,6 +251,7 @@ impl Config {
             law: Law {
                 time_gap: Seconds::from_millis(1000),
                 standstill: Distance::from_mm(2000),
+                table: true,
                 gain: parameters::GAIN,
                 damping: parameters::DAMPING,
                 free_road_acceleration: parameters::FREE_ROAD_ACCELERATION,

@@ -23,9 +23,11 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .friction_milli = 2000,
         .mechanical_n = 150,
     },
+    .correction = 1,
     .law = {
         .time_gap_ms = 1000,
         .standstill_mm = 2000,
+        .gain_table = 1,
         .gain_milli = 500,
         .damping_ms = 2000,
         .free_road_acceleration_mm_s2 = 730,

@@ -21,6 +21,8 @@ pub struct Config {
     pub limits: Limits,
     /// The vehicle of eqs 1 to 3.
     pub body: Body,
+    /// 1: what the body does not say, such as a grade, is measured and made up for; 0: it is not.
+    pub correction: u8,
     /// The law.
     pub law: Law,
     /// The prediction.
@@ -69,6 +71,8 @@ pub struct Law {
     pub time_gap_ms: u32,
     /// Distance kept at standstill in mm.
     pub standstill_mm: u32,
+    /// 1: the gains come from the table of eq. 6; 0: they are the following two.
+    pub gain_table: u8,
     /// Gain in 1/(1000 s^2).
     pub gain_milli: u32,
     /// Damping in ms.

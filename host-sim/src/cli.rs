@@ -4,6 +4,7 @@
 use crate::capture::{self, arguments::CaptureArguments};
 use crate::ecu::{self, arguments::EcuArguments};
 use crate::evaluate::{self, arguments::EvaluateArguments};
+use crate::gains::{self, arguments::GainsArguments};
 use crate::hil::{self, arguments::HilArguments};
 use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
@@ -44,6 +45,9 @@ pub enum Command {
     /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
     #[command(after_help = price::arguments::AFTER_HELP)]
     Price(PriceArguments),
+    /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
+    #[command(after_help = gains::arguments::AFTER_HELP)]
+    Gains(GainsArguments),
     /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
     #[command(after_help = string::arguments::AFTER_HELP)]
     String(StringArguments),

@@ -12,6 +12,7 @@ pub mod ecu;
 pub mod error;
 pub mod evaluate;
 pub mod figures;
+pub mod gains;
 pub mod ground;
 pub mod heard;
 pub mod hil;

@@ -4,7 +4,7 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{capture, corridor, ecu, evaluate, hil, library, output, price, replay, run, string, sweep};
+use holdover_sim::{capture, corridor, ecu, evaluate, gains, hil, library, output, price, replay, run, string, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -14,6 +14,7 @@ fn main() -> ExitCode {
         Options::List => output::print(&library::list()).map(|()| Verdict::Pass),
         Options::Evaluate(options) => evaluate::evaluate(&options),
         Options::Sweep(options) => sweep::sweep(&options),
+        Options::Gains(options) => gains::gains(&options),
         Options::String(options) => string::string(&options),
         Options::Price(options) => price::price(&options),
         Options::Replay(options) => replay::replay(&options),

@@ -7,6 +7,7 @@ use crate::corridor::options::CorridorOptions;
 use crate::ecu::options::EcuOptions;
 use crate::error::{Error, quoted};
 use crate::evaluate::options::EvaluateOptions;
+use crate::gains::GainsOptions;
 use crate::hil::options::HilOptions;
 use crate::library;
 use crate::price::options::PriceOptions;
@@ -31,6 +32,8 @@ pub enum Options {
     Sweep(SweepOptions),
     /// Measure what the envelope costs.
     Price(PriceOptions),
+    /// Make and prove the table of gains.
+    Gains(GainsOptions),
     /// Measure string stability.
     String(StringOptions),
     /// Replay a log.
@@ -82,6 +85,7 @@ impl Options {
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
+            Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),

@@ -5,6 +5,7 @@
 //! eq. 7 by less than 1 % in gain, and the model that others predict this vehicle with is the controller it drives by.
 
 mod blend;
+mod gain_table;
 mod gains;
 mod mode;
 

@@ -169,3 +169,32 @@ fn news_after_a_silence_reaches_the_law_little_by_little() {
     assert!(demands.is_sorted_by(|a, b| a >= b));
     assert_eq!(demands[299], mm(after(300, &config, Some(ego(10_000)), &course)));
 }
+
+#[test]
+fn another_association_with_other_gains_does_not_make_the_demand_jump() {
+    let config = config();
+    let mut controller = Controller::new(config.period);
+    let aim = |gain: i32, damping: i32| Aim::Follow {
+        gain: Gain::from_milli(gain),
+        damping: Seconds::from_millis(damping),
+        time_gap: config.law.time_gap,
+        standstill: config.law.standstill,
+        target_speed: Speed::from_mm_per_s(40_000),
+    };
+    // From the softest gains of the table behind one target to the firmest behind another, and back.
+    let courses = [(250, 3_870, 22_000), (600, 1_680, 20_000), (250, 3_870, 22_000)].map(|(gain, damping, ahead)| {
+        let reading = Reading { position: Position::from_mm(ahead), speed: Speed::from_mm_per_s(9_000) };
+        Course::Law { driver: Driver::of_config(&config, aim(gain, damping)), target: Some((reading, None)) }
+    });
+    let (mut before, mut settled) = (Acceleration::ZERO, [Acceleration::ZERO; 3]);
+    for period in 0..600_usize {
+        let ego = State { demand: before, ..ego(10_000) };
+        let demand = controller.drive(&config, at(10 * period as u64), Some(&ego), &courses[period / 200]);
+        let change = demand.minus(before).magnitude();
+        assert!(change <= config.limits.jerk.over(config.period.fine_seconds()), "{period}: {change:?}");
+        before = demand;
+        settled[period / 200] = demand;
+    }
+    let apart = settled[1].minus(settled[0]);
+    assert!(apart > Acceleration::from_mm_per_s2(300) && settled[2] == settled[0], "{settled:?}");
+}

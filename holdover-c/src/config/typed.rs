@@ -44,8 +44,8 @@ impl TryFrom<&Config> for config::Config {
             lag: FineSeconds::from_millis(milli(plain.lag_ms)),
             limits: plain.limits.into(),
             body: plain.body.into(),
-            correction: true,
-            law: plain.law.into(),
+            correction: switch(plain.correction)?,
+            law: plain.law.try_into()?,
             prediction: config::Prediction {
                 step: micros(plain.prediction.step_us),
                 horizon: micros(plain.prediction.horizon_us),
@@ -75,17 +75,20 @@ impl From<Body> for dynamics::Body {
     }
 }
 
-impl From<Law> for config::Law {
-    fn from(plain: Law) -> Self {
-        Self {
+impl TryFrom<Law> for config::Law {
+    type Error = Status;
+
+    fn try_from(plain: Law) -> Result<Self, Status> {
+        Ok(Self {
             time_gap: Seconds::from_millis(milli(plain.time_gap_ms)),
             standstill: Distance::from_mm(milli(plain.standstill_mm)),
+            table: switch(plain.gain_table)?,
             gain: Gain::from_milli(milli(plain.gain_milli)),
             damping: Seconds::from_millis(milli(plain.damping_ms)),
             free_road_acceleration: Acceleration::from_mm_per_s2(milli(plain.free_road_acceleration_mm_s2)),
             target_speed: Speed::from_mm_per_s(milli(plain.target_speed_mm_s)),
             max_speed: Speed::from_mm_per_s(milli(plain.max_speed_mm_s)),
-        }
+        })
     }
 }
 
@@ -157,6 +160,7 @@ impl From<&config::Config> for Config {
             lag_ms: magnitude(typed.lag.to_millis()),
             limits: (&typed.limits).into(),
             body: (&typed.body).into(),
+            correction: u8::from(typed.correction),
             law: (&typed.law).into(),
             prediction: Prediction { step_us: whole(step), horizon_us: whole(horizon), model: (&model).into() },
             link: (&typed.link).into(),
@@ -192,6 +196,7 @@ impl From<&config::Law> for Law {
         Self {
             time_gap_ms: magnitude(typed.time_gap.to_millis()),
             standstill_mm: magnitude(typed.standstill.to_mm()),
+            gain_table: u8::from(typed.table),
             gain_milli: magnitude(typed.gain.to_milli()),
             damping_ms: magnitude(typed.damping.to_millis()),
             free_road_acceleration_mm_s2: magnitude(typed.free_road_acceleration.to_mm_per_s2()),

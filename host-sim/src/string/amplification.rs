@@ -90,9 +90,9 @@ fn harmonic(speeds: &[f64], frequency: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Speeds of that amplitude at the frequency, with something slower beside it.
+    /// Speeds of that amplitude at the frequency, with something beside it whose whole periods are watched too.
     fn sine(amplitude: f64, frequency_hz: f64) -> Vec<f64> {
-        let speed = |t: f64| 15.0 + amplitude * (TAU * frequency_hz * t + 0.7).sin() + 0.5 * (TAU * 0.02 * t).sin();
+        let speed = |t: f64| 15.0 + amplitude * (TAU * frequency_hz * t + 0.7).sin() + 0.5 * (TAU * t / 30.0).sin();
         (0..12_000).map(|tick| speed(f64::from(tick) * 0.01)).collect()
     }
 

@@ -1,0 +1,59 @@
+//! The table as the core ships it: the curve and the cells enter, the text of `src/controller/gain_table.rs` leaves.
+
+use std::fmt::Write;
+
+use super::cell::Cell;
+use super::grid::{
+    CURVE_FIRST_MILLI, CURVE_STEP_MILLI, GAIN_STEP_MILLI, HEADWAY_FIRST_M, HEADWAY_STEP_M, HEADWAYS, SPEED_STEP_MPS,
+    SPEEDS,
+};
+
+const HEAD: &str = "\
+//! The table of eq. 6. Generated, and every cell proved, by `holdover-sim gains --write src/controller/gain_table.rs`; do not
+//! edit. Nothing enters; constants leave.
+
+";
+
+/// The text.
+#[must_use]
+pub fn text(curve: &[u32], cells: &[Cell]) -> String {
+    let mut text = String::from(HEAD);
+    // Writing into a string cannot fail.
+    let mut constant = |doc: &str, name: &str, kind: &str, value: u32| {
+        let _ = writeln!(text, "/// {doc}\npub(super) const {name}: {kind} = {};", spelled(value));
+    };
+    constant("Own speeds and target's: so many, from 0.", "SPEEDS", "usize", SPEEDS as u32);
+    constant("Steps of the speeds, in mm/s.", "SPEED_STEP_MM_PER_S", "i32", SPEED_STEP_MPS * 1000);
+    constant("Headways, from front bumper to front bumper: so many.", "HEADWAYS", "usize", HEADWAYS as u32);
+    constant("The first of them, in mm.", "HEADWAY_FIRST_MM", "i32", HEADWAY_FIRST_M * 1000);
+    constant("Their steps, in mm.", "HEADWAY_STEP_MM", "i32", HEADWAY_STEP_M * 1000);
+    constant("The first `k` of the curve, in 1/(1000 s²).", "CURVE_FIRST_MILLI", "u16", CURVE_FIRST_MILLI);
+    constant("Its steps.", "CURVE_STEP_MILLI", "u16", CURVE_STEP_MILLI);
+    let points: Vec<String> = curve.iter().map(|damping| spelled(*damping)).collect();
+    let _ = writeln!(text, "/// `γ` over `k`, in ms.");
+    let _ = writeln!(text, "pub(super) const CURVE: [u16; {}] = [{}];", curve.len(), points.join(", "));
+    let _ = writeln!(text, "/// `k` in steps of {GAIN_STEP_MILLI}/(1000 s²) by own speed, target's speed and headway.");
+    let _ = writeln!(text, "#[rustfmt::skip]");
+    let _ = writeln!(text, "pub(super) const GAINS: [[[u8; HEADWAYS]; SPEEDS]; SPEEDS] = [");
+    for own in cells.chunks(SPEEDS * HEADWAYS) {
+        let _ = writeln!(text, "    [");
+        for target in own.chunks(HEADWAYS) {
+            let row: Vec<String> = target.iter().map(|cell| step(cell).to_string()).collect();
+            let _ = writeln!(text, "        [{}],", row.join(", "));
+        }
+        let _ = writeln!(text, "    ],");
+    }
+    let _ = writeln!(text, "];");
+    text
+}
+
+/// `k` of a cell in the table's steps.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 120
+fn step(cell: &Cell) -> u32 {
+    (cell.pair.gain * 1e3 / f64::from(GAIN_STEP_MILLI)).round() as u32
+}
+
+/// A number with its thousands parted as Rust does.
+fn spelled(value: u32) -> String {
+    if value < 10_000 { value.to_string() } else { format!("{}_{:03}", value / 1000, value % 1000) }
+}

@@ -1,0 +1,63 @@
+//! A heat map: rows of shades enter, a grid of cells leaves, the darker the more.
+
+use super::{
+    Figure, Width,
+    svg::{Anchor, Area, Svg},
+};
+
+/// A cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shade {
+    /// From 0 to 1.
+    pub share: f64,
+    /// What stands in it.
+    pub label: String,
+}
+
+/// A grid of cells with a name for each row and column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatMap {
+    /// What the figure shows, for a screen reader.
+    pub title: String,
+    /// What one sees in it, for a screen reader.
+    pub description: String,
+    /// The names across, from the left.
+    pub columns: Vec<String>,
+    /// The names down, from the top.
+    pub rows: Vec<String>,
+    /// The rows of cells.
+    pub shades: Vec<Vec<Shade>>,
+}
+
+const ROW: f64 = 22.0;
+const LEFT: f64 = 58.0;
+const TOP: f64 = 20.0;
+/// Depths of shade that are told apart.
+const DEPTHS: f64 = 8.0;
+
+impl Figure for HeatMap {
+    fn draw(&self, id: &str, width: Width) -> String {
+        let mut svg = Svg::new(id);
+        let pixels = width.pixels();
+        let pitch = (pixels - LEFT) / self.columns.len().max(1) as f64;
+        for (column, name) in self.columns.iter().enumerate() {
+            svg.text("tick", Anchor::Middle, (LEFT + pitch * (column as f64 + 0.5), TOP - 6.0), name);
+        }
+        for (row, (name, shades)) in self.rows.iter().zip(&self.shades).enumerate() {
+            let top = TOP + ROW * row as f64;
+            svg.text("tick", Anchor::End, (LEFT - 6.0, top + 15.0), name);
+            for (column, shade) in shades.iter().take(self.columns.len()).enumerate() {
+                let left = LEFT + pitch * column as f64;
+                let area = Area { left, top, right: left + pitch - 1.0, bottom: top + ROW - 1.0 };
+                let depth = (shade.share.clamp(0.0, 1.0) * DEPTHS).round();
+                svg.rectangle(&format!("heat h{depth}"), area);
+                svg.text("tick", Anchor::Middle, (left + pitch / 2.0, top + 15.0), &shade.label);
+            }
+        }
+        svg.finish(pixels, TOP + ROW * self.rows.len() as f64 + 4.0, &self.title, &self.description)
+    }
+
+    fn undrawable(&self) -> usize {
+        self.shades.iter().flatten().filter(|shade| !shade.share.is_finite()).count()
+    }
+}
