@@ -35,6 +35,8 @@ use crate::world::{Trace, World};
 const WARM_UP_S: f64 = 2.0;
 /// A device that is silent for longer, and not by a fault, has gone; in seconds.
 const GONE_S: f64 = 2.0;
+/// How long the echoes of the last frames are waited for.
+const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
 /// How long after a fault its effects are put down to it, in seconds.
 pub const AFTERMATH_S: f64 = 5.0;
 
@@ -228,8 +230,11 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         }
     }
     // What was sent last comes back.
-    let end = talk.now().plus(Duration::from_millis(50));
-    listen(&mut talk, &mut ears, &world, scenario.ego, end)?;
+    let end = talk.now().plus(ECHO_PATIENCE);
+    while talk.now() < end && !talk.counts().is_complete() {
+        let pause = talk.now().plus(Duration::from_millis(10));
+        listen(&mut talk, &mut ears, &world, scenario.ego, pause)?;
+    }
     villain.stop(rig);
     finished(world, trace, &talk, ears, lateness_us, villain.played(), cut)
 }

@@ -33,6 +33,14 @@ pub struct Counts {
     pub refused: u64,
 }
 
+impl Counts {
+    /// Whether nothing is on its way.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.sent <= self.confirmed + self.refused
+    }
+}
+
 /// The line of the catalogue that a frame stands on.
 #[must_use]
 pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
