@@ -209,9 +209,7 @@ impl<P: Port> Talk<P> {
         let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload(frame)]) };
         let [dated] = follow_up.encode();
         let counter = frame.data().get(1).map_or(0, |byte| byte & 15);
-        let (Id::Standard(id), Some(line)) = (frame.id(), follow_up_line()) else {
-            return *frame;
-        };
+        let (Id::Standard(id), Some(line)) = (frame.id(), line_of(self.base, frame)) else { return *frame };
         let data = e2e::protect(dated.to_bytes(), catalogue::data_id(line.offset), counter);
         Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
     }
