@@ -158,12 +158,12 @@ fn a_recorded_log_replays_with_its_timing_for_can_utils_and_from_them() {
     let sim = env!("CARGO_BIN_EXE_holdover-sim");
     // A stranger's traffic, recorded by us; then replayed by us, recorded by candump.
     shell(&format!(
-        "{sim} record --bus vcan0 --duration 1.5 -o {ours} & sleep 0.4; \
+        "{sim} record --bus vcan0 --duration 4 -o {ours} & sleep 0.5; \
          for byte in 01 02 03 04 05; do cansend vcan0 123#$byte; sleep 0.1; done; cansend vcan0 12345678#R; wait"
     ));
     let out = shell(&format!(
-        "candump -L -T 1000 vcan0 >{theirs} & sleep 0.3; {sim} replay {ours} --bus vcan0; wait; \
-         {sim} record --bus vcan0 --duration 1.5 -o {again} & sleep 0.4; canplayer -I {theirs}; wait"
+        "candump -L -T 2000 vcan0 >{theirs} & sleep 0.3; {sim} replay {ours} --bus vcan0; wait; \
+         {sim} record --bus vcan0 --duration 4 -o {again} & sleep 0.5; canplayer -I {theirs}; wait"
     ));
     let frames = |log: &str| -> Vec<(f64, String)> {
         let text = std::fs::read_to_string(log).unwrap();
@@ -181,7 +181,7 @@ fn a_recorded_log_replays_with_its_timing_for_can_utils_and_from_them() {
             log.iter().map(|(_, frame)| frame).collect::<Vec<_>>()
         );
         let span = |log: &[(f64, String)]| log[5].0 - log[0].0;
-        assert!((span(&ours) - span(log)).abs() < 0.1, "{} {}", span(&ours), span(log));
+        assert!((span(&ours) - span(log)).abs() < 0.1, "{} s and {} s", span(&ours), span(log));
     }
 }
 

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 
 const SIM: &str = env!("CARGO_BIN_EXE_holdover-sim");
 /// How often it is asked.
-const TRIES: u32 = 8;
+const TRIES: u32 = 5;
 
 /// Exit code and results of `hil` with these arguments.
 fn once(arguments: &[&str]) -> (i32, Value) {

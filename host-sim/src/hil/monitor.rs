@@ -262,7 +262,8 @@ mod tests {
             let Device { sender, monitor } = &mut device;
             let at = Instant::from_micros(millis * 1000 + 100);
             let said = Message::Own(Said::Motion(motion));
-            sender.send(&said, &mut |frame| drop(monitor.hear(at, &(&frame).into()))).unwrap();
+            let mut hear = |frame: &holdover::wire::Frame| assert_eq!(monitor.hear(at, &frame.into()), News::Other);
+            sender.send(&said, &mut |frame: holdover::wire::Frame| hear(&frame)).unwrap();
         }
         assert_eq!(device.monitor.beats().last().unwrap().latency, Some(Duration::from_millis(13)));
     }
