@@ -108,7 +108,8 @@ impl<'a> Referee<'a> {
         }
         for new in inside.difference(&self.inside) {
             let junction = &self.network.junctions[new.junction];
-            let cleared = self.cleared.iter().filter(|((at, leg), _)| *at == new.junction && junction.conflict(*leg, new.leg));
+            let cleared =
+                self.cleared.iter().filter(|((at, leg), _)| *at == new.junction && junction.conflict(*leg, new.leg));
             if let Some(last_s) = cleared.map(|(_, cleared_s)| *cleared_s).reduce(f64::max) {
                 let clearance_s = at_s - last_s;
                 self.smallest_clearance_s =

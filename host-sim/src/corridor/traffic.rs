@@ -209,8 +209,7 @@ impl<'a> Traffic<'a> {
             tick += 1;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
-        let unserved =
-            self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
+        let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
         self.travellers.values().for_each(|traveller| {
             self.turned_away += traveller.vehicle.turned_away();
             self.refusals += refusals(&traveller.vehicle);
@@ -331,10 +330,13 @@ impl<'a> Traffic<'a> {
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane.stops.iter().map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
-        vehicle
-            .set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect()))
-            .map_err(|cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")))?;
+        let crossings = lane
+            .stops
+            .iter()
+            .map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
+        vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
+            |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
+        )?;
         let period_s = self.corridor.period_s;
         vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
         let from_s = trip.at_s + trip.dark_after_s;
@@ -378,7 +380,8 @@ impl<'a> Traffic<'a> {
     /// Those who have driven to the end of their way leave, and vanish a little later.
     fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
         let trips = self.trips;
-        let beyond_m = |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
+        let beyond_m =
+            |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
         for (index, traveller) in &mut self.travellers {
             if !traveller.has_left && beyond_m(traveller) >= 0.0 {
                 traveller.has_left = true;

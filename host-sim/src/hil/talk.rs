@@ -230,8 +230,3 @@ impl<P: Port> Talk<P> {
 pub fn payload(frame: &Frame) -> Payload {
     frame.data().try_into().map_or(Payload::EMPTY, Payload::from_bytes)
 }
-/// The catalogue's line of the follow-up.
-fn follow_up_line() -> Option<&'static catalogue::Line> {
-    catalogue::CATALOGUE.iter().find(|line| line.content == Content::FollowUp)
-}
-

@@ -197,9 +197,8 @@ impl Relay {
     /// How much a station matters now, if it has gone on at its speed.
     fn rank(&self, station: StationHash, at_s: f64) -> Rank {
         let placed = self.places.iter().find(|placed| placed.station == station);
-        let way_m = |placed: &Placed| {
-            placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s)
-        };
+        let way_m =
+            |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
         self.course.rank(station, placed.map(|placed| (placed.route, way_m(placed))), self.steps_to(station))
     }
 

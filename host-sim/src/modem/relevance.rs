@@ -115,10 +115,6 @@ impl Course {
         let own_m = here_m + self.crossings[there].1 - self.crossings[here].1;
         let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
         let has_gone = way_m < -CLEAR_M && !is_on_lane;
-        (!has_gone).then(|| Rank::Meets {
-            after: there - here,
-            behind: way_m > own_m,
-            apart_m: (way_m - own_m).abs(),
-        })
+        (!has_gone).then(|| Rank::Meets { after: there - here, behind: way_m > own_m, apart_m: (way_m - own_m).abs() })
     }
 }
