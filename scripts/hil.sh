@@ -61,7 +61,7 @@ check_tests() {
         sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
     [ -n "$binaries" ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
     # A test's own folder is its package's. One at a time, because they share the bus.
-    scripts/vcan.sh --real-time bash -c 'cd host-sim; for binary in $0; do "$binary" --ignored --test-threads 1 || exit; done' "$binaries"
+    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim; for binary in $0; do "$binary" --ignored --test-threads 1 || exit; done' "$binaries"
 }
 
 # images TARGET: builds the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step.

@@ -1,12 +1,19 @@
 //! The harness on a bus in memory: good devices pass, and each kind of bad one has its own clear verdict.
 
+use embedded_can::{Frame as _, Id};
+use holdover::Config;
 use holdover::time::Duration;
+use holdover::wire::{StationHash, e2e};
+use holdover_sim::bus::{Frame, Port};
 use holdover_sim::hil::judge::{Results, judge};
 use holdover_sim::hil::lock_step;
+use holdover_sim::hil::rig::Rig;
 use holdover_sim::hil::session::{self, Setup};
-use holdover_sim::hil::virtual_bus::{Behaviour, bench};
+use holdover_sim::hil::virtual_bus::{Behaviour, VirtualRig, bench};
 use holdover_sim::scenario::{Overrides, Scenario};
+use holdover_sim::verdict::Verdict;
 use holdover_sim::world;
+use std::io;
 use std::path::Path;
 
 fn setup(scenario: &str, faults: &[&str]) -> Setup {
@@ -14,6 +21,17 @@ fn setup(scenario: &str, faults: &[&str]) -> Setup {
     let config = world::config(&scenario, scenario.ego);
     let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
     Setup { scenario, config, wait: Duration::from_millis(3000), faults }
+}
+
+/// Four seconds on a clean channel.
+const SHORT: &str = "duration_s = 4\n[channel]\noutages = []\nloss = 0.0";
+
+fn step(setup: &Setup, change: impl FnOnce(&mut Behaviour)) -> Results {
+    let mut behaviour = Behaviour::good(setup.config, true);
+    change(&mut behaviour);
+    let (port, mut rig) = bench(behaviour);
+    let outcome = lock_step::run(setup, port, &mut rig, |_| {}).unwrap();
+    judge(setup, &outcome)
 }
 
 fn run(setup: &Setup, change: impl FnOnce(&mut Behaviour)) -> Results {
@@ -28,17 +46,130 @@ fn run(setup: &Setup, change: impl FnOnce(&mut Behaviour)) -> Results {
 fn a_good_device_passes_the_papers_scenario_and_its_twin_is_never_far_from_it() {
     let results = run(&setup("", &[]), |_| {});
     assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
-    println!("{results:?}");
+    let (device, deviation, timing) = (&results.device, &results.deviation, &results.timing);
+    assert!(device.commands >= 2000 && deviation.ticks >= 2000);
+    // 20 s with 4 s of silence: holdover is what it is for.
+    assert!(device.modes["holdover"] > 300 && device.modes["cooperative"] > 1500, "{:?}", device.modes);
+    assert!(!device.modes.contains_key("fault"));
+    assert_eq!((device.e2e_errors, device.restarts, timing.missed_periods, timing.harness.lost), (0, 0, 0, 0));
+    // Device and twin tick 0.3 ms apart: at 11 m/s that is 3.3 mm, and the wire rounds.
+    assert!(deviation.position_m < 0.02, "{}", deviation.position_m);
+    assert!(timing.latency.max_ms.unwrap() < 10.5 && timing.harness.lateness.max_ms.unwrap() < 0.5);
 }
 
 #[test]
 fn in_lock_step_device_and_twin_say_the_same_bit_for_bit() {
-    let setup = setup("", &[]);
-    let (port, mut rig) = bench(Behaviour::good(setup.config, true));
-    let outcome = lock_step::run(&setup, port, &mut rig, |_| {}).unwrap();
-    let results = judge(&setup, &outcome);
+    let results = step(&setup("", &[]), |_| {});
     assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
     assert_eq!((results.deviation.ticks, results.deviation.different_frames), (2100, 0));
     assert!(results.deviation.frames > 3 * 2100, "{}", results.deviation.frames);
-    println!("{results:?}");
+}
+
+#[test]
+fn in_lock_step_one_wrong_bit_of_a_device_is_found_and_named() {
+    let results = step(&setup(SHORT, &[]), |behaviour| behaviour.garble = one_step_too_much);
+    assert_eq!(results.verdict, "failed");
+    assert!(results.deviation.different_frames > 0);
+    assert!(results.reasons[0].contains("frames are not the twin's; the first at"), "{:?}", results.reasons);
+}
+
+#[test]
+fn a_device_that_its_own_station_calls_otherwise_is_called_so_on_its_bus() {
+    // The firmware has station 1, which in this world is the leader's.
+    let mut setup = setup(SHORT, &[]);
+    setup.config = Config::car(StationHash(1));
+    let results = step(&setup, |_| {});
+    assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
+    assert!(results.device.modes["cooperative"] > 300);
+}
+
+#[test]
+fn a_silent_device_is_a_verdict() {
+    for lock_step in [false, true] {
+        let setup = setup(SHORT, &[]);
+        let (port, mut rig) = bench(Behaviour::good(setup.config, !lock_step)); // waits for what never comes
+        rig.power(false).unwrap();
+        let mut rig = NoPower(rig);
+        let outcome = match lock_step {
+            true => lock_step::run(&setup, port, &mut rig, |_| {}),
+            false => session::run(&setup, port, &mut rig, |_| {}),
+        };
+        let results = judge(&setup, &outcome.unwrap());
+        assert_eq!((results.verdict, results.code()), ("failed", Verdict::Failed));
+        assert_eq!(results.reasons, ["the device is silent: not one frame of it in 3 s"]);
+    }
+}
+
+#[test]
+fn a_device_that_goes_half_way_is_a_verdict_before_the_end_of_the_run() {
+    let results = run(&setup("", &[]), |behaviour| behaviour.dies_after = Some(Duration::from_millis(9_000)));
+    assert_eq!(results.verdict, "failed");
+    assert!(results.reasons[0].starts_with("the device is gone: its last frame was at "), "{:?}", results.reasons);
+    assert!(results.device.commands < 900);
+    let results = step(&setup("", &[]), |behaviour| behaviour.dies_after = Some(Duration::from_millis(1_000)));
+    assert!(results.reasons[0].starts_with("the device is gone"), "{:?}", results.reasons);
+}
+
+#[test]
+fn a_late_device_is_a_verdict() {
+    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.latency = Duration::from_millis(24));
+    assert_eq!(results.verdict, "failed");
+    assert!(results.reasons[0].starts_with("late: commands 3"), "{:?}", results.reasons);
+}
+
+#[test]
+fn a_late_harness_is_inconclusive_whatever_the_device_does() {
+    let stall = (Duration::from_millis(4_000), Duration::from_millis(60));
+    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.stall = Some(stall));
+    assert_eq!((results.verdict, results.code()), ("inconclusive", Verdict::Inconclusive));
+    assert!(results.reasons[0].starts_with("the harness was 5"), "{:?}", results.reasons);
+    assert!(results.timing.harness.lateness.max_ms.unwrap() > 50.0);
+}
+
+#[test]
+fn a_device_whose_protection_is_wrong_is_a_verdict() {
+    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.garble = |frame| frame.with_flipped_bit(17));
+    assert_eq!(results.verdict, "failed");
+}
+
+#[test]
+fn a_device_that_answers_something_else_than_its_twin_is_a_verdict() {
+    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.garble = one_step_too_much);
+    assert_eq!(results.verdict, "failed");
+    assert!(results.deviation.unexplained > 100, "{:?}", results.deviation);
+}
+
+/// Adds 0.256 m/s² to every command, well protected.
+fn one_step_too_much(frame: Frame) -> Frame {
+    let Id::Standard(id) = frame.id() else { return frame };
+    let Ok(mut data) = <[u8; 8]>::try_from(frame.data()) else { return frame };
+    if id.as_raw() != 0x482 {
+        return frame;
+    }
+    // Acceleration is bits 12 to 25, by 2 mm/s².
+    let raw = u64::from_le_bytes(data);
+    let field = (raw >> 12).wrapping_add(128) & 0x3FFF;
+    data = ((raw & !(0x3FFF << 12)) | field << 12).to_le_bytes();
+    Frame::standard(0x482, &e2e::protect(data, 0x4802, data[1] & 15)).unwrap()
+}
+
+/// Nobody can give the device power.
+struct NoPower(VirtualRig);
+
+impl Rig for NoPower {
+    fn power(&mut self, _: bool) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn interface(&mut self, up: bool) -> io::Result<()> {
+        self.0.interface(up)
+    }
+
+    fn villain(&mut self) -> io::Result<&mut dyn Port> {
+        self.0.villain()
+    }
+
+    fn has_ended(&mut self) -> Option<String> {
+        None
+    }
 }

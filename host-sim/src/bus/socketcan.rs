@@ -17,8 +17,11 @@ use std::io::{self, ErrorKind};
 use std::os::fd::AsFd;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What may wait in the kernel for this program: it holds a second of a full bus, and the system cuts it if it is too much.
-const WAITING_BYTES: usize = 1 << 22;
+/// What may wait in the kernel for this program: a second of a full bus.
+const WAITING_BYTES: i32 = 1 << 22;
+/// The option of Linux for that.
+const SOL_SOCKET: i32 = 1;
+const SO_RCVBUFFORCE: i32 = 33;
 /// How long a full transmit queue of the driver is waited for.
 const QUEUE_PATIENCE: Duration = Duration::from_millis(20);
 
@@ -48,7 +51,10 @@ impl SocketCan {
             socket.set_recv_timestamp(true)?;
             socket.set_recv_own_msgs(true)?;
             socket.set_error_filter_accept_all()?;
-            socket.as_raw_socket().set_recv_buffer_size(WAITING_BYTES)
+            // Beyond the system's own limit that takes root; within it, half a thousand frames fit.
+            let forced = socket.set_socket_option_int(SOL_SOCKET, SO_RCVBUFFORCE, WAITING_BYTES);
+            #[allow(clippy::cast_sign_loss)] // a constant
+            forced.or_else(|_| socket.as_raw_socket().set_recv_buffer_size(WAITING_BYTES as usize))
         };
         set_up().map_err(|error| unopened(name, &error))?;
         Ok(Self { socket, awaited: VecDeque::new(), early: None })

@@ -57,7 +57,7 @@ impl Deviation {
         self.command_mps2 = self.command_mps2.max(difference);
         let moved =
             self.last.map_or(0.0, |last| (mps2(last.command.acceleration) - mps2(twin.command.acceleration)).abs());
-        let allowed = COMMAND_ROUNDING_MPS2 + 2.0 * moved + JERK_MPS3 * 2.0 * seconds(window);
+        let allowed = COMMAND_ROUNDING_MPS2 + moved + JERK_MPS3 * seconds(window);
         let is_other = device.mode != twin.command.mode;
         self.modes += u64::from(is_other);
         // One of them may hear of a change a tick before the other.

@@ -10,16 +10,17 @@ use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
 use super::session::Setup;
 use super::spread::Spread;
-use crate::figures::{Summary, failures, summarise};
+use crate::figures::{BoundFigures, Summary, failures, summarise};
 use crate::run::mode_name;
 use crate::verdict::Verdict;
+use crate::world::{Tick, Trace};
 
 /// The harness may be so late in one tick: later, and the device rightly takes its vehicle's motion for lost.
 pub const LATE_MAX_MS: f64 = 40.0;
 /// And so late in one of a hundred: a period.
 pub const LATE_P99_MS: f64 = 10.0;
-/// So long the device may take to its command, in one of a hundred: two periods, because it need not tick when its vehicle
-/// speaks.
+/// So long the device may take from its vehicle's motion to its command, but for one of a hundred: two periods, because it
+/// need not tick when its vehicle speaks.
 pub const LATENCY_P99_MS: f64 = 20.0;
 /// Share of periods that a device in real time may miss on a system that is none.
 pub const MISSED_SHARE: f64 = 0.01;
@@ -32,7 +33,7 @@ pub struct DeviceFigures {
     /// Commands in the run.
     pub commands: usize,
     /// Times that it started anew by itself.
-    pub restarts: u32,
+    pub restarts: usize,
     /// Faults of the protection of its frames, but for those of the faults' aftermath.
     pub e2e_errors: usize,
     /// What it says that it refused, by cause.
@@ -71,7 +72,7 @@ pub struct DeviationFigures {
 /// Wall-clock figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timing {
-    /// From the vehicle's newest motion (in lock step: from the step) on the bus to the command.
+    /// From the vehicle's motion (in lock step: from the step) on the bus to the command that rests on it.
     pub latency: Spread,
     /// Periods in which the device said nothing, but for those of the faults' aftermath.
     pub missed_periods: i64,
@@ -126,8 +127,8 @@ impl Results {
 /// Judges.
 #[must_use]
 pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
-    let mut scenario = summarise(&setup.scenario, &outcome.trace, 1.0);
-    scenario.timing.realtime_factor = if outcome.steps.is_some() { 0.0 } else { 1.0 };
+    let mut scenario = summarise(&setup.scenario, &outcome.trace, outcome.realtime_factor);
+    scenario.bound.violations = violations(setup, &outcome.trace);
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
@@ -149,7 +150,7 @@ fn device(setup: &Setup, outcome: &Outcome) -> DeviceFigures {
     DeviceFigures {
         frames: monitor.frames(),
         commands: in_run().count(),
-        restarts: monitor.restarts(),
+        restarts: monitor.restarts().iter().filter(|at| !setup.is_excused(outcome.time_of(**at))).count(),
         e2e_errors: monitor.e2e().filter(|(at, _)| !setup.is_excused(outcome.time_of(*at))).count(),
         refusals: monitor.refusals(),
         modes,
@@ -183,10 +184,10 @@ fn deviation(setup: &Setup, outcome: &Outcome) -> DeviationFigures {
 
 fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let monitor = &outcome.monitor;
-    let in_run = monitor.beats().iter().filter(|beat| outcome.time_of(beat.at) >= 0.0);
-    let latencies: Vec<i64> = in_run.filter_map(|beat| Some(beat.latency?.as_micros())).collect();
     let counts_from = |at_s: f64| at_s >= 0.0 && !setup.is_excused(at_s);
-    let missed = monitor.missed(setup.config.period).into_iter();
+    let judged = monitor.beats().iter().filter(|beat| counts_from(outcome.time_of(beat.at)));
+    let latencies: Vec<i64> = judged.filter_map(|beat| Some(beat.latency?.as_micros())).collect();
+    let missed = monitor.missed().into_iter();
     let missed = missed.filter(|(at, _)| counts_from(outcome.time_of(*at)) && outcome.steps.is_none());
     let counts = outcome.counts;
     Timing {
@@ -199,6 +200,26 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
             lateness: Spread::of(&outcome.lateness_us),
         },
     }
+}
+
+/// Ticks at which a target was outside its bound, but for the faults' aftermath: who is lied to, lies.
+fn violations(setup: &Setup, trace: &Trace) -> usize {
+    let is_judged = |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s));
+    let judged = |ticks: &Vec<Tick>| {
+        let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
+        ticks.iter().enumerate().map(target).collect()
+    };
+    let trace = Trace {
+        times_s: trace.times_s.clone(),
+        vehicles: trace.vehicles.iter().map(judged).collect(),
+        paper: Vec::new(),
+        measured: trace.measured,
+        refusals: Vec::new(),
+        channel: trace.channel.clone(),
+        log: Vec::new(),
+        turned_away: 0,
+    };
+    BoundFigures::of(&setup.scenario, &trace).violations
 }
 
 /// What the harness has to say against itself.
@@ -248,7 +269,7 @@ fn failed(
     if let Some(p99) = timing.latency.p99_ms.filter(|_| !deviation.lock_step) {
         limit(
             p99 <= LATENCY_P99_MS,
-            format!("late: commands after {p99:.1} ms in one of 100, of at most {LATENCY_P99_MS} ms"),
+            format!("late: commands {p99:.1} ms after the motion in one of 100, of at most {LATENCY_P99_MS} ms"),
         );
     }
     #[allow(clippy::cast_precision_loss)] // counts

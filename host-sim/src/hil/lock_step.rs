@@ -65,7 +65,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         sender: Sender::new(config.base_id),
         sequence: 0,
         twin: (Unit::new(config).map_err(io::Error::other)?, LockStep::new()),
-        monitor: Monitor::new(config.base_id),
+        monitor: Monitor::new(config.base_id, config.period),
         steps: Steps::default(),
         foreign: 0,
         bus_errors: 0,
@@ -80,6 +80,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³
     let time = |tick: i64| tick as f64 * scenario.period_s;
     let mut cut = bench.find(setup, time(-warm_up - 1), rig)?;
+    let begun = bench.talk.now();
     for tick in -warm_up..ticks {
         if cut.is_some() {
             break;
@@ -118,6 +119,9 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             progress(at_s);
         }
     }
+    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
+    let took_s = bench.talk.now().since(begun).as_micros() as f64 * 1e-6;
+    let realtime_factor = time(i64::try_from(trace.times_s.len()).unwrap_or(0)) / took_s.max(1e-6);
     rig.power(false)?;
     Ok(Outcome {
         trace: world.finish(trace)?,
@@ -130,6 +134,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         bus_errors: bench.bus_errors,
         origin: Instant::from_micros(0),
         faults: Vec::new(),
+        realtime_factor,
         cut,
     })
 }
@@ -217,7 +222,7 @@ impl<P: Port> Bench<P> {
                     Event::Received(frame) => match line_of(*base, &frame) {
                         Some(line) if line.sender == Node::Unit => {
                             if let Some(asked) = asked.take_if(|_| line.content == Content::Command) {
-                                monitor.input(asked);
+                                monitor.ask(asked);
                             }
                             monitor.hear(at, &frame);
                             answer.push_back((at, frame));

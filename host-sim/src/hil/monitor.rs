@@ -1,15 +1,18 @@
 //! What the device does, as it can be seen on the bus: its frames with their time stamps enter; its beat, its modes, what it
 //! refuses and how well its frames are protected leave.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use holdover::health::Refusal;
-use holdover::time::{Duration, Instant};
+use holdover::time::{Duration, Instant, Stamp};
 use holdover::wire::command::{Command, ModeCode};
 use holdover::wire::estimate::TargetEstimate;
-use holdover::wire::{BaseId, Message, Received, Receiver, Role};
+use holdover::wire::{BaseId, Message, Received, Receiver, Role, Said};
 
 use crate::bus::Frame;
+
+/// Motions that are remembered: a second of them.
+const INPUTS: usize = 100;
 
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +23,8 @@ pub struct Beat {
     pub mode: ModeCode,
     /// The count of periods.
     pub tick: u8,
-    /// How long after the vehicle's newest motion, if it is the first one after it.
+    /// How long after the motion of the vehicle that it rests on was on the bus, if the device says which one that is; in
+    /// lock step, how long after the step.
     pub latency: Option<Duration>,
 }
 
@@ -37,35 +41,49 @@ pub enum News {
 
 /// The observer of the device.
 pub struct Monitor {
+    period: Duration,
     receiver: Receiver<1>,
     beats: Vec<Beat>,
     /// Faults of the protection, with the time.
     e2e: Vec<(Instant, Refusal)>,
     /// What the device says that it refused.
     refusals: BTreeMap<&'static str, u32>,
-    newest_input: Option<Instant>,
+    /// The vehicle's motions that were last on the bus.
+    inputs: VecDeque<(Stamp, Instant)>,
+    /// When the last step was on the bus.
+    asked: Option<Instant>,
     frames: u64,
-    restarts: u32,
+    restarts: Vec<Instant>,
 }
 
 impl Monitor {
-    /// Of a device whose catalogue begins at `base`.
+    /// Of a device whose catalogue begins at `base`, and which ticks that often.
     #[must_use]
-    pub fn new(base: BaseId) -> Self {
+    pub fn new(base: BaseId, period: Duration) -> Self {
         Self {
+            period,
             receiver: Receiver::new(base, Role::Modem),
             beats: Vec::new(),
             e2e: Vec::new(),
             refusals: BTreeMap::new(),
-            newest_input: None,
+            inputs: VecDeque::new(),
+            asked: None,
             frames: 0,
-            restarts: 0,
+            restarts: Vec::new(),
         }
     }
 
-    /// The vehicle's motion was on the bus.
-    pub fn input(&mut self, at: Instant) {
-        self.newest_input = Some(at);
+    /// The vehicle's motion with that stamp was on the bus.
+    pub fn input(&mut self, at: Instant, stamp: Stamp) {
+        self.inputs.push_back((stamp, at));
+        if self.inputs.len() > INPUTS {
+            self.inputs.pop_front();
+        }
+    }
+
+    /// In lock step, a step was on the bus.
+    pub fn ask(&mut self, at: Instant) {
+        self.asked = Some(at);
     }
 
     /// A frame of the device was on the bus.
@@ -78,6 +96,14 @@ impl Monitor {
                 self.refusals.insert(status.cause.name(), status.count);
                 News::Other
             }
+            Ok(Received::Whole(Message::Own(Said::Motion(motion)))) => {
+                // It says which motion it has made its command from.
+                let input = self.inputs.iter().find(|(stamp, _)| *stamp == motion.stamp);
+                if let (Some((_, input)), Some(beat)) = (input, self.beats.last_mut()) {
+                    beat.latency = beat.latency.or(Some(beat.at.since(*input)));
+                }
+                News::Other
+            }
             Ok(_) => News::Other,
             Err(cause) => {
                 self.e2e.push((at, cause));
@@ -87,14 +113,20 @@ impl Monitor {
     }
 
     fn command(&mut self, at: Instant, command: Command) -> News {
-        // After a gap, a unit that goes on has the next number or, if frames were lost, one soon after it; one that has
-        // started anew has a small one.
+        // After a gap, a unit that goes on has the next number or one soon after it, or as many more as there were periods;
+        // one that has started anew has a small one.
         let is_new = self.beats.last().is_some_and(|last| {
-            let goes_on = (1..=4).contains(&(command.tick.wrapping_sub(last.tick) & 63));
-            at.since(last.at) > Duration::from_millis(30) && command.tick <= 8 && !goes_on
+            let gap = at.since(last.at);
+            let counted = i64::from(command.tick.wrapping_sub(last.tick) & 63);
+            let passed = (gap.as_micros() + self.period.as_micros() / 2).div_euclid(self.period.as_micros());
+            let off = (passed - counted).rem_euclid(64);
+            let goes_on = (1..=4).contains(&counted) || off <= 2 || off >= 62;
+            gap > self.period.times(3) && command.tick <= 8 && !goes_on
         });
-        self.restarts += u32::from(is_new);
-        let latency = self.newest_input.take().map(|input| at.since(input));
+        if is_new {
+            self.restarts.push(at);
+        }
+        let latency = self.asked.take().map(|asked| at.since(asked));
         self.beats.push(Beat { at, mode: command.mode, tick: command.tick, latency });
         News::Command(command, is_new)
     }
@@ -123,15 +155,16 @@ impl Monitor {
         self.frames
     }
 
-    /// How often it started anew.
+    /// When it started anew.
     #[must_use]
-    pub fn restarts(&self) -> u32 {
-        self.restarts
+    pub fn restarts(&self) -> &[Instant] {
+        &self.restarts
     }
 
     /// Periods in which it said nothing, each gap with the time of its end.
     #[must_use]
-    pub fn missed(&self, period: Duration) -> Vec<(Instant, i64)> {
+    pub fn missed(&self) -> Vec<(Instant, i64)> {
+        let period = self.period;
         let gap = |pair: &[Beat]| {
             let periods = pair[1].at.since(pair[0].at).as_micros() + period.as_micros() / 2;
             (pair[1].at, periods.div_euclid(period.as_micros()) - 1)
@@ -154,7 +187,10 @@ mod tests {
 
     impl Device {
         fn new() -> Self {
-            Self { sender: Sender::new(BaseId::DEFAULT), monitor: Monitor::new(BaseId::DEFAULT) }
+            Self {
+                sender: Sender::new(BaseId::DEFAULT),
+                monitor: Monitor::new(BaseId::DEFAULT, Duration::from_millis(10)),
+            }
         }
 
         fn command(&mut self, millis: u64, tick: u8) -> Vec<News> {
@@ -188,17 +224,15 @@ mod tests {
         for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7)] {
             device.command(millis, tick);
         }
-        let missed = device.monitor.missed(Duration::from_millis(10));
+        let missed = device.monitor.missed();
         assert_eq!(missed, [(Instant::from_micros(56_000), 3)]);
     }
 
     #[test]
-    fn latency_is_from_the_newest_motion_to_the_first_command_after_it() {
+    fn in_lock_step_latency_is_from_the_step_to_the_command() {
         let mut device = Device::new();
         device.command(0, 1);
-        for millis in [2, 3] {
-            device.monitor.input(Instant::from_micros(millis * 1000));
-        }
+        device.monitor.ask(Instant::from_micros(3000));
         device.command(10, 2);
         device.command(20, 3);
         let latencies: Vec<_> = device.monitor.beats().iter().map(|beat| beat.latency).collect();
@@ -206,17 +240,46 @@ mod tests {
     }
 
     #[test]
+    fn latency_is_from_the_motion_that_the_device_says_its_command_rests_on() {
+        use holdover::wire::motion::{Motion, WirePosition};
+        let mut device = Device::new();
+        for (millis, stamp) in [(2, 100), (12, 200), (22, 300)] {
+            device.monitor.input(Instant::from_micros(millis * 1000), Stamp::from_raw(stamp));
+        }
+        for (millis, tick) in [(15, 1), (25, 2)] {
+            device.command(millis, tick);
+            let motion = Motion {
+                tag: tick % 4,
+                position: WirePosition::default(),
+                speed: holdover::units::Speed::ZERO,
+                acceleration: Acceleration::ZERO,
+                demand: Acceleration::ZERO,
+                stamp: Stamp::from_raw(200),
+                position_accuracy: None,
+                speed_accuracy: None,
+                station: holdover::wire::StationHash(1),
+            };
+            let Device { sender, monitor } = &mut device;
+            let at = Instant::from_micros(millis * 1000 + 100);
+            let said = Message::Own(Said::Motion(motion));
+            let mut hear = |frame: &holdover::wire::Frame| assert_eq!(monitor.hear(at, &frame.into()), News::Other);
+            sender.send(&said, &mut |frame: holdover::wire::Frame| hear(&frame)).unwrap();
+        }
+        assert_eq!(device.monitor.beats().last().unwrap().latency, Some(Duration::from_millis(13)));
+    }
+
+    #[test]
     fn a_count_of_periods_that_begins_anew_after_a_gap_is_a_restart() {
         let mut device = Device::new();
-        for (millis, tick) in [(0, 62), (10, 63), (20, 0), (80, 1), (90, 60)] {
+        for (millis, tick) in [(0, 62), (10, 63), (20, 0), (80, 1), (90, 2), (750, 4), (760, 20)] {
             device.command(millis, tick);
         }
-        assert_eq!(device.monitor.restarts(), 0);
+        assert_eq!(device.monitor.restarts(), []);
         device.sender = Sender::new(BaseId::DEFAULT);
         for (millis, tick) in [(1000, 1), (1010, 2), (1020, 3), (1030, 4)] {
             device.command(millis, tick);
         }
         // A receiver needs some frames to trust the new counters.
-        assert_eq!(device.monitor.restarts(), 1);
+        assert_eq!(device.monitor.restarts().len(), 1);
     }
 }

@@ -67,6 +67,8 @@ pub struct Outcome {
     pub origin: Instant,
     /// The faults that were played, and why one could not be.
     pub faults: Vec<(Fault, Option<String>)>,
+    /// Seconds of the run per second.
+    pub realtime_factor: f64,
     /// Why it ended early.
     pub cut: Option<Cut>,
 }

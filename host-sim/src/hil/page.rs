@@ -95,5 +95,9 @@ fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
         return;
     }
     let latency = chart("latency", "ms", vec![line("command", latency, Tone::Ours)]);
-    page.figure("Latency", "From the vehicle's newest motion on the bus to the device's command.", &[&latency]);
+    page.figure(
+        "Latency",
+        "From the vehicle's motion on the bus to the device's command that rests on it.",
+        &[&latency],
+    );
 }

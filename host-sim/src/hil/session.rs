@@ -9,7 +9,9 @@ use std::io;
 
 use holdover::time::{Duration, Instant};
 use holdover::wire::BaseId;
+use holdover::wire::bits::Payload;
 use holdover::wire::catalogue::{About, Content, Node, Speaker};
+use holdover::wire::motion::Motion;
 use holdover::{Config, ConfigError};
 
 use super::deviation::Deviation;
@@ -18,7 +20,7 @@ use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
 use super::rig::Rig;
 use super::said::Said;
-use super::talk::{Talk, line_of};
+use super::talk::{Talk, line_of, payload};
 use super::twin::Twin;
 use super::villain::Villain;
 use crate::bus::memory::MemoryNode;
@@ -33,6 +35,8 @@ use crate::world::{Trace, World};
 const WARM_UP_S: f64 = 2.0;
 /// A device that is silent for longer, and not by a fault, has gone; in seconds.
 const GONE_S: f64 = 2.0;
+/// How long the echoes of the last frames are waited for.
+const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
 /// How long after a fault its effects are put down to it, in seconds.
 pub const AFTERMATH_S: f64 = 5.0;
 
@@ -75,6 +79,8 @@ pub(super) struct Ears {
     pub foreign: u64,
     pub bus_errors: u64,
     last_beat: Option<Instant>,
+    /// Of the vehicle's motion.
+    first_half: Payload,
 }
 
 impl Ears {
@@ -83,13 +89,14 @@ impl Ears {
             base: config.base_id,
             config: *config,
             seat,
-            monitor: Monitor::new(config.base_id),
+            monitor: Monitor::new(config.base_id, config.period),
             twin: Twin::new(config)?,
             told: None,
             deviation: Deviation::default(),
             foreign: 0,
             bus_errors: 0,
             last_beat: None,
+            first_half: Payload::EMPTY,
         })
     }
 
@@ -104,10 +111,13 @@ impl Ears {
     pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
         match event {
             Event::Sent(frame) => {
-                if line_of(self.base, &frame).map(|line| line.content)
-                    == Some(Content::Said(Speaker::Ego, About::MotionB))
-                {
-                    self.monitor.input(at);
+                match line_of(self.base, &frame).map(|line| line.content) {
+                    Some(Content::Said(Speaker::Ego, About::MotionA)) => self.first_half = payload(&frame),
+                    Some(Content::Said(Speaker::Ego, About::MotionB)) => {
+                        let motion = Motion::decode(&[self.first_half, payload(&frame)]);
+                        self.monitor.input(at, motion.stamp);
+                    }
+                    _ => {}
                 }
                 self.twin.hear(at, frame);
             }
@@ -220,8 +230,11 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         }
     }
     // What was sent last comes back.
-    let end = talk.now().plus(Duration::from_millis(50));
-    listen(&mut talk, &mut ears, &world, scenario.ego, end)?;
+    let end = talk.now().plus(ECHO_PATIENCE);
+    while talk.now() < end && !talk.counts().is_complete() {
+        let pause = talk.now().plus(Duration::from_millis(10));
+        listen(&mut talk, &mut ears, &world, scenario.ego, pause)?;
+    }
     villain.stop(rig);
     finished(world, trace, &talk, ears, lateness_us, villain.played(), cut)
 }
@@ -246,6 +259,7 @@ fn finished<P: Port>(
         bus_errors: ears.bus_errors,
         origin: talk.instant(0.0),
         faults,
+        realtime_factor: 1.0,
         cut,
     })
 }

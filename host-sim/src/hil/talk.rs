@@ -33,6 +33,14 @@ pub struct Counts {
     pub refused: u64,
 }
 
+impl Counts {
+    /// Whether nothing is on its way.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.sent <= self.confirmed + self.refused
+    }
+}
+
 /// The line of the catalogue that a frame stands on.
 #[must_use]
 pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
@@ -201,9 +209,7 @@ impl<P: Port> Talk<P> {
         let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload(frame)]) };
         let [dated] = follow_up.encode();
         let counter = frame.data().get(1).map_or(0, |byte| byte & 15);
-        let (Id::Standard(id), Some(line)) = (frame.id(), follow_up_line()) else {
-            return *frame;
-        };
+        let (Id::Standard(id), Some(line)) = (frame.id(), line_of(self.base, frame)) else { return *frame };
         let data = e2e::protect(dated.to_bytes(), catalogue::data_id(line.offset), counter);
         Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
     }
@@ -223,8 +229,4 @@ impl<P: Port> Talk<P> {
 /// The payload of a frame of 8 bytes; that of any other is empty.
 pub fn payload(frame: &Frame) -> Payload {
     frame.data().try_into().map_or(Payload::EMPTY, Payload::from_bytes)
-}
-/// The catalogue's line of the follow-up.
-fn follow_up_line() -> Option<&'static catalogue::Line> {
-    catalogue::CATALOGUE.iter().find(|line| line.content == Content::FollowUp)
 }

@@ -14,6 +14,8 @@ use crate::bus::Frame;
 use crate::bus::port::{BusError, Event, Port};
 use crate::ecu::Ecu;
 
+/// When its time begins.
+const START: Instant = Instant::from_micros(1_700_000_000_000_000);
 /// How long a frame is on its way.
 const TRANSIT: Duration = Duration::from_micros(100);
 
@@ -26,8 +28,10 @@ pub struct Behaviour {
     pub lock_step: bool,
     /// How long it takes to answer.
     pub latency: Duration,
-    /// How many ports' waits later than asked the harness is woken.
-    pub oversleep: Duration,
+    /// When the harness stands still, from the beginning of the bus's time on, and for how long.
+    pub stall: Option<(Duration, Duration)>,
+    /// When it dies for good, from the beginning of the bus's time on.
+    pub dies_after: Option<Duration>,
     /// Changes a frame of the device on its way out.
     pub garble: fn(Frame) -> Frame,
 }
@@ -37,7 +41,7 @@ impl Behaviour {
     #[must_use]
     pub fn good(config: Config, lock_step: bool) -> Self {
         let latency = Duration::from_micros(300);
-        Self { config, lock_step, latency, oversleep: Duration::ZERO, garble: |frame| frame }
+        Self { config, lock_step, latency, stall: None, dies_after: None, garble: |frame| frame }
     }
 }
 
@@ -69,7 +73,7 @@ pub struct VirtualRig {
 pub fn bench(behaviour: Behaviour) -> (VirtualPort, VirtualRig) {
     let device = Ecu::new(&behaviour.config, behaviour.lock_step).ok();
     let shared = Shared {
-        now: Instant::from_micros(1_700_000_000_000_000),
+        now: START,
         is_up: true,
         behaviour,
         device,
@@ -103,6 +107,9 @@ impl Shared {
 
     /// Lets the device do what it does up to then; the time is that of what it did, or `until`.
     fn advance(&mut self, until: Instant) {
+        if self.behaviour.dies_after.is_some_and(|after| self.now.since(START) > after) {
+            self.device = None;
+        }
         let answer = self.answers.front().map(|(at, _)| *at);
         let tick = self.device.as_ref().and_then(|device| (!self.behaviour.lock_step).then(|| device.wakes()));
         let tick = tick.map(|wakes| wakes.unwrap_or(self.now));
@@ -142,8 +149,14 @@ impl Port for VirtualPort {
     }
 
     fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>> {
-        let mut shared = self.shared.borrow_mut();
-        let until = until.plus(shared.behaviour.oversleep);
+        let shared = &mut *self.shared.borrow_mut();
+        let now = shared.now;
+        if let Some((_, length)) = shared.behaviour.stall.take_if(|(after, _)| now.since(START) > *after) {
+            let end = shared.now.plus(length);
+            while shared.now < end {
+                shared.advance(end);
+            }
+        }
         loop {
             let now = shared.now;
             if let Some(event) = shared.inboxes[self.index].pop_front_if(|(at, _)| *at <= now) {

@@ -1,0 +1,197 @@
+//! A real CAN interface: `scripts/hil.sh tests` runs these under a kernel that has `vcan0`.
+#![cfg(target_os = "linux")]
+
+use embedded_can::{ExtendedId, Frame as _, StandardId};
+use holdover::time::{Duration, Instant};
+use holdover_sim::bus::port::{BusError, Event, Port};
+use holdover_sim::bus::socketcan::SocketCan;
+use holdover_sim::bus::{self, Bus, Frame};
+use std::process::{Command, Output};
+
+fn open() -> SocketCan {
+    bus::open("vcan0").unwrap()
+}
+
+fn frame(id: u16, data: &[u8]) -> Frame {
+    Frame::standard(id, data).unwrap()
+}
+
+/// Everything that happens within that time.
+fn heard(port: &mut SocketCan, millis: i64) -> Vec<(Instant, Event)> {
+    let until = port.now().plus(Duration::from_millis(millis));
+    let mut events = Vec::new();
+    while port.now() < until {
+        events.extend(port.wait(until).unwrap());
+    }
+    events
+}
+
+fn events(port: &mut SocketCan) -> Vec<Event> {
+    heard(port, 50).into_iter().map(|(_, event)| event).collect()
+}
+
+fn shell(command: &str) -> Output {
+    Command::new("sh").args(["-c", command]).output().unwrap()
+}
+
+fn sim(arguments: &str) -> Output {
+    shell(&format!("{} {arguments}", env!("CARGO_BIN_EXE_holdover-sim")))
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn every_kind_of_frame_arrives_as_it_was_sent_and_its_sender_is_told() {
+    let (mut a, mut b) = (open(), open());
+    let frames = [
+        frame(0x123, &[1, 2, 3]),
+        frame(0x7FF, &[]),
+        Frame::extended(0x1234_5678, &[9; 8]).unwrap(),
+        Frame::new_remote(StandardId::new(5).unwrap(), 4).unwrap(),
+        Frame::new_remote(ExtendedId::new(0x10_0000).unwrap(), 0).unwrap(),
+    ];
+    for frame in frames {
+        Port::send(&mut a, frame).unwrap();
+    }
+    assert_eq!(a.awaited(), frames.len());
+    assert_eq!(events(&mut b), frames.map(Event::Received));
+    assert_eq!(events(&mut a), frames.map(Event::Sent));
+    assert_eq!(a.awaited(), 0);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_frame_has_the_kernels_time_of_arrival_and_not_that_of_reading() {
+    let (mut a, mut b) = (open(), open());
+    let before = a.now();
+    Port::send(&mut a, frame(1, &[])).unwrap();
+    let after = a.now();
+    std::thread::sleep(std::time::Duration::from_millis(60));
+    for port in [&mut a, &mut b] {
+        let (at, _) = heard(port, 1)[0];
+        assert!(before <= at && at.since(after) < Duration::from_millis(30), "{before:?} {at:?} {after:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_filter_passes_its_identifiers_of_any_length_and_kind() {
+    let (mut a, b) = (open(), open());
+    b.hear_only([0x480, 0x7F]).unwrap();
+    let mut b = b;
+    let remote = Frame::new_remote(StandardId::new(0x480).unwrap(), 8).unwrap();
+    let extended = Frame::extended(0x480, &[]).unwrap();
+    for frame in [frame(0x480, &[1]), remote, frame(0x481, &[1]), extended, frame(0x7F, &[2; 8])] {
+        Port::send(&mut a, frame).unwrap();
+    }
+    assert_eq!(events(&mut b), [frame(0x480, &[1]), remote, frame(0x7F, &[2; 8])].map(Event::Received));
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn an_error_frame_is_reported_as_one() {
+    let (mut a, mut b) = (open(), open());
+    a.send_error(BusError::BUS_OFF).unwrap();
+    shell("cansend vcan0 20000020#0000000000000000");
+    assert_eq!(events(&mut b), [BusError::BUS_OFF, BusError::NO_ACKNOWLEDGEMENT].map(Event::Error));
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn as_a_bus_it_gives_the_others_frames_up_to_a_time_and_not_the_own_ones() {
+    let (mut a, mut b) = (open(), open());
+    let start = a.now();
+    Bus::send(&mut a, start, frame(1, &[])).unwrap();
+    Bus::send(&mut b, start, frame(2, &[])).unwrap();
+    assert_eq!(b.receive(Instant::from_micros(0)).unwrap(), None);
+    let (at, received) = b.receive(b.now()).unwrap().unwrap();
+    assert_eq!((received, b.receive(b.now()).unwrap()), (frame(1, &[]), None));
+    assert!(start <= at);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn an_interface_that_goes_down_is_told_and_used_again_when_it_is_up() {
+    let mut a = open();
+    assert!(shell("ip link set vcan0 down").status.success());
+    let refused = bus::open("vcan0").unwrap_err().to_string();
+    assert_eq!(heard(&mut a, 5).iter().filter(|(_, event)| *event == Event::Down).count(), 1);
+    let unsent = Port::send(&mut a, frame(1, &[])).unwrap_err();
+    assert!(shell("ip link set vcan0 up").status.success());
+    assert_eq!(unsent.kind(), std::io::ErrorKind::NetworkDown);
+    assert_eq!(refused, "--bus: \"vcan0\" is down; as root: ip link set vcan0 up");
+    let mut b = open();
+    Port::send(&mut a, frame(2, &[])).unwrap();
+    assert_eq!(events(&mut b), [Event::Received(frame(2, &[]))]);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn what_cannot_be_opened_is_named_with_its_remedy() {
+    let absent = bus::open("vcan7").unwrap_err().to_string();
+    assert_eq!(
+        absent,
+        "--bus: there is no network interface \"vcan7\"; as root: modprobe vcan && ip link add dev vcan7 type vcan && ip \
+         link set vcan7 up"
+    );
+    assert_eq!(bus::open("lo").unwrap_err().to_string(), "--bus: \"lo\" is no CAN interface; name one, such as vcan0");
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_second_of_a_full_bus_is_lost_by_nobody_who_looks_away() {
+    let (mut a, mut b) = (open(), open());
+    for number in 0..4000u32 {
+        Port::send(&mut a, frame(0x100, &number.to_be_bytes())).unwrap();
+    }
+    let received = heard(&mut b, 500);
+    assert_eq!(received.len(), 4000);
+    assert!(received.is_sorted_by_key(|(at, _)| *at));
+    assert_eq!(heard(&mut a, 200).len(), 4000);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_recorded_log_replays_with_its_timing_for_can_utils_and_from_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (ours, again, theirs) = (path("ours.log"), path("again.log"), path("theirs.log"));
+    let sim = env!("CARGO_BIN_EXE_holdover-sim");
+    // A stranger's traffic, recorded by us; then replayed by us, recorded by candump.
+    shell(&format!(
+        "{sim} record --bus vcan0 --duration 4 -o {ours} & sleep 0.5; \
+         for byte in 01 02 03 04 05; do cansend vcan0 123#$byte; sleep 0.1; done; cansend vcan0 12345678#R; wait"
+    ));
+    let out = shell(&format!(
+        "candump -L -T 2000 vcan0 >{theirs} & sleep 0.3; {sim} replay {ours} --bus vcan0; wait; \
+         {sim} record --bus vcan0 --duration 4 -o {again} & sleep 0.5; canplayer -I {theirs}; wait"
+    ));
+    let frames = |log: &str| -> Vec<(f64, String)> {
+        let text = std::fs::read_to_string(log).unwrap();
+        let line = |line: &str| {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            (words[0].trim_matches(['(', ')']).parse().unwrap(), words[2].to_owned())
+        };
+        text.lines().map(line).collect()
+    };
+    let (ours, theirs, again) = (frames(&ours), frames(&theirs), frames(&again));
+    assert_eq!(ours.len(), 6, "{out:?}");
+    for log in [&theirs, &again] {
+        assert_eq!(
+            ours.iter().map(|(_, frame)| frame).collect::<Vec<_>>(),
+            log.iter().map(|(_, frame)| frame).collect::<Vec<_>>()
+        );
+        let span = |log: &[(f64, String)]| log[5].0 - log[0].0;
+        assert!((span(&ours) - span(log)).abs() < 0.1, "{} s and {} s", span(&ours), span(log));
+    }
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_command_without_its_interface_ends_with_exit_code_2() {
+    for command in ["record --bus vcan7", "ecu --bus vcan7", "hil --bus vcan7", "replay Cargo.toml --bus vcan7"] {
+        let output = sim(command);
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.starts_with("error: --bus: there is no network interface \"vcan7\"; "), "{said}");
+    }
+}
