@@ -43,7 +43,10 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
         let nominal_s = (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps;
         let mut generator = stream(seed, Purpose::Arrivals(u32::try_from(road).unwrap_or(u32::MAX)));
         let mut at_s = 0.0;
-        while plan.vehicles_per_min > 0.0 {
+        if plan.vehicles_per_min <= 0.0 {
+            continue;
+        }
+        loop {
             at_s += headway_s(corridor, plan.vehicles_per_min, &mut generator);
             if at_s >= corridor.duration_s {
                 break;
