@@ -35,6 +35,8 @@ pub struct MachineRig {
     interface: String,
     command: Option<String>,
     device: Option<Child>,
+    /// The command that switches the interface; how it ended shows when it is switched again.
+    switching: Option<Child>,
     villain: Option<Box<dyn Port>>,
 }
 
@@ -42,7 +44,7 @@ impl MachineRig {
     /// On that interface; a device that is a command is not started yet.
     #[must_use]
     pub fn new(interface: &str, command: Option<String>) -> Self {
-        Self { interface: interface.into(), command, device: None, villain: None }
+        Self { interface: interface.into(), command, device: None, switching: None, villain: None }
     }
 
     fn end(&mut self) -> io::Result<()> {
@@ -66,12 +68,13 @@ impl Rig for MachineRig {
     }
 
     fn interface(&mut self, up: bool) -> io::Result<()> {
+        let last = self.switching.take().map_or(Ok(()), finished);
         let state = if up { "up" } else { "down" };
-        let output = Command::new("ip").args(["link", "set", &self.interface, state]).output()?;
-        if output.status.success() {
-            return Ok(());
-        }
-        Err(io::Error::other(String::from_utf8_lossy(&output.stderr).trim().to_owned()))
+        let mut command = Command::new("ip");
+        command.args(["link", "set", &self.interface, state]).stdin(Stdio::null()).stderr(Stdio::piped());
+        // Nobody waits for it: that would make the harness late.
+        self.switching = Some(command.spawn()?);
+        last
     }
 
     fn villain(&mut self) -> io::Result<&mut dyn Port> {
@@ -96,8 +99,19 @@ impl Rig for MachineRig {
 
 impl Drop for MachineRig {
     fn drop(&mut self) {
-        let _ = self.end(); // nobody is left to be told
+        // Nobody is left to be told.
+        let _ = self.end();
+        let _ = self.switching.take().map(finished);
     }
+}
+
+/// What a command has to say against itself.
+fn finished(command: Child) -> io::Result<()> {
+    let output = command.wait_with_output()?;
+    if output.status.success() {
+        return Ok(());
+    }
+    Err(io::Error::other(String::from_utf8_lossy(&output.stderr).trim().to_owned()))
 }
 
 #[cfg(unix)]
