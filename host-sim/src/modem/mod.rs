@@ -31,6 +31,9 @@ pub const SLOT_REUSE_S: f64 = 2.0;
 /// second frame on, and a vehicle may fall silent before half a second has gone by.
 const NEWS: u8 = 4;
 
+/// A station that has not been relayed for longer than this has paused.
+const PAUSE_S: f64 = 0.45;
+
 /// Where a station said it was is forgotten after so long.
 const FORGOTTEN_S: f64 = 10.0;
 
@@ -107,6 +110,8 @@ struct Placed {
 pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
+    /// From when on a free slot may be used.
+    rested_s: Vec<f64>,
     places: Vec<Placed>,
     course: Course,
     turned_away: u64,
@@ -116,8 +121,8 @@ impl Relay {
     /// On a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        let (slots, places) = (vec![None; PEERS], Vec::new());
-        Self { sender: Sender::new(base), slots, places, course: Course::default(), turned_away: 0 }
+        let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
+        Self { sender: Sender::new(base), slots, rested_s, places, course: Course::default(), turned_away: 0 }
     }
 
     /// Lets it know the unit's way.
@@ -148,7 +153,10 @@ impl Relay {
             self.turned_away += 1;
             return;
         };
+        let says_where = message.route.is_some() || !self.course.is_on_route();
         match &mut self.slots[slot] {
+            // After a pause it has to say first where it is, or the unit would take it where it was.
+            Some(tenant) if !says_where && (tenant.relayed == 0 || at_s - tenant.relayed_s > PAUSE_S) => return,
             Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
                 tenant.relayed_s = at_s;
                 tenant.relayed = tenant.relayed.saturating_add(1).min(NEWS);
@@ -183,14 +191,33 @@ impl Relay {
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
+        if self.course.is_on_route() && !self.makes_room(rank, at_s) {
+            return None;
+        }
         let mut free = self.slots.iter().enumerate().filter(|(_, tenant)| tenant.is_none());
         let (slot, from_s) = match (free.next(), free.next()) {
             (Some(_), None) if rank > Rank::Followed && self.awaits() => return None,
-            (Some((free, _)), _) => (free, at_s),
+            (Some((free, _)), None) => (free, self.rested_s[free].max(at_s)),
+            (Some((one, _)), Some((other, _))) => {
+                let first = if self.rested_s[other] < self.rested_s[one] { other } else { one };
+                (first, self.rested_s[first].max(at_s))
+            }
             (None, _) => self.least_relevant(rank, at_s)?,
         };
         self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, intent: None });
         Some(slot)
+    }
+
+    /// On a route one slot is held in reserve and rests, so that whoever comes up near by is heard at once: the last free one is
+    /// taken only by a station that puts a less relevant one out of its slot. Whether there is room then.
+    fn makes_room(&mut self, rank: Rank, at_s: f64) -> bool {
+        if self.slots.iter().filter(|tenant| tenant.is_none()).count() != 1 {
+            return true;
+        }
+        let Some((slot, rested_s)) = self.least_relevant(rank, at_s) else { return false };
+        self.slots[slot] = None;
+        self.rested_s[slot] = rested_s;
+        true
     }
 
     /// Whether whom the unit follows has not been heard yet.
