@@ -42,15 +42,8 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
     for (road, (plan, lane)) in corridor.roads.iter().zip(&network.lanes).enumerate() {
         let nominal_s = (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps;
         let mut generator = stream(seed, Purpose::Arrivals(u32::try_from(road).unwrap_or(u32::MAX)));
-        let mut at_s = 0.0;
-        if plan.vehicles_per_min <= 0.0 {
-            continue;
-        }
-        loop {
-            at_s += headway_s(corridor, plan.vehicles_per_min, &mut generator);
-            if at_s >= corridor.duration_s {
-                break;
-            }
+        let mut at_s = next_s(corridor, plan.vehicles_per_min, 0.0, &mut generator);
+        while at_s < corridor.duration_s {
             // Everything is drawn for every vehicle, so that nothing depends on what another one turned out to be.
             let [pace, sort, dark, odometer] = [(); 4].map(|()| unit(&mut generator));
             let span = corridor.traffic.entry_speed_mps;
@@ -62,16 +55,20 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
                 dark_after_s: dark * nominal_s,
                 odometer_m: 10_000.0 * odometer,
             });
+            at_s = next_s(corridor, plan.vehicles_per_min, at_s, &mut generator);
         }
     }
     trips.sort_by(|a, b| a.at_s.total_cmp(&b.at_s).then(a.road.cmp(&b.road)));
     trips
 }
 
-/// Arrivals without memory, but for the least headway; the mean rate is the one that is asked for.
-fn headway_s(corridor: &Corridor, vehicles_per_min: f64, generator: &mut ChaCha8Rng) -> f64 {
+/// The next arrival, never without any. They are without memory, but for the least headway; the mean rate is the one asked for.
+fn next_s(corridor: &Corridor, vehicles_per_min: f64, last_s: f64, generator: &mut ChaCha8Rng) -> f64 {
+    if vehicles_per_min <= 0.0 {
+        return f64::INFINITY;
+    }
     let least_s = corridor.traffic.headway_s;
-    least_s - (60.0 / vehicles_per_min - least_s) * (1.0 - unit(generator)).ln()
+    last_s + least_s - (60.0 / vehicles_per_min - least_s) * (1.0 - unit(generator)).ln()
 }
 
 fn kind(corridor: &Corridor, share: f64) -> Kind {

@@ -92,6 +92,12 @@ impl Course {
         }
     }
 
+    /// Whether the unit is on a way through intersections.
+    #[must_use]
+    pub fn is_on_route(&self) -> bool {
+        !self.crossings.is_empty()
+    }
+
     /// Whom the unit says it follows.
     #[must_use]
     pub fn followed(&self) -> Option<StationHash> {

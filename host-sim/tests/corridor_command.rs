@@ -1,0 +1,108 @@
+//! `run corridor`: short runs of the real program against what it promises, its exit codes and its output.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn sim(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(arguments).output().expect("the program runs")
+}
+
+/// The corridor with arrivals of 20 s and whatever else is said.
+fn short(folder: &Path, edits: &[(&str, &str)]) -> String {
+    let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
+    let mut text = text.replacen("duration_s = 600.0", "duration_s = 20.0", 1);
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let file = folder.join("short.toml");
+    std::fs::write(&file, text).unwrap();
+    file.to_string_lossy().into_owned()
+}
+
+#[test]
+fn a_short_run_passes_and_the_same_seed_is_the_same_bytes_outside_timing() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &[]);
+    let run = || {
+        let output = sim(&["run", &file, "--json", "--no-report"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let mut results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert!(results["timing"]["wall_s"].as_f64().unwrap() > 0.0);
+        results.as_object_mut().unwrap().remove("timing");
+        results
+    };
+    let results = run();
+    let side = &results["holdover"];
+    assert!(side["served"].as_u64().unwrap() > 3, "{results}");
+    for key in ["unserved", "collisions_on_roads", "collisions_at_intersections", "bound_violations"] {
+        assert_eq!(side[key], 0, "{key}: {results}");
+    }
+    // Everyone is there under every condition.
+    for other in ["perfect_link", "alone", "envelope"] {
+        assert_eq!(
+            results[other]["served"].as_u64().unwrap() + results[other]["unserved"].as_u64().unwrap(),
+            side["served"].as_u64().unwrap()
+        );
+    }
+    assert!(side["position_error"]["max_m"].as_f64().unwrap() > 0.0);
+    assert_eq!(run(), results);
+}
+
+#[test]
+fn a_limit_that_is_missed_is_a_failed_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &[("position_error_m = 0.2 ", "position_error_m = 0.0001 ")]);
+    let output = sim(&["run", &file, "--no-report"]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("verdict: failed") && text.contains("position error"), "{text}");
+}
+
+#[test]
+fn the_list_names_what_can_be_run_by_name() {
+    let output = sim(&["run", "--list"]);
+    assert_eq!(output.status.code(), Some(0));
+    let list = String::from_utf8(output.stdout).unwrap();
+    let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(names, ["paper", "corridor", "motorway", "merge", "stop-and-go", "storm"]);
+    for name in names.into_iter().filter(|name| *name != "corridor") {
+        let output = sim(&["run", name, "--no-report", "--json"]);
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let line_of = |text: &str, edits: &[(&str, &str)]| {
+        let file = short(folder.path(), edits);
+        let lines = std::fs::read_to_string(&file).unwrap();
+        let line = 1 + lines.lines().position(|line| line.contains(text)).unwrap();
+        let output = sim(&["run", &file]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(&format!("short.toml:{line}: ")), "{error} (line {line})");
+        error
+    };
+    assert!(line_of("rnge_m", &[("range_m = 300.0", "rnge_m = 300.0")]).contains("write `range_m`"));
+    assert!(line_of("loss = 1.5", &[("loss = 0.1", "loss = 1.5")]).contains("from 0 to 1"));
+    assert!(
+        line_of("ego_road", &[("ego_road = \"2nd Street, northwest\"", "ego_road = \"1st\"")]).contains("name one of")
+    );
+    assert!(
+        line_of("vehicles_per_min = 25", &[("vehicles_per_min = 2.0", "vehicles_per_min = 25.0")])
+            .contains("headway_s")
+    );
+}
+
+#[test]
+fn options_of_a_string_are_not_for_a_corridor_nor_the_other_way_round() {
+    for arguments in [["run", "corridor", "--candump", "x.log"], ["run", "paper", "--seeds", "3"]] {
+        let output = sim(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+    let output = sim(&["sweep", "corridor"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("is a corridor"));
+}

@@ -1,0 +1,122 @@
+//! Whom a modem relays when more are heard than there are slots: a unit's way and what stations say of theirs enter; who is
+//! decoded on the unit's bus leaves.
+
+use holdover::time::Stamp;
+use holdover::units::{Acceleration, Distance, Speed};
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::route::Route;
+use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
+use holdover_sim::modem::{Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
+
+/// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
+const WAY: [(u8, f64); 3] = [(4, 180.0), (5, 380.0), (6, 580.0)];
+const OWN_LEG: u8 = 1;
+
+fn route(intersection: u8, leg: u8, metres: i32) -> Route {
+    let distance = Distance::from_mm(metres * 1000);
+    Route { tag: 0, intersection, leg, distance, stamp: Stamp::from_raw(7), arrival: 1, predecessor: Predecessor::None }
+}
+
+fn message(station: u8, route: Option<Route>) -> V2xMessage {
+    let motion = Motion {
+        tag: 0,
+        position: WirePosition::from_mm(0),
+        speed: Speed::ZERO,
+        acceleration: Acceleration::ZERO,
+        demand: Acceleration::ZERO,
+        stamp: Stamp::from_raw(7),
+        position_accuracy: None,
+        speed_accuracy: None,
+        station: StationHash(station),
+    };
+    V2xMessage { motion, intent: None, horizon: None, route }
+}
+
+/// A modem on the way to the first intersection, and what a unit makes of its frames.
+struct Bus {
+    relay: Relay,
+    receiver: Receiver<PEERS>,
+}
+
+impl Bus {
+    fn new() -> Self {
+        let mut relay = Relay::new(BaseId::DEFAULT);
+        relay.set_out(Course::through(WAY.to_vec()));
+        relay.take(&Said::Route(route(4, OWN_LEG, 100)));
+        Self { relay, receiver: Receiver::new(BaseId::DEFAULT, Role::Unit) }
+    }
+
+    /// Whether a station's message gets onto the bus, and whether its route was there before its motion.
+    fn hear(&mut self, at_s: f64, message: &V2xMessage) -> bool {
+        let mut frames = Vec::new();
+        self.relay.hear(at_s, message, &mut frames);
+        let mut was_placed = false;
+        for frame in &frames {
+            match self.receiver.receive(frame) {
+                Ok(Received::Whole(Message::Peer(_, Said::Route(_)))) => was_placed = true,
+                Ok(Received::Whole(Message::Peer(_, Said::Motion(_)))) => {
+                    assert!(was_placed || message.route.is_none(), "the unit places a motion by the route before it");
+                }
+                _ => {}
+            }
+        }
+        !frames.is_empty()
+    }
+}
+
+#[test]
+fn a_station_that_names_no_intersection_of_the_way_is_not_relayed() {
+    let mut bus = Bus::new();
+    assert!(!bus.hear(0.0, &message(1, Some(route(9, 0, 50)))));
+    assert!(!bus.hear(0.0, &message(2, None)));
+    assert!(bus.hear(0.0, &message(3, Some(route(5, 0, 50)))));
+    // It has long crossed, by another leg; on the own leg it is still the one ahead.
+    assert!(!bus.hear(0.0, &message(4, Some(route(4, 0, -60)))));
+    assert!(bus.hear(0.0, &message(5, Some(route(4, OWN_LEG, -60)))));
+}
+
+#[test]
+fn an_intersection_that_has_been_crossed_does_not_matter_any_more() {
+    let mut bus = Bus::new();
+    bus.relay.take(&Said::Route(route(5, OWN_LEG, 150)));
+    assert!(!bus.hear(0.0, &message(1, Some(route(4, 0, 50)))));
+    assert!(bus.hear(0.0, &message(2, Some(route(6, 0, 50)))));
+}
+
+#[test]
+fn a_more_relevant_station_is_heard_at_once_in_the_reserved_slot_and_a_less_relevant_one_never() {
+    let mut bus = Bus::new();
+    // All but the reserve go to stations at the next intersection but one.
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(5, 0, 10 * i32::from(station))))));
+    }
+    assert!(!bus.hear(0.0, &message(50, Some(route(6, 0, 20)))));
+    assert_eq!(bus.relay.turned_away(), 1);
+    assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 80)))));
+    let still_heard = (1..PEERS as u8)
+        .filter(|station| bus.hear(0.2, &message(*station, Some(route(5, 0, 10 * i32::from(*station))))));
+    assert_eq!(still_heard.count(), PEERS - 2);
+    // The slot of the one that was put out rests before another one gets it.
+    assert!(!bus.hear(0.3, &message(61, Some(route(4, 0, 70)))));
+    assert!(bus.hear(SLOT_REUSE_S + 0.1, &message(61, Some(route(4, 0, 70)))));
+}
+
+#[test]
+fn those_ahead_go_before_those_behind_and_the_nearest_first() {
+    let mut bus = Bus::new();
+    // Behind the own 100 m, at the same intersection.
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 110 + i32::from(station))))));
+    }
+    assert!(!bus.hear(0.1, &message(50, Some(route(4, 0, 170)))));
+    assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 20)))));
+}
+
+#[test]
+fn after_a_pause_a_station_says_first_where_it_is() {
+    let mut bus = Bus::new();
+    assert!(bus.hear(0.0, &message(1, Some(route(4, 0, 50)))));
+    assert!(bus.hear(0.1, &message(1, None)));
+    assert!(!bus.hear(1.0, &message(1, None)));
+    assert!(bus.hear(1.1, &message(1, Some(route(4, 0, 40)))));
+}
