@@ -32,7 +32,7 @@ pub struct HilArguments {
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub wait: f64,
 
-    /// Press a fault button: KIND[=VALUE]@START[:DURATION]; may be repeated
+    /// Press a fault button, such as power@5:1 (below); may be repeated
     #[arg(long, value_name = "FAULT")]
     pub fault: Vec<String>,
 
@@ -58,7 +58,7 @@ Examples:
   holdover-sim hil --bus vcan0 --lock-step --device 'holdover-sim ecu --bus vcan0 --lock-step'
   holdover-sim hil --bus vcan0 --device 'holdover-sim ecu --bus vcan0' --fault power@5:1
 
-Fault buttons (seconds of the run):
+Fault buttons, KIND[=VALUE]@START[:DURATION] in seconds of the run:
   power@5:1          cut the device's power for 1 s (needs --device)
   interface@5:1      take the interface down (needs root)
   babble@5:1         a node that takes all of the bus
