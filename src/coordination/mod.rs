@@ -323,6 +323,16 @@ impl<const PEERS: usize> Coordination<PEERS> {
         given_way.is_some()
     }
 
+    /// Another station has this slot now: what was decided of the one before it does not hold for it.
+    pub(crate) fn vacate(&mut self, index: usize) {
+        let keep = |held: Option<u8>| held.filter(|slot| usize::from(*slot) != index);
+        let Choice { target, order, lane, ahead } = self.choice;
+        self.choice = Choice { target: keep(target), order: keep(order), lane: keep(lane), ahead: ahead & !bit(index) };
+        if let Some(overlooked) = self.overlooked.get_mut(index) {
+            overlooked.clear();
+        }
+    }
+
     /// Chooses whom to follow, and takes note of who is ahead on the lane.
     pub(crate) fn choose(&mut self, target: Option<usize>, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());

@@ -70,6 +70,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return Err(Refusal::StationConflict);
         }
         let index = usize::from(slot.0);
+        if track.station().is_some_and(|station| station != motion.station) {
+            self.coordination.vacate(index);
+        }
         let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
         let (translated, moved) = axis.translate(motion);
         self.move_axis(index, moved);

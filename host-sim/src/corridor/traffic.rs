@@ -40,6 +40,9 @@ const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
 /// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
 const ENTRY_BRAKING_MPS2: f64 = 2.0;
 
+/// Nobody appears nearer than this behind a vehicle that is silent at that moment, in metres.
+const UNHEARD_M: f64 = 100.0;
+
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
 pub const RUN_OUT_M: f64 = 100.0;
 
@@ -238,7 +241,7 @@ impl<'a> Traffic<'a> {
         }
         for road in 0..self.waiting.len() {
             let Some(&index) = self.waiting[road].front() else { continue };
-            if self.has_room(&self.trips[index]) {
+            if self.has_room(at_s, &self.trips[index]) {
                 self.waiting[road].pop_front();
                 let traveller = self.appear(at_s, index)?;
                 self.travellers.insert(index, traveller);
@@ -247,12 +250,16 @@ impl<'a> Traffic<'a> {
         Ok(())
     }
 
-    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes.
-    fn has_room(&self, trip: &Trip) -> bool {
+    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and does not happen
+    /// to be silent near by. Who comes up behind somebody has long heard of it; one that appears out of nothing has not.
+    fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
+        if last.is_dark(at_s) && gap_m < UNHEARD_M {
+            return false;
+        }
         let (v, w) = (trip.speed_mps, last.vehicle.plant.speed_mps);
         let braking_m = ((v * v - w * w) / (2.0 * ENTRY_BRAKING_MPS2)).max(0.0);
         let traffic = &self.corridor.traffic;

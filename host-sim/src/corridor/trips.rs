@@ -35,6 +35,9 @@ impl Trip {
     }
 }
 
+/// A vehicle that appears has been on its way, and on the air, before; so its silence begins when it has been so for a while.
+const HEARD_S: f64 = 2.0;
+
 /// The trips, in the order of their arrival.
 #[must_use]
 pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
@@ -52,7 +55,7 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
                 at_s,
                 speed_mps: span.low + (span.high - span.low) * pace,
                 kind: kind(corridor, sort),
-                dark_after_s: dark * nominal_s,
+                dark_after_s: HEARD_S + dark * (nominal_s - HEARD_S).max(0.0),
                 odometer_m: 10_000.0 * odometer,
             });
             at_s = next_s(corridor, plan.vehicles_per_min, at_s, &mut generator);
