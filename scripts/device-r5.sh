@@ -40,7 +40,7 @@ here=$(dirname "$(realpath "$0")")
 
 if [ $# -gt 1 ]; then
     shift 2
-    [ $inside = true ] || exec "$here/vcan.sh" --real-time "${vcan[@]}" -- "$here/device-r5.sh" --inside --can "$can" "$image" -- "$@"
+    [ $inside = true ] || exec "$here/vcan.sh" --busy "${vcan[@]}" -- "$here/device-r5.sh" --inside --can "$can" "$image" -- "$@"
     "$here/device-r5.sh" --can "$can" "$image" &
     device=$!
     trap 'kill $device 2>/dev/null; wait' EXIT
