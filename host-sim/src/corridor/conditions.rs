@@ -14,7 +14,7 @@ use crate::world::horizon;
 pub enum WhenLost {
     /// What the unit does: it goes by its estimate.
     Holdover,
-    /// The vehicle drives alone, [`alone`].
+    /// The vehicle drives alone, [`alone`](super::alone).
     Alone,
 }
 

@@ -26,7 +26,7 @@ pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journ
         // Writing to a String cannot fail.
         let _ = writeln!(
             body,
-            "<text class=\"title\" x=\"0\" y=\"{:.0}\">{}</text>\n<g transform=\"translate(0 {:.0})\">{}</g>",
+            "<text class=\"heading\" x=\"0\" y=\"{:.0}\">{}</text>\n<g transform=\"translate(0 {:.0})\">{}</g>",
             top + 14.0,
             crate::report::markup::escape(&plot.title),
             top + TITLE,
@@ -36,7 +36,7 @@ pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journ
     }
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 0 {} {top:.0}\" role=\"img\">\n<style>{}\n\
-         .title{{font:600 15px system-ui,sans-serif;fill:currentColor}}</style>\n{body}</svg>\n",
+         .heading{{font:600 15px system-ui,sans-serif;fill:currentColor}}</style>\n{body}</svg>\n",
         Width::Wide.pixels() + 20.0,
         crate::report::markup::escape(STYLE)
     )

@@ -4,12 +4,12 @@
 //! *Slots:* a station keeps its slot while nobody takes it. One without a slot gets a free one. If there is none, it takes
 //! that of the least relevant station ([`Rank`]), if it is more relevant itself; or if it is as relevant and that station has
 //! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
-//! less relevant one, whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a silence. A slot that changes hands rests
-//! until nothing has been said in it for [`SLOT_REUSE_S`], because before that the unit takes the new station for a mistake.
-//! A station that cannot matter is not relayed even if there is room.
+//! less relevant one; whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a
+//! silence. A slot that changes hands rests until nothing has been said in it for [`SLOT_REUSE_S`], because before that the
+//! unit takes the new station for a mistake. A station that cannot matter is not relayed even if there is room.
 //!
-//! *Intents* are relayed with the first messages after a station got its slot, when they change, and otherwise every [`INTENT_EVERY_S`], so that
-//! eight peers fit the bus.
+//! *Intents* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
+//! every [`INTENT_EVERY_S`], so that eight peers fit the bus.
 
 use holdover::wire::horizon::Knots;
 use holdover::wire::intent::Intent;
@@ -27,7 +27,7 @@ pub const PEERS: usize = 8;
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
 
-/// An intent is relayed with each of the first messages in a slot but this one, because the unit trusts an identifier from its
+/// On a route an intent is relayed with each of the first messages in a slot but this one, because the unit trusts an identifier from its
 /// second frame on, and a vehicle may fall silent before half a second has gone by.
 const NEWS: u8 = 4;
 
@@ -261,8 +261,9 @@ impl Relay {
     }
 
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
+        let is_on_route = self.course.is_on_route();
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due = tenant.relayed < NEWS
+        let is_due = is_on_route && tenant.relayed < NEWS
             || tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
         if is_due {
             tenant.intent = Some((*intent, at_s));
