@@ -1,0 +1,74 @@
+//! The report of target motions: rows enter; a table and curves on a page leave, alone or in another command's report.
+
+use super::options::MotionsOptions;
+use super::rows::{MethodFigures, Row, Standing};
+use super::silence::NAMES;
+use super::table::standing;
+use crate::report::markup::{count, significant};
+use crate::report::page::{Cell, Page};
+use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
+
+const WHAT: &str = "A vehicle that has heard another one over the paper’s channel (delay Normal(40 ms, 25.9 ms), 10 % loss) \
+                    hears nothing for 4 s. Shown is how far from the truth its unit’s estimate is meanwhile, and what others \
+                    make of the same messages. The first two targets drive by their units and have said how; of the others a \
+                    driver does what nobody knew beforehand. Nothing can win there but by chance: a method that lets \
+                    accelerations fade loses less in a turn, one that holds them less in a long manoeuvre.";
+
+/// The page of `motions`.
+pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
+    let mut page = Page::new("holdover-sim · report of target motions", "What a target does in a silence");
+    section(&mut page, rows);
+    page.command(&options.command());
+    page.finish()
+}
+
+/// What the report says of it, for the page of any command.
+pub fn section(page: &mut Page, rows: &[Row]) {
+    page.paragraph(WHAT);
+    table(page, rows, "Rms of the position error in the silence, m", |figures| figures.rms_position_m);
+    table(page, rows, "Largest position error in the silence, m", |figures| figures.max_position_m);
+    for row in rows {
+        growth(page, row);
+    }
+}
+
+fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures) -> f64) {
+    let cells = |row: &Row| {
+        let best = row.methods.iter().map(figure).fold(f64::INFINITY, f64::min);
+        let method = |figures: &MethodFigures| {
+            let (value, text) = (figure(figures), significant(figure(figures), 3));
+            if value <= best { Cell::strong(text) } else { Cell::number(text) }
+        };
+        let standing = Cell::limit(row.standing.word(), row.standing != Standing::Loses);
+        let name = Cell::text(row.motion.to_string());
+        std::iter::once(name).chain(row.methods.iter().map(method)).chain([standing]).collect::<Vec<_>>()
+    };
+    let names = NAMES.map(|name| name.replace('_', " "));
+    let mut header = vec!["Target"];
+    header.extend(names.iter().map(String::as_str));
+    header.push("Holdover, by rms");
+    page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
+}
+
+/// Freezing is so far off that its line would flatten all others; it stands in the tables.
+fn growth(page: &mut Page, row: &Row) {
+    let line = |(index, method): (usize, &MethodFigures)| {
+        let tone = match method.name {
+            "holdover" => Tone::Ours,
+            "paper" => Tone::Paper,
+            _ => Tone::Other(index),
+        };
+        Layer::Line { series: Series::new(method.name.replace('_', " "), method.growth.clone()), tone, marked: false }
+    };
+    // Ours last, so that it lies on top.
+    let layers = row.methods.iter().enumerate().rev().filter(|(_, method)| method.name != "freeze").map(line).collect();
+    let axes = (Axis::linear("time since the silence began", "s"), Axis::linear("position error, rms", "m"));
+    let title = row.motion.to_string();
+    let caption = format!(
+        "Rms of the position error over the time that the silence has lasted, {} silences; {}.",
+        count(u64::from(row.silences)),
+        standing(row)
+    );
+    let chart = Chart { description: caption.clone(), layers, ..Chart::new(&title, axes.0, axes.1) };
+    page.figure(&title, &caption, &[&chart]);
+}
