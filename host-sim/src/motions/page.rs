@@ -10,9 +10,14 @@ use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
 
 const WHAT: &str = "A vehicle that has heard another one over the paper’s channel (delay Normal(40 ms, 25.9 ms), 10 % loss) \
                     hears nothing for 4 s. Shown is how far from the truth its unit’s estimate is meanwhile, and what others \
-                    make of the same messages. The first two targets drive by their units and have said how; of the others a \
-                    driver does what nobody knew beforehand. Nothing can win there but by chance: a method that lets \
-                    accelerations fade loses less in a turn, one that holds them less in a long manoeuvre.";
+                    make of the same messages. The first two targets drive by their units and have said how. What a driver \
+                    will do nobody says, so with the other three the only question is whose guess happens to suit: where \
+                    the braking begins inside the silence, all predict the same.";
+
+const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the wish of a driver who has published none. That is the very \
+                         speed that these drivers start from, and about which the sine goes up and down: the luckiest case \
+                         for the paper. The consensus law of platoon simulators moves the message that came last on by its \
+                         age times its speed; that differs from a constant speed only where the last message was overtaken.";
 
 /// The page of `motions`.
 pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
@@ -27,6 +32,7 @@ pub fn section(page: &mut Page, rows: &[Row]) {
     page.paragraph(WHAT);
     table(page, rows, "Rms of the position error in the silence, m", |figures| figures.rms_position_m);
     table(page, rows, "Largest position error in the silence, m", |figures| figures.max_position_m);
+    page.paragraph(OF_OTHERS);
     for row in rows {
         growth(page, row);
     }
