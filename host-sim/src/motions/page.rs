@@ -38,22 +38,27 @@ pub fn section(page: &mut Page, rows: &[Row]) {
     }
 }
 
+/// A row for each method; what is least of a motion is strong.
 fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures) -> f64) {
-    let cells = |row: &Row| {
-        let best = row.methods.iter().map(figure).fold(f64::INFINITY, f64::min);
-        let method = |figures: &MethodFigures| {
-            let (value, text) = (figure(figures), significant(figure(figures), 3));
-            if value <= best { Cell::strong(text) } else { Cell::number(text) }
+    let spelled = |figures: &MethodFigures| significant(figure(figures), 3);
+    let least = |row: &Row| row.methods.iter().min_by(|a, b| figure(a).total_cmp(&figure(b))).map(spelled);
+    let least: Vec<Option<String>> = rows.iter().map(least).collect();
+    let of_method = |(index, name): (usize, &str)| {
+        let cell = |(row, least): (&Row, &Option<String>)| {
+            let text = row.methods.get(index).map(spelled);
+            let is_least = text == *least;
+            let text = text.unwrap_or_default();
+            if is_least { Cell::strong(text) } else { Cell::number(text) }
         };
-        let standing = Cell::limit(row.standing.word(), row.standing != Standing::Loses);
-        let name = Cell::text(row.motion.to_string());
-        std::iter::once(name).chain(row.methods.iter().map(method)).chain([standing]).collect::<Vec<_>>()
+        let name = Cell::text(name.replace('_', " "));
+        std::iter::once(name).chain(rows.iter().zip(&least).map(cell)).collect::<Vec<_>>()
     };
-    let names = NAMES.map(|name| name.replace('_', " "));
-    let mut header = vec!["Target"];
-    header.extend(names.iter().map(String::as_str));
-    header.push("Holdover, by rms");
-    page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
+    let mut lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
+    let standing = |row: &Row| Cell::limit(row.standing.word(), row.standing != Standing::Loses);
+    lines.push(std::iter::once(Cell::text("holdover, by rms")).chain(rows.iter().map(standing)).collect());
+    let motions: Vec<String> = rows.iter().map(|row| row.motion.to_string()).collect();
+    let header: Vec<&str> = std::iter::once("").chain(motions.iter().map(String::as_str)).collect();
+    page.table(caption, &header, &lines);
 }
 
 /// Freezing is so far off that its line would flatten all others; it stands in the tables.

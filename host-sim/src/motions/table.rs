@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::rows::{Row, Standing};
+use crate::report::markup::significant;
 
 /// The table.
 #[must_use]
@@ -32,6 +33,6 @@ pub fn text(rows: &[Row]) -> String {
 #[must_use]
 pub fn standing(row: &Row) -> String {
     let published = if row.published { "published" } else { "not published" };
-    let (word, ratio, best) = (row.standing.word(), row.ours_over_best, row.best_baseline);
-    format!("{published}; holdover {word}, {ratio:.2} times the rms of {best}")
+    let (word, ratio, best) = (row.standing.word(), significant(row.ours_over_best, 3), row.best_baseline);
+    format!("{published}; holdover {word}, {ratio} times the rms of {best}")
 }
