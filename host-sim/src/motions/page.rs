@@ -1,7 +1,7 @@
 //! The report of target motions: rows enter; a table and curves on a page leave, alone or in another command's report.
 
 use super::options::MotionsOptions;
-use super::rows::{MethodFigures, Row, Standing};
+use super::rows::{MethodFigures, Row};
 use super::silence::NAMES;
 use super::table::standing;
 use crate::report::markup::{count, significant};
@@ -32,6 +32,7 @@ pub fn section(page: &mut Page, rows: &[Row]) {
     page.paragraph(WHAT);
     table(page, rows, "Rms of the position error in the silence, m", |figures| figures.rms_position_m);
     table(page, rows, "Largest position error in the silence, m", |figures| figures.max_position_m);
+    page.list(&rows.iter().map(|row| format!("{}: {}.", row.motion, standing(row))).collect::<Vec<_>>());
     page.paragraph(OF_OTHERS);
     for row in rows {
         growth(page, row);
@@ -53,10 +54,9 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
         let name = Cell::text(name.replace('_', " "));
         std::iter::once(name).chain(rows.iter().zip(&least).map(cell)).collect::<Vec<_>>()
     };
-    let mut lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
-    let standing = |row: &Row| Cell::limit(row.standing.word(), row.standing != Standing::Loses);
-    lines.push(std::iter::once(Cell::text("holdover, by rms")).chain(rows.iter().map(standing)).collect());
-    let motions: Vec<String> = rows.iter().map(|row| row.motion.to_string()).collect();
+    let lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
+    let first_words = |row: &Row| row.motion.to_string().split(',').next().unwrap_or_default().to_owned();
+    let motions: Vec<String> = rows.iter().map(first_words).collect();
     let header: Vec<&str> = std::iter::once("").chain(motions.iter().map(String::as_str)).collect();
     page.table(caption, &header, &lines);
 }
