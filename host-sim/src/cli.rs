@@ -6,6 +6,7 @@ use crate::ecu::{self, arguments::EcuArguments};
 use crate::evaluate::{self, arguments::EvaluateArguments};
 use crate::gains::{self, arguments::GainsArguments};
 use crate::hil::{self, arguments::HilArguments};
+use crate::motions::{self, arguments::MotionsArguments};
 use crate::price::{self, arguments::PriceArguments};
 use crate::replay::{self, arguments::ReplayArguments};
 use crate::string::{self, arguments::StringArguments};
@@ -51,6 +52,9 @@ pub enum Command {
     /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
     #[command(after_help = string::arguments::AFTER_HELP)]
     String(StringArguments),
+    /// Measure the estimate of a target in a silence over five motions, beside seven other methods, on all cores
+    #[command(after_help = motions::arguments::AFTER_HELP)]
+    Motions(MotionsArguments),
     /// Give a unit the traffic of a recorded CAN bus and print what it sends, or put that traffic on a bus
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),

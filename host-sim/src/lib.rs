@@ -19,6 +19,7 @@ pub mod hil;
 pub mod library;
 pub mod metrics;
 pub mod modem;
+pub mod motions;
 pub mod observer;
 pub mod options;
 pub mod output;

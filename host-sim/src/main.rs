@@ -4,7 +4,8 @@ use clap::Parser;
 use holdover_sim::cli::Cli;
 use holdover_sim::options::Options;
 use holdover_sim::verdict::Verdict;
-use holdover_sim::{capture, corridor, ecu, evaluate, gains, hil, library, output, price, replay, run, string, sweep};
+use holdover_sim::{capture, corridor, ecu, evaluate, gains, hil, library, motions, output, price, replay, run};
+use holdover_sim::{string, sweep};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -16,6 +17,7 @@ fn main() -> ExitCode {
         Options::Sweep(options) => sweep::sweep(&options),
         Options::Gains(options) => gains::gains(&options),
         Options::String(options) => string::string(&options),
+        Options::Motions(options) => motions::motions(&options),
         Options::Price(options) => price::price(&options),
         Options::Replay(options) => replay::replay(&options),
         Options::Record(options) => capture::capture(&options),

@@ -10,6 +10,7 @@ use crate::evaluate::options::EvaluateOptions;
 use crate::gains::GainsOptions;
 use crate::hil::options::HilOptions;
 use crate::library;
+use crate::motions::options::MotionsOptions;
 use crate::price::options::PriceOptions;
 use crate::replay::options::ReplayOptions;
 use crate::scenario::{Overrides, Scenario};
@@ -36,6 +37,8 @@ pub enum Options {
     Gains(GainsOptions),
     /// Measure string stability.
     String(StringOptions),
+    /// Measure the estimate over target motions.
+    Motions(MotionsOptions),
     /// Replay a log.
     Replay(ReplayOptions),
     /// Record an interface.
@@ -87,6 +90,7 @@ impl Options {
             Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
             Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
+            Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),

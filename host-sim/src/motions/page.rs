@@ -1,0 +1,85 @@
+//! The report of target motions: rows enter; a table and curves on a page leave, alone or in another command's report.
+
+use super::options::MotionsOptions;
+use super::rows::{MethodFigures, Row};
+use super::silence::NAMES;
+use super::table::standing;
+use crate::report::markup::{count, significant};
+use crate::report::page::{Cell, Page};
+use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
+
+const WHAT: &str = "A vehicle that has heard another one over the paper’s channel (delay Normal(40 ms, 25.9 ms), 10 % loss) \
+                    hears nothing for 4 s. Shown is how far from the truth its unit’s estimate is meanwhile, and what others \
+                    make of the same messages. The first two targets drive by their units and have said how. What a driver \
+                    will do nobody says, so with the other three the only question is whose guess happens to suit: where \
+                    the braking begins inside the silence, all predict the same.";
+
+const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the wish of a driver who has published none. That is the very \
+                         speed that these drivers start from, and about which the sine goes up and down: the luckiest case \
+                         for the paper. The consensus law of platoon simulators moves the message that came last on by its \
+                         age times its speed; that differs from a constant speed only where the last message was overtaken.";
+
+/// The page of `motions`.
+pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
+    let mut page = Page::new("holdover-sim · report of target motions", "What a target does in a silence");
+    section(&mut page, rows);
+    page.command(&options.command());
+    page.finish()
+}
+
+/// What the report says of it, for the page of any command.
+pub fn section(page: &mut Page, rows: &[Row]) {
+    page.paragraph(WHAT);
+    table(page, rows, "Rms of the position error in the silence, m", |figures| figures.rms_position_m);
+    table(page, rows, "Largest position error in the silence, m", |figures| figures.max_position_m);
+    page.list(&rows.iter().map(|row| format!("{}: {}.", row.motion, standing(row))).collect::<Vec<_>>());
+    page.paragraph(OF_OTHERS);
+    for row in rows {
+        growth(page, row);
+    }
+}
+
+/// A row for each method; what is least of a motion is strong.
+fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures) -> f64) {
+    let spelled = |figures: &MethodFigures| significant(figure(figures), 3);
+    let least = |row: &Row| row.methods.iter().min_by(|a, b| figure(a).total_cmp(&figure(b))).map(spelled);
+    let least: Vec<Option<String>> = rows.iter().map(least).collect();
+    let of_method = |(index, name): (usize, &str)| {
+        let cell = |(row, least): (&Row, &Option<String>)| {
+            let text = row.methods.get(index).map(spelled);
+            let is_least = text == *least;
+            let text = text.unwrap_or_default();
+            if is_least { Cell::strong(text) } else { Cell::number(text) }
+        };
+        let name = Cell::text(name.replace('_', " "));
+        std::iter::once(name).chain(rows.iter().zip(&least).map(cell)).collect::<Vec<_>>()
+    };
+    let lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
+    let first_words = |row: &Row| row.motion.to_string().split(',').next().unwrap_or_default().to_owned();
+    let motions: Vec<String> = rows.iter().map(first_words).collect();
+    let header: Vec<&str> = std::iter::once("").chain(motions.iter().map(String::as_str)).collect();
+    page.table(caption, &header, &lines);
+}
+
+/// Freezing is so far off that its line would flatten all others; it stands in the tables.
+fn growth(page: &mut Page, row: &Row) {
+    let line = |(index, method): (usize, &MethodFigures)| {
+        let tone = match method.name {
+            "holdover" => Tone::Ours,
+            "paper" => Tone::Paper,
+            _ => Tone::Other(index),
+        };
+        Layer::Line { series: Series::new(method.name.replace('_', " "), method.growth.clone()), tone, marked: false }
+    };
+    // Ours last, so that it lies on top.
+    let layers = row.methods.iter().enumerate().rev().filter(|(_, method)| method.name != "freeze").map(line).collect();
+    let axes = (Axis::linear("time since the silence began", "s"), Axis::linear("position error, rms", "m"));
+    let title = row.motion.to_string();
+    let caption = format!(
+        "Rms of the position error over the time that the silence has lasted, {} silences; {}.",
+        count(u64::from(row.silences)),
+        standing(row)
+    );
+    let chart = Chart { description: caption.clone(), layers, ..Chart::new(&title, axes.0, axes.1) };
+    page.figure(&title, &caption, &[&chart]);
+}

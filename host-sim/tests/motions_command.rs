@@ -1,0 +1,111 @@
+//! What `motions` measures, prints and writes.
+
+use std::process::{Command, Output};
+use std::sync::LazyLock;
+
+use holdover_sim::motions::motion::TargetMotion;
+use holdover_sim::motions::rows::{self, MethodFigures, Row, Standing};
+use holdover_sim::motions::table;
+use serde_json::Value;
+
+static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| rows::run(1, 10, || {}).unwrap());
+
+fn row(motion: TargetMotion) -> &'static Row {
+    ROWS.iter().find(|row| row.motion == motion).unwrap()
+}
+
+fn method(motion: TargetMotion, name: &str) -> &'static MethodFigures {
+    row(motion).methods.iter().find(|method| method.name == name).unwrap()
+}
+
+fn motions(arguments: &str, threads: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
+        .env("RAYON_NUM_THREADS", threads)
+        .arg("motions")
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn every_silence_is_compared_every_10_ms() {
+    assert_eq!(ROWS.iter().map(|row| row.motion).collect::<Vec<_>>(), TargetMotion::ALL);
+    for row in &*ROWS {
+        assert_eq!((row.silences, row.comparisons, row.methods.len()), (10, 4000, 8), "{}", row.motion);
+        assert!(row.methods.iter().all(|method| method.growth.len() == 16));
+    }
+}
+
+#[test]
+fn a_target_that_has_said_how_it_drives_is_known_within_2_cm_for_4_s() {
+    for motion in [TargetMotion::FreeAcceleration, TargetMotion::SlotFollowing] {
+        let ours = method(motion, "holdover");
+        assert!(ours.max_position_m < 0.02, "{motion}: {}", ours.max_position_m);
+        assert_eq!(row(motion).standing, Standing::Wins, "{motion}");
+    }
+}
+
+#[test]
+fn of_a_braking_that_begins_in_the_silence_nobody_knows() {
+    // At the last tick of the silence that braking began in first: what it took off the way at the speed before.
+    let soft_m = 0.5 * 2.0 * (3.99_f64 - 0.2).powi(2);
+    let hard_m = 13.4 * (3.99 - 0.1) - 13.4 * 13.4 / (2.0 * 5.0);
+    for (motion, missed_m) in [(TargetMotion::Braking, soft_m), (TargetMotion::HardBraking, hard_m)] {
+        assert_eq!(row(motion).standing, Standing::Draws, "{motion}");
+        for name in ["holdover", "constant_speed", "constant_acceleration", "singer", "kalman", "paper", "consensus"] {
+            let max_m = method(motion, name).max_position_m;
+            assert!((max_m - missed_m).abs() < 0.02, "{motion}, {name}: {max_m} instead of {missed_m}");
+        }
+    }
+}
+
+#[test]
+fn the_table_says_where_ours_loses() {
+    assert_eq!(row(TargetMotion::Sine).standing, Standing::Loses);
+    let text = table::text(&ROWS);
+    let last = text.lines().last().unwrap();
+    assert_eq!(last, format!("holdover loses: {}", TargetMotion::Sine));
+    assert!(text.contains(&format!("{}: not published; holdover loses", TargetMotion::Sine)));
+}
+
+#[test]
+fn the_json_is_the_same_on_any_number_of_threads() {
+    let outputs = ["1", "3"].map(|threads| motions("--silences 3 --json --no-report", threads));
+    assert_eq!(outputs[0].status.code(), Some(0));
+    assert_eq!(outputs[0].stdout, outputs[1].stdout);
+    let results: Value = serde_json::from_slice(&outputs[0].stdout).unwrap();
+    let rows = results["rows"].as_array().unwrap();
+    let keys: Vec<&str> = rows.iter().map(|row| row["motion"].as_str().unwrap()).collect();
+    assert_eq!(keys, ["free_acceleration", "slot_following", "sine", "braking_2", "braking_5"]);
+    let other = motions("--silences 3 --seed 9 --json --no-report", "2");
+    assert_ne!(other.stdout, outputs[0].stdout);
+}
+
+#[test]
+fn the_report_has_a_curve_for_each_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = motions(&format!("--silences 1 --out {}", folder.path().display()), "2");
+    assert_eq!(output.status.code(), Some(0));
+    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
+    let document = roxmltree::Document::parse_with_options(
+        &page,
+        roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() },
+    );
+    let document = document.unwrap();
+    assert_eq!(
+        document.descendants().filter(|node| node.has_tag_name(("http://www.w3.org/1999/xhtml", "figure"))).count(),
+        5
+    );
+    assert!(page.contains("holdover-sim motions --silences 1 --seed 1"));
+}
+
+#[test]
+fn impossible_numbers_are_bad_input_with_a_remedy() {
+    for (arguments, says) in [("--silences 0", "from 1 to 1000"), ("--seed 18446744073709551615", "smaller first seed")]
+    {
+        let output = motions(&format!("{arguments} --no-report"), "1");
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(error.contains(says) && error.trim_end().lines().count() == 1, "{error}");
+    }
+}
