@@ -24,12 +24,9 @@ pub const BRAKING_MAX: Acceleration = Acceleration::from_mm_per_s2(6000);
 /// {0.5, 1, 1.5, 2, 3} s on recorded car drives.
 pub const FADE: Duration = Duration::from_millis(2000);
 
-/// Length taken for a vehicle that does not say its own (a car).
+/// Length taken for a vehicle that does not say its own (a car), by the gate too: an intent comes later than the first motion,
+/// and to expect a lorry of 18.75 m until then is to brake hard at every association.
 pub const DEFAULT_LENGTH: Distance = Distance::from_mm(4800);
-
-/// Length that the gate and the fallback expect of a vehicle that does not say its own: that of the longest ordinary one, a lorry
-/// with a trailer (18.75 m in Directive 96/53/EC). The law of eq. 5 takes [`DEFAULT_LENGTH`] instead.
-pub const UNPUBLISHED_LENGTH: Distance = Distance::from_mm(18_750);
 
 /// Farther away than this a peer has nothing to do with the unit: V2X does not reach it, and a horizon's positions,
 /// which are modulo 4096 m, stay unambiguous.

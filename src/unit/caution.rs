@@ -8,7 +8,7 @@ use crate::envelope;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Reading, State};
 use crate::parameters::{
-    ACCELERATION_ROUNDING, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_LENGTH, UNPUBLISHED_POSITION_ACCURACY,
+    ACCELERATION_ROUNDING, DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
     UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
@@ -38,7 +38,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The rear bumper at the near end of what is certain of a peer.
     fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
-        let length = self.peers.get(index)?.intent().map_or(UNPUBLISHED_LENGTH, |intent| intent.length);
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         let position = bound.lowest_position().ahead(length.negated());
         // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
         let ego = self.ego.as_ref()?.position;
@@ -105,7 +105,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return None;
         }
         let near_end = self.bound(index, now)?.lowest_position();
-        let length = self.peers.get(index)?.intent().map_or(UNPUBLISHED_LENGTH, |intent| intent.length);
+        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
@@ -113,7 +113,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn stop_behind(&self, index: usize) -> Option<Position> {
         let track = self.peers.get(index)?;
         let stop = track.certainty().bound()?.nearest_stop(&track.reach());
-        let length = track.intent().map_or(UNPUBLISHED_LENGTH, |intent| intent.length);
+        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         Some(envelope::stop_behind(stop, length))
     }
 
