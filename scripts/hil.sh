@@ -95,6 +95,20 @@ conclude() {
     return 3
 }
 
+# conclude_emulated COMMAND...: the same for an emulated device in real time. Where its emulator gets no processor for some
+# 50 ms the device is late, and nothing tells that from a device that is late by itself. So it has five attempts at a whole run
+# that passes; a fault of its own fails all five, and lock step, where time does not matter, has none to spare.
+conclude_emulated() {
+    local attempt code
+    for attempt in 1 2 3 4 5; do
+        code=0
+        "$@" || code=$?
+        [ "$code" = 1 ] || [ "$code" = 3 ] || return "$code"
+        echo "not passed in real time, attempt $attempt of 5 (exit code $code)"
+    done
+    return "$code"
+}
+
 check_ecu() {
     local mode
     for mode in '' --lock-step; do
@@ -110,7 +124,7 @@ check_m4() {
     images $target
     echo "-- an emulated Cortex-M4F over slcan, real time"
     judge slcan0
-    conclude scripts/device-m4.sh "$work/$target-real-time" -- "${harness[@]}"
+    conclude_emulated scripts/device-m4.sh "$work/$target-real-time" -- "${harness[@]}"
     echo "-- an emulated Cortex-M4F over slcan, lock step"
     judge slcan0 --lock-step
     conclude scripts/device-m4.sh "$work/$target-lock-step" -- "${harness[@]}"
@@ -122,7 +136,7 @@ check_r5() {
     images $target
     echo "-- an emulated Cortex-R5F with a CAN controller on vcan0, real time"
     judge vcan0
-    conclude scripts/device-r5.sh "$work/$target-real-time" -- "${harness[@]}"
+    conclude_emulated scripts/device-r5.sh "$work/$target-real-time" -- "${harness[@]}"
     echo "-- an emulated Cortex-R5F with a CAN controller on vcan0, lock step"
     judge vcan0 --lock-step
     conclude scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
