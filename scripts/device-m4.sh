@@ -22,7 +22,7 @@ if [ "${1:-}" = --inside ]; then
     shift
     slcand -F -o -c -s8 "$VCAN_SERIAL0" slcan0 >&2 &
     trap 'kill $! && wait' EXIT
-    for _ in $(seq 300); do # a machine that reads it from a slow disk takes seconds [ -e /sys/class/net/slcan0 ] && break || sleep 0.1; done
+    for _ in $(seq 300); do [ -e /sys/class/net/slcan0 ] && break || sleep 0.1; done
     ip link set slcan0 txqueuelen 1000 up
     # Half a line that was under way when the line was opened ends with the first frame. A unit in lock step says nothing
     # of itself, and a silent device is for the command to find.
@@ -60,7 +60,7 @@ qemu=$!
 trap 'kill $qemu 2>/dev/null; wait; rm -f "$words"' EXIT
 # QEMU says which pseudo-terminal it is.
 line=
-for _ in $(seq 300); do # a machine that reads it from a slow disk takes seconds
+for _ in $(seq 300); do
     line=$(sed -n 's/^char device redirected to \([^ ]*\).*/\1/p' "$words")
     [ -n "$line" ] && break || sleep 0.1
 done
