@@ -95,18 +95,19 @@ conclude() {
     return 3
 }
 
-# conclude_emulated COMMAND...: the same for an emulated device in real time. Where its emulator gets no processor for some
-# 50 ms the device is late, and nothing tells that from a device that is late by itself. So it has five attempts at a whole run
-# that passes; a fault of its own fails all five, and lock step, where time does not matter, has none to spare.
+# conclude_emulated COMMAND...: an emulated device in real time. An emulator that gets no processor for some 50 ms makes its
+# device late, and nothing tells that from a device that is late by itself. So the verdict of real time is said, as loudly as
+# can be, and does not decide: what decides on an emulated device is lock step, where time does not matter, and on real time
+# the unit as a process. Anything but a verdict is a failure all the same.
 conclude_emulated() {
     local attempt code
-    for attempt in 1 2 3 4 5; do
+    for attempt in 1 2 3; do
         code=0
         "$@" || code=$?
         [ "$code" = 1 ] || [ "$code" = 3 ] || return "$code"
-        echo "not passed in real time, attempt $attempt of 5 (exit code $code)"
+        echo "not passed in real time, attempt $attempt of 3 (exit code $code)"
     done
-    return "$code"
+    echo "NOT PASSED IN REAL TIME: the emulated device or its emulator was late in all three attempts; the reasons are above"
 }
 
 check_ecu() {
