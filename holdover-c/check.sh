@@ -11,21 +11,7 @@ sources=holdover-c/examples
 most_stack=4096
 strict=(-std=c99 -Wall -Wextra -Werror -pedantic -O2 -I holdover-c)
 
-skip() {
-    echo "SKIPPED: $*"
-    exit 77
-}
-
-as_root() {
-    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
-}
-
-# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
-need() {
-    command -v "$1" >/dev/null && return
-    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
-}
+source scripts/need.sh
 
 same() {
     cmp "$1" "$2" || { diff "$1" "$2" | head -n 20; return 1; }

@@ -11,21 +11,7 @@ built=${CARGO_TARGET_DIR:-target}
 work=$built/firmware
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
 
-skip() {
-    echo "SKIPPED: $*"
-    exit 77
-}
-
-as_root() {
-    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
-}
-
-# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
-need() {
-    command -v "$1" >/dev/null && return
-    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
-}
+source scripts/need.sh
 
 need qemu-system-arm qemu-system-arm
 need arm-none-eabi-nm binutils-arm-none-eabi

@@ -7,6 +7,8 @@
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
 #   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
 #
+# Real time against an emulator is said and does not decide (see conclude_emulated); lock step does.
+#
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -16,21 +18,7 @@ work=$PWD/$built/hil
 sim=$PWD/$built/checked/holdover-sim
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
 
-skip() {
-    echo "SKIPPED: $*"
-    exit 77
-}
-
-as_root() {
-    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
-}
-
-# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
-need() {
-    command -v "$1" >/dev/null && return
-    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
-}
+source scripts/need.sh
 
 # expect WANTED COMMAND...: the command ends with that exit code.
 expect() {

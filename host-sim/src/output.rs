@@ -3,6 +3,7 @@
 //! `println!` panics when the reader has closed the pipe (`holdover-sim --json | head -c 1`); these two do not.
 
 use crate::error::Error;
+use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, Write};
 
 /// Prints results on stdout. A reader that has gone has what it wanted: a broken pipe is no error.
@@ -25,6 +26,17 @@ fn print_to(out: &mut impl Write, results: &str) -> Result<(), Error> {
         }
         _ => Ok(()),
     }
+}
+
+/// A bar on stderr that tells how many runs are done, of so many.
+#[must_use]
+pub fn progress(runs: u64) -> ProgressBar {
+    let bar = ProgressBar::new(runs);
+    // The template is a constant; should it ever be wrong, the usual bar does.
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {eta} to go") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 #[cfg(test)]

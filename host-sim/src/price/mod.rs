@@ -11,7 +11,6 @@ mod page;
 pub mod rows;
 pub mod table;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -32,7 +31,7 @@ struct Results<'a> {
 /// # Errors
 /// A scenario that the units refuse, and places that cannot be written.
 pub fn price(options: &PriceOptions) -> Result<Verdict, Error> {
-    let bar = progress(2 * options.seeds * options.scenarios.len() as u64);
+    let bar = output::progress(2 * options.seeds * options.scenarios.len() as u64);
     let seeds = (options.seed, options.seeds);
     let run = |scenario| rows::run(scenario, seeds, options.distance_m, || bar.inc(1));
     let rows = options.scenarios.iter().map(run).collect::<Result<Vec<Row>, Error>>()?;
@@ -54,13 +53,4 @@ pub fn price(options: &PriceOptions) -> Result<Verdict, Error> {
         output::say(&format!("report: {}", report.display()));
     }
     Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
-}
-
-fn progress(runs: u64) -> ProgressBar {
-    let bar = ProgressBar::new(runs);
-    // The template is a constant; should it ever be wrong, the usual bar does.
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {eta} to go") {
-        bar.set_style(style);
-    }
-    bar
 }

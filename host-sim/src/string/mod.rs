@@ -14,7 +14,6 @@ pub mod rows;
 pub mod table;
 pub mod uncompensated;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::error::Error;
@@ -40,7 +39,7 @@ struct Results<'a> {
 /// A configuration that the units refuse, and places that cannot be written.
 pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
     let cells = options.time_gaps_s.len() * options.delays_s.len() * options.losses.len();
-    let bar = progress((cells * options.disturbances.len()) as u64);
+    let bar = output::progress((cells * options.disturbances.len()) as u64);
     let rows = rows::run(options, || bar.inc(1))?;
     bar.finish_and_clear();
     let failures = rows::failures(&rows);
@@ -61,13 +60,4 @@ pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
         output::say(&format!("report: {}", report.display()));
     }
     Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
-}
-
-fn progress(runs: u64) -> ProgressBar {
-    let bar = ProgressBar::new(runs);
-    // The template is a constant; should it ever be wrong, the usual bar does.
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} runs, {eta} to go") {
-        bar.set_style(style);
-    }
-    bar
 }

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# need.sh: what the checks share that need a program of Debian's; to be sourced.
+
+# skip WHY...: this check cannot run here (exit code 77, which ci.sh counts).
+skip() {
+    echo "SKIPPED: $*"
+    exit 77
+}
+
+as_root() {
+    if [ "$(id -u)" = 0 ]; then "$@"; elif command -v sudo >/dev/null; then sudo -n "$@"; else return 1; fi
+}
+
+# need COMMAND PACKAGE: installs a package of Debian's if the command is missing.
+need() {
+    command -v "$1" >/dev/null && return
+    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
+}
