@@ -21,6 +21,7 @@ use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
 mod answer;
 mod caution;
 mod coordinate;
+mod foresee;
 mod inbox;
 mod outbox;
 mod range;
@@ -277,15 +278,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
+        self.driver_with(self.association.map(|(_, gains)| (gains, self.standstill())))
+    }
+
+    /// How it drives with these gains and this standstill distance behind somebody, or behind nobody.
+    fn driver_with(&self, association: Option<(Gains, Distance)>) -> Driver {
         let law = &self.config.law;
         let wish = self.wish.as_ref();
         let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
-        let aim = match self.association {
-            Some((_, gains)) => Aim::Follow {
+        let aim = match association {
+            Some((gains, standstill)) => Aim::Follow {
                 gain: gains.gain,
                 damping: gains.damping,
                 time_gap: wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap),
-                standstill: if self.config.prediction.model.standstill { self.standstill() } else { Distance::ZERO },
+                standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
                 target_speed,
             },
             None => Aim::Lead { largest: law.free_road_acceleration, target_speed },

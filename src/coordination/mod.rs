@@ -180,6 +180,30 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary?.crossings.get(self.current)
     }
 
+    /// Its place on the way; as many as there are: none.
+    #[must_use]
+    pub(crate) const fn next(&self) -> usize {
+        self.current
+    }
+
+    /// The place of the crossing that is next with the ego's front bumper there, if it was that one before.
+    #[must_use]
+    pub(crate) fn next_of(&self, before: usize, front: Position, length: Distance) -> usize {
+        let rear = front.ahead(length.negated());
+        let mut next = before;
+        while self.end_of(next).is_some_and(|end| rear >= end) {
+            next = next.saturating_add(1);
+        }
+        next
+    }
+
+    /// Where the conflict area of that crossing ends on the ego's axis.
+    #[must_use]
+    pub(crate) fn end_of(&self, place: usize) -> Option<Position> {
+        let crossing = self.itinerary?.crossings.get(place)?;
+        Some(self.crossing_point(crossing)?.ahead(crossing.intersection.half))
+    }
+
     /// The crossing that the ego tells the others of: the next one, or the last one for as long as it has not set out anew.
     #[must_use]
     pub fn named(&self) -> Option<&'static Crossing> {
@@ -254,15 +278,20 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary.is_some() && self.reviewed.get().is_none_or(|last| now.since(last) >= REVIEW)
     }
 
+    /// When the next review is due.
+    pub(crate) fn next_review(&self) -> Option<Instant> {
+        self.itinerary?;
+        Some(self.reviewed.get()?.plus(REVIEW))
+    }
+
     /// Brings the ego on to the crossing that its front bumper at this position, and its length, make the next one.
     pub(crate) fn advance(&mut self, front: Position, length: Distance, now: Instant, arrival: Arrival) {
-        let (Some(itinerary), Some(_)) = (self.itinerary, self.tie.get()) else { return };
-        while let Some(crossing) = itinerary.crossings.get(self.current) {
-            let Some(point) = self.crossing_point(crossing) else { return };
-            if front.ahead(length.negated()) < point.ahead(crossing.intersection.half) {
-                break;
-            }
-            self.current = self.current.saturating_add(1);
+        if self.tie.get().is_none() {
+            return;
+        }
+        let next = self.next_of(self.current, front, length);
+        if next != self.current {
+            self.current = next;
             if self.crossing().is_some() {
                 self.registration.clear();
             }

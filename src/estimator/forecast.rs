@@ -93,6 +93,14 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);
     }
 
+    /// Carries a horizon on, from its last step to this one.
+    pub fn carry(&self, horizon: &mut Horizon<STEPS>, end: i64) {
+        if !horizon.is_empty() {
+            let (from, state, anchor) = (horizon.last(), horizon.tip(), *horizon.anchor());
+            self.carry_on(&mut Filling { horizon, present: i64::MIN, anchor }, from, state, end);
+        }
+    }
+
     /// The last index to compute: a horizon's length from now, or from the sample in a horizon that ends.
     fn end(&self, present: i64, sample: &Sample) -> i64 {
         let from = if self.model.endless { present } else { self.grid.nearest(sample.at) };
@@ -252,6 +260,6 @@ fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
 }
 
 /// A number of steps as a difference of indices.
-fn steps(count: usize) -> i64 {
+pub(super) fn steps(count: usize) -> i64 {
     i64::try_from(count).unwrap_or(i64::MAX)
 }

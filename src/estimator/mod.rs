@@ -33,7 +33,7 @@ pub use leader::Leader;
 pub use position::Path;
 
 use chain::Chain;
-use forecast::{Ahead, Forecast, News};
+use forecast::{Ahead, Forecast, News, steps};
 
 use crate::config::{Model, Prediction};
 use crate::held::Held;
@@ -50,6 +50,16 @@ enum Source<'a> {
     Seen(&'a Sample),
     /// No news.
     Nothing,
+}
+
+/// How the ego drives, over a step of its own horizon.
+#[derive(Clone, Copy, Debug)]
+pub struct Manner {
+    /// The slot of whom it follows.
+    pub target: Option<usize>,
+    driver: Driver,
+    length_ahead: Option<Distance>,
+    stride: Stride,
 }
 
 /// All horizons of one unit.
@@ -226,22 +236,56 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         forecast.anchor(horizon, present, &News { sample, received, driver, length_ahead });
     }
 
-    /// Computes the ego's own horizon from its own state behind the peer that it follows, if any.
-    pub fn foresee_own<const SAMPLES: usize>(
-        &mut self,
-        now: Instant,
-        sample: &Sample,
+    /// How the ego drives behind a peer, if any, for its own horizon.
+    pub fn manner<const SAMPLES: usize>(
+        &self,
         driver: Driver,
         target: Option<usize>,
         peers: &Peers<PEERS, SAMPLES>,
-    ) {
+    ) -> Manner {
         let length_ahead = target.and_then(|index| peers.get(index)?.intent().map(|intent| intent.length));
-        let ahead = target.and_then(|index| self.horizons.get(index)).filter(|horizon| !horizon.is_empty());
-        let stride = driver.over(self.grid.step, length_ahead, &self.model);
-        let forecast =
-            Forecast { grid: &self.grid, length: self.length, model: &self.model, stride: &stride, ahead, delay: None };
+        Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
+    }
+
+    /// Computes the ego's own horizon from its own state: the whole of it, or up to an instant.
+    pub fn foresee_own(&mut self, now: Instant, until: Option<Instant>, sample: &Sample, manner: &Manner) {
         let present = self.grid.at_or_before(now);
-        forecast.anchor(&mut self.own, present, &News { sample, received: None, driver, length_ahead });
+        let whole = steps(self.length);
+        let length = until.map_or(whole, |until| {
+            self.grid.at_or_before(until).saturating_sub(present).saturating_add(1).clamp(1, whole)
+        });
+        let (driver, length_ahead) = (manner.driver, manner.length_ahead);
+        self.own_forecast(manner, usize::try_from(length).unwrap_or(0), |forecast, own| {
+            forecast.anchor(own, present, &News { sample, received: None, driver, length_ahead });
+        });
+    }
+
+    /// Carries the ego's own horizon on up to an instant, and no farther than a horizon that begins now is long.
+    pub fn carry_own_on(&mut self, now: Instant, until: Instant, manner: &Manner) {
+        let end = self.grid.at_or_before(until).min(self.end(now));
+        self.own_forecast(manner, self.length, |forecast, own| forecast.carry(own, end));
+    }
+
+    /// Whether the ego's own horizon ends sooner than one that begins now.
+    #[must_use]
+    pub fn is_own_short(&self, now: Instant) -> bool {
+        !self.own.is_empty() && self.own.last() < self.end(now)
+    }
+
+    /// The last step of a horizon that begins now.
+    fn end(&self, now: Instant) -> i64 {
+        self.grid.at_or_before(now).saturating_add(steps(self.length)).saturating_sub(1)
+    }
+
+    fn own_forecast(
+        &mut self,
+        manner: &Manner,
+        length: usize,
+        act: impl FnOnce(&Forecast<'_, STEPS>, &mut Horizon<STEPS>),
+    ) {
+        let ahead = manner.target.and_then(|index| self.horizons.get(index)).filter(|horizon| !horizon.is_empty());
+        let (grid, model, stride) = (&self.grid, &self.model, &manner.stride);
+        act(&Forecast { grid, length, model, stride, ahead, delay: None }, &mut self.own);
     }
 
     /// Where a peer is at an instant.

@@ -27,13 +27,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whom the ego is to follow: whom it was told to, or whom the order has put ahead of it.
     pub(super) fn predecessor(&self) -> Predecessor {
-        let wished = self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
-        if wished != Predecessor::Unknown || self.coordination.registration().is_none() {
-            return wished;
+        if !self.is_decided_by_order() {
+            return self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
         }
         let Some(target) = self.coordination.choice().target else { return Predecessor::None };
         let station = self.peers.get(target.into()).and_then(|track| track.station());
         station.map_or(Predecessor::None, Predecessor::Station)
+    }
+
+    /// Whether the order decides whom to follow, and nobody else.
+    pub(super) fn is_decided_by_order(&self) -> bool {
+        let wished = self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
+        wished == Predecessor::Unknown && self.coordination.registration().is_some()
     }
 
     /// The slot of the vehicle that a sensor would see ahead.
@@ -190,29 +195,32 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         };
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
-        let room =
-            |index: &usize| self.rear(*index, now).map_or(i64::MAX, |(reading, rear)| self.asks(*index, reading, rear));
-        let target = [order, lane].into_iter().flatten().min_by_key(room);
+        let next = self.coordination.next();
+        let target = [order, lane].into_iter().flatten().min_by_key(|index| self.asks(*index, now, next));
         self.coordination.choose(target, lane);
     }
 
-    /// What a vehicle ahead asks of the law of eq. 5: of two, the one with the smaller `r_j - l_j - s_0 + γ v_j` asks for the
-    /// smaller acceleration, because everything else in the law is the ego's own.
-    fn asks(&self, index: usize, reading: Reading, rear: Position) -> i64 {
-        let damped = reading.speed.over(self.config.law.damping);
-        rear.ahead(damped).ahead(self.standstill_behind(index).negated()).to_bits()
+    /// What a vehicle ahead asks of the law of eq. 5 with that crossing next: of two, the one with the smaller
+    /// `r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration, because everything else in the law is the ego's own.
+    pub(super) fn asks(&self, index: usize, at: Instant, next: usize) -> i64 {
+        self.rear(index, at).map_or(i64::MAX, |(reading, rear)| {
+            let damped = reading.speed.over(self.config.law.damping);
+            rear.ahead(damped).ahead(self.standstill_at(next, index).negated()).to_bits()
+        })
     }
 
     /// The standstill distance behind whom the ego follows.
     pub(super) fn standstill(&self) -> Distance {
         let target = self.coordination.choice().target.map(usize::from);
-        target.map_or(self.config.law.standstill, |index| self.standstill_behind(index))
+        target.map_or(self.config.law.standstill, |index| self.standstill_at(self.coordination.next(), index))
     }
 
-    fn standstill_behind(&self, index: usize) -> Distance {
+    /// The standstill distance behind a peer with that crossing next.
+    pub(super) fn standstill_at(&self, next: usize, index: usize) -> Distance {
         let law = self.config.law.standstill;
-        match (self.coordination.crossing(), self.coordination.standing(index)) {
-            (Some(crossing), Some(standing)) if self.coordination.is_here(standing) => {
+        let crossing = self.coordination.itinerary().and_then(|itinerary| itinerary.crossings.get(next));
+        match (crossing, self.coordination.standing(index)) {
+            (Some(crossing), Some(standing)) if standing.crossing == next => {
                 standstill_behind(law, crossing, standing.leg)
             }
             _ => law,
@@ -220,7 +228,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Where a peer is estimated to be, and its rear bumper.
-    fn rear(&self, index: usize, now: Instant) -> Option<(Reading, Position)> {
+    pub(super) fn rear(&self, index: usize, now: Instant) -> Option<(Reading, Position)> {
         let reading = self.estimator.read(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         Some((reading, reading.position.ahead(length.negated())))
@@ -236,11 +244,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.
     fn has_left(&self, rear: Position) -> bool {
-        let end = self
-            .coordination
-            .crossing()
-            .and_then(|crossing| Some(self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)));
-        end.is_some_and(|end| rear >= end)
+        self.coordination.end_of(self.coordination.next()).is_some_and(|end| rear >= end)
     }
 }
 

@@ -168,8 +168,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         if is_by_law {
             let sample = Sample { demand, ..*ego };
-            let driver = self.driver();
-            self.estimator.foresee_own(now, &sample, driver, target, &self.peers);
+            self.foresee(now, &sample, target);
             let knots = self.own_knots(tag, ego);
             self.emit(&Message::Own(Said::Horizon(knots)), frames);
         }

@@ -1,0 +1,77 @@
+//! The ego's own horizon: its state and whom it follows enter; where it will be leaves, past the changes of whom it follows
+//! that it can foresee.
+//!
+//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When the one that it follows leaves the
+//! conflict area, or it comes to the next intersection itself, it follows somebody else from then on: by the order that it
+//! knows already and by horizons that it holds already. So its own horizon says so, and with it everyone who hears it knows,
+//! and whoever is behind those.
+
+use super::OnboardUnit;
+use crate::controller::Gains;
+use crate::coordination::{Entry, REVIEW};
+use crate::estimator::{Driver, Reading};
+use crate::peers::Sample;
+use crate::time::Instant;
+use crate::units::Position;
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// Computes the ego's own horizon from its own state.
+    pub(super) fn foresee(&mut self, now: Instant, sample: &Sample, target: Option<usize>) {
+        let mut manner = self.estimator.manner(self.driver(), target, &self.peers);
+        let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
+        self.estimator.foresee_own(now, review, sample, &manner);
+        let Some(mut review) = review.map(|review| review.max(now)) else { return };
+        let mut crossing = self.coordination.next();
+        while self.estimator.is_own_short(now) {
+            let Some(own) = self.estimator.read_own(review) else { return };
+            crossing = self.coordination.next_of(crossing, own.position, self.config.length);
+            let target = self.outlook(review, own.position, crossing);
+            if target != manner.target {
+                let driver = self.driver_behind(target, &own, review, crossing);
+                manner = self.estimator.manner(driver, target, &self.peers);
+            }
+            review = review.plus(REVIEW);
+            self.estimator.carry_own_on(now, review, &manner);
+        }
+    }
+
+    /// How the ego will drive behind another target from then on.
+    fn driver_behind(&self, target: Option<usize>, own: &Reading, at: Instant, crossing: usize) -> Driver {
+        let ahead = target.and_then(|index| Some((index, self.estimator.read(index, at)?)));
+        self.driver_with(ahead.map(|(index, ahead)| {
+            let headway = ahead.position.ahead_of(own.position);
+            let gains = Gains::look_up(&self.config.law, own.speed, ahead.speed, headway);
+            (gains, self.standstill_at(crossing, index))
+        }))
+    }
+
+    /// Whom the ego will follow, with its front bumper there and that crossing next, by the order and the horizons as they are
+    /// known now. Who registers in between is not known.
+    fn outlook(&self, at: Instant, front: Position, crossing: usize) -> Option<usize> {
+        let end = self.coordination.end_of(crossing);
+        let is_later = crossing != self.coordination.next();
+        let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
+        for index in 0..PEERS {
+            let (Some(standing), Some((reading, rear))) = (self.coordination.standing(index), self.rear(index, at))
+            else {
+                continue;
+            };
+            let is_on_lane = self.coordination.is_on_lane(standing);
+            if is_on_lane && reading.position > front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
+                lane = Some((index, reading.position));
+            }
+            let is_ahead = if is_later { !is_on_lane } else { self.coordination.choice().is_ahead(index) };
+            let is_here = standing.crossing == crossing && end.is_some_and(|end| rear < end);
+            if let (true, Some(station)) = (is_here && is_ahead, self.peers.get(index).and_then(|track| track.station())) {
+                let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
+                if order.is_none_or(|(_, last)| last.is_before(&entry)) {
+                    order = Some((index, entry));
+                }
+            }
+        }
+        // Who is ahead on the same leg comes to a later crossing before the ego, and after all who are there now.
+        let order = order.filter(|_| !(is_later && lane.is_some()));
+        let candidates = [order.map(|(index, _)| index), lane.map(|(index, _)| index)];
+        candidates.into_iter().flatten().min_by_key(|index| self.asks(*index, at, crossing))
+    }
+}
