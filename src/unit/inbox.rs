@@ -4,7 +4,7 @@
 use super::OnboardUnit;
 use crate::health::Refusal;
 use crate::peers::plausibility::doubt;
-use crate::peers::{Admission, Sample};
+use crate::peers::{Admission, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::wire::motion::Motion;
 use crate::wire::{Message, Said, Slot};
@@ -66,13 +66,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
                 }
+                let left = if station == Some(sample.station) { None } else { self.left_slot(index, &sample)? };
+                let track = self.peers.get_mut(slot)?;
                 let admission = track.admit(sample, &doubt, &self.config.link);
                 // Even a sample that is refused may end the track of the station before.
                 if station != track.station() {
                     self.estimator.forget(index);
                     self.estimator.note_change(&self.peers);
                 }
-                if admission? == Admission::News {
+                let admission = admission?;
+                if let Some(left) = left {
+                    self.vacate(left);
+                }
+                if admission == Admission::News {
                     self.estimator.note_news(index);
                 }
             }
@@ -102,6 +108,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
         }
         Ok(())
+    }
+
+    /// A station speaks in one slot at a time. The one in which it was, if it now speaks in another.
+    ///
+    /// # Errors
+    /// [`Refusal::StationConflict`]: it has said something newer there.
+    fn left_slot(&self, index: usize, sample: &Sample) -> Result<Option<usize>, Refusal> {
+        let left = self.peers.index_of(sample.station).filter(|left| *left != index);
+        let newest = left.and_then(|left| self.peers.get(left)).and_then(Track::newest);
+        if newest.is_some_and(|newest| newest.at > sample.at) { Err(Refusal::StationConflict) } else { Ok(left) }
+    }
+
+    /// What was known of a station in a slot that it has left is from before, and ends.
+    fn vacate(&mut self, index: usize) {
+        if let Some(track) = self.peers.get_index_mut(index) {
+            *track = Track::new(self.config.link.period);
+        }
+        self.estimator.forget(index);
+        self.estimator.note_change(&self.peers);
+        self.coordination.vacate(index);
     }
 
     /// The instant of a message's stamp, while GNSS time is known.
