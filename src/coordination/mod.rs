@@ -25,7 +25,7 @@ pub use path::{Path, Place, Scale, Segment};
 
 use crate::held::Held;
 use crate::time::{Duration, Instant};
-use crate::units::{Distance, Position};
+use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
 use crate::wire::{Predecessor, StationHash};
 
 /// Behind a vehicle that comes by a crossing leg the standstill distance is the length of the conflict area, if that is longer:
@@ -48,6 +48,21 @@ pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
 
+/// How hard the ego brakes, at most, to make way for one on a crossing leg while it has room enough. The gap that the law asks
+/// for may lack tens of metres when the order puts somebody ahead who is just as near; but it is needed at the crossing only.
+/// Whoever drives behind the ego and cannot hear it has 4 s of this in a time gap of 1 s: `½ · 1.5 · 4² = 12 m` of 13 m.
+pub(crate) const GENTLE_BRAKING: Acceleration = Acceleration::from_mm_per_s2(1_500);
+
+/// What it takes until the brakes are on.
+const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
+
+/// The way to a stand by [`GENTLE_BRAKING`], `v²/2b`, to the millimetre.
+fn stopping_way(speed: Speed) -> Distance {
+    let mm_per_s = i64::from(speed.to_mm_per_s());
+    let mm = crate::fixed::quotient(mm_per_s.saturating_mul(mm_per_s), 2 * 1_500);
+    Distance::from_mm(crate::fixed::saturate_i32(mm))
+}
+
 /// Whom the ego has to mind, as of the last review.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -58,6 +73,8 @@ pub struct Choice {
     pub order: Option<u8>,
     /// The slot of the one just ahead on the same leg.
     pub lane: Option<u8>,
+    /// Whether there is room enough to make way for the target with [`GENTLE_BRAKING`].
+    pub gently: bool,
     /// The slots of all that are ahead in the order, a bit each; also of those that are only estimated to have left.
     pub ahead: u16,
 }
@@ -140,7 +157,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             axes: [Axis::UNKNOWN; PEERS],
             overlooked: [Held::Nothing; PEERS],
             claim: Held::Nothing,
-            choice: Choice { target: None, order: None, lane: None, ahead: 0 },
+            choice: Choice { target: None, order: None, lane: None, gently: false, ahead: 0 },
             reviewed: Held::Nothing,
         }
     }
@@ -355,17 +372,29 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         let keep = |held: Option<u8>| held.filter(|slot| usize::from(*slot) != index);
-        let Choice { target, order, lane, ahead } = self.choice;
-        self.choice = Choice { target: keep(target), order: keep(order), lane: keep(lane), ahead: ahead & !bit(index) };
+        let Choice { target, order, lane, gently, ahead } = self.choice;
+        let (target, order, lane) = (keep(target), keep(order), keep(lane));
+        self.choice = Choice { target, order, lane, gently, ahead: ahead & !bit(index) };
         if let Some(overlooked) = self.overlooked.get_mut(index) {
             overlooked.clear();
         }
     }
 
-    /// Chooses whom to follow, and takes note of who is ahead on the lane.
-    pub(crate) fn choose(&mut self, target: Option<usize>, lane: Option<usize>) {
+    /// Chooses whom to follow, and how gently, and takes note of who is ahead on the lane.
+    pub(crate) fn choose(&mut self, target: Option<usize>, gently: bool, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
-        (self.choice.target, self.choice.lane) = (slot(target), slot(lane));
+        (self.choice.target, self.choice.gently, self.choice.lane) = (slot(target), gently, slot(lane));
+    }
+
+    /// Whether the ego, with its front bumper there, at this speed and with that crossing next, comes to a stand before the
+    /// conflict area by [`GENTLE_BRAKING`]. So it may make way for whom it follows without more, if that one comes by a leg that
+    /// crosses its own.
+    pub(crate) fn has_room(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> bool {
+        let Some(crossing) = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next)) else { return false };
+        let Some(point) = self.crossing_point(crossing) else { return false };
+        let begins = point.ahead(crossing.intersection.half.negated());
+        let stands = front.ahead(speed.over(GENTLE_REACTION)).ahead(stopping_way(speed));
+        standing.crossing == next && crossing.intersection.conflict(crossing.leg, standing.leg) && stands <= begins
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.

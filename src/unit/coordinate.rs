@@ -9,7 +9,7 @@ use crate::estimator::Reading;
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
-use crate::units::{Distance, Position, Seconds};
+use crate::units::{Distance, Position, Seconds, Speed};
 use crate::wire::geo::GeoPosition;
 use crate::wire::motion::Motion;
 use crate::wire::route::Route;
@@ -197,7 +197,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
         let target = [order, lane].into_iter().flatten().min_by_key(|index| self.asks(*index, now, next));
-        self.coordination.choose(target, lane);
+        let gently = target.is_some_and(|index| self.is_gentle(index, next, front, state.speed));
+        self.coordination.choose(target, gently, lane);
     }
 
     /// What a vehicle ahead asks of the law of eq. 5 with that crossing next: of two, the one with the smaller
@@ -207,6 +208,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let damped = reading.speed.over(self.config.law.damping);
             rear.ahead(damped).ahead(self.standstill_at(next, index).negated()).to_bits()
         })
+    }
+
+    /// Whether the ego makes way gently for a peer: while there is room, and never again when there was not.
+    fn is_gentle(&self, index: usize, next: usize, front: Position, speed: Speed) -> bool {
+        let choice = self.coordination.choice();
+        let is_new = choice.target.map(usize::from) != Some(index);
+        (is_new || choice.gently) && self.has_room(index, next, front, speed)
+    }
+
+    /// Whether there is room to make way for a peer gently.
+    pub(super) fn has_room(&self, index: usize, next: usize, front: Position, speed: Speed) -> bool {
+        let standing = self.coordination.standing(index);
+        standing.is_some_and(|standing| self.coordination.has_room(standing, next, front, speed))
     }
 
     /// The standstill distance behind whom the ego follows.

@@ -9,7 +9,7 @@
 use super::OnboardUnit;
 use crate::controller::Gains;
 use crate::coordination::{Entry, REVIEW};
-use crate::estimator::{Driver, Reading};
+use crate::estimator::Reading;
 use crate::peers::Sample;
 use crate::time::Instant;
 use crate::units::Position;
@@ -21,28 +21,32 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
         self.estimator.foresee_own(now, review, sample, &manner);
         let Some(mut review) = review.map(|review| review.max(now)) else { return };
-        let mut crossing = self.coordination.next();
+        let (mut crossing, mut gently) = (self.coordination.next(), self.coordination.choice().gently);
+        let mut gains = self.association.map(|(_, gains)| gains);
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
             let target = self.outlook(review, own.position, crossing);
-            if target != manner.target {
-                let driver = self.driver_behind(target, &own, review, crossing);
-                manner = self.estimator.manner(driver, target, &self.peers);
+            let is_new = target != manner.target;
+            let has_room = target.is_some_and(|index| self.has_room(index, crossing, own.position, own.speed));
+            if is_new || gently && !has_room {
+                if is_new {
+                    gains = target.and_then(|index| self.gains_behind(index, &own, review));
+                }
+                gently = has_room && (is_new || gently);
+                let association = gains.zip(target).map(|(gains, index)| (gains, self.standstill_at(crossing, index)));
+                manner = self.estimator.manner(self.driver_with(association, gently), target, &self.peers);
             }
             review = review.plus(REVIEW);
             self.estimator.carry_own_on(now, review, &manner);
         }
     }
 
-    /// How the ego will drive behind another target from then on.
-    fn driver_behind(&self, target: Option<usize>, own: &Reading, at: Instant, crossing: usize) -> Driver {
-        let ahead = target.and_then(|index| Some((index, self.estimator.read(index, at)?)));
-        self.driver_with(ahead.map(|(index, ahead)| {
-            let headway = ahead.position.ahead_of(own.position);
-            let gains = Gains::look_up(&self.config.law, own.speed, ahead.speed, headway);
-            (gains, self.standstill_at(crossing, index))
-        }))
+    /// The gains of an association that begins then.
+    fn gains_behind(&self, index: usize, own: &Reading, at: Instant) -> Option<Gains> {
+        let ahead = self.estimator.read(index, at)?;
+        let headway = ahead.position.ahead_of(own.position);
+        Some(Gains::look_up(&self.config.law, own.speed, ahead.speed, headway))
     }
 
     /// Whom the ego will follow, with its front bumper there and that crossing next, by the order and the horizons as they are
