@@ -7,7 +7,7 @@ use heapless::Vec;
 use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
-use crate::coordination::{Coordination, GENTLE_BRAKING};
+use crate::coordination::{Coordination, Gentleness};
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
@@ -279,11 +279,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
         let association = self.association.map(|(_, gains)| (gains, self.standstill()));
-        self.driver_with(association, self.coordination.choice().gently)
+        self.driver_with(association, self.coordination.choice().gentleness)
     }
 
     /// How it drives with these gains and this standstill distance behind somebody, or behind nobody.
-    fn driver_with(&self, association: Option<(Gains, Distance)>, gently: bool) -> Driver {
+    fn driver_with(&self, association: Option<(Gains, Distance)>, gentleness: Gentleness) -> Driver {
         let law = &self.config.law;
         let wish = self.wish.as_ref();
         let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
@@ -298,9 +298,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
         };
         let Driver { aim, lag, mut limits } = Driver::of_config(&self.config, aim);
-        if gently {
-            limits.braking = limits.braking.min(GENTLE_BRAKING);
-        }
+        limits.braking = gentleness.limit(limits.braking);
         Driver { aim, lag, limits }
     }
 

@@ -371,7 +371,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.law.target_speed = speed(scenario.leader.target_speed_mps);
     config.link.period = duration(1.0 / scenario.message_rate_hz);
     config.prediction.step = duration(scenario.step_s);
-    config.prediction.horizon = horizon(scenario.step_s);
+    config.prediction.horizon = horizon(HORIZON_S, scenario.step_s);
     // Nobody brakes harder than it publishes.
     let capable = config.limits.emergency_braking;
     config.envelope =
@@ -379,10 +379,13 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config
 }
 
-/// 3.9 s, or as many whole steps as come to at least that, within the capacity.
+/// How far ahead the units look.
+pub const HORIZON_S: f64 = 3.9;
+
+/// A horizon of this length, or as many whole steps as come to at least that, within the capacity.
 #[must_use]
 #[allow(clippy::cast_precision_loss)]
-pub fn horizon(step_s: f64) -> holdover::time::Duration {
-    let steps = (3.9 / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
+pub fn horizon(horizon_s: f64, step_s: f64) -> holdover::time::Duration {
+    let steps = (horizon_s / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
     duration(steps * step_s)
 }

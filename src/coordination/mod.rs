@@ -48,19 +48,41 @@ pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
 
-/// How hard the ego brakes, at most, to make way for one on a crossing leg while it has room enough. The gap that the law asks
-/// for may lack tens of metres when the order puts somebody ahead who is just as near; but it is needed at the crossing only.
-/// Whoever drives behind the ego and cannot hear it has 4 s of this in a time gap of 1 s: `½ · 1.5 · 4² = 12 m` of 13 m.
-pub(crate) const GENTLE_BRAKING: Acceleration = Acceleration::from_mm_per_s2(1_500);
+/// How hard the ego brakes, at most, to make way for one on a crossing leg: the first of these by which it would still come to
+/// a stand before the conflict area. The order may put somebody ahead who is just as near, and the law then asks for a gap of tens
+/// of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot hear it has the less to be
+/// surprised by: in 4 s of the first, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
+const GENTLE_MM_PER_S2: [i32; 3] = [600, 1_000, 1_500];
 
 /// What it takes until the brakes are on.
 const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
 
-/// The way to a stand by [`GENTLE_BRAKING`], `v²/2b`, to the millimetre.
-fn stopping_way(speed: Speed) -> Distance {
-    let mm_per_s = i64::from(speed.to_mm_per_s());
-    let mm = crate::fixed::quotient(mm_per_s.saturating_mul(mm_per_s), 2 * 1_500);
-    Distance::from_mm(crate::fixed::saturate_i32(mm))
+/// How gently the ego brakes for its target: so many from the end of [`GENTLE_MM_PER_S2`], or 0, as hard as its configuration
+/// lets its controller. So the harder is the smaller one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Gentleness(u8);
+
+impl Gentleness {
+    /// As the configuration says.
+    pub(crate) const NONE: Self = Self(0);
+
+    /// The gentlest braking by which the ego comes to a stand within this way.
+    #[allow(clippy::cast_possible_truncation)] // of three
+    fn within(way: Distance, speed: Speed) -> Self {
+        let (mm_per_s, left) = (i64::from(speed.to_mm_per_s()), way.minus(speed.over(GENTLE_REACTION)));
+        let stands = |mm_per_s2: &&i32| {
+            let mm = crate::fixed::quotient(mm_per_s.saturating_mul(mm_per_s), i64::from(**mm_per_s2).saturating_mul(2));
+            Distance::from_mm(crate::fixed::saturate_i32(mm)) <= left
+        };
+        Self(GENTLE_MM_PER_S2.iter().rev().take_while(stands).count() as u8)
+    }
+
+    /// The braking that it allows of what the configuration does.
+    pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
+        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.iter().nth_back(place));
+        gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))
+    }
 }
 
 /// Whom the ego has to mind, as of the last review.
@@ -73,8 +95,8 @@ pub struct Choice {
     pub order: Option<u8>,
     /// The slot of the one just ahead on the same leg.
     pub lane: Option<u8>,
-    /// Whether there is room enough to make way for the target with [`GENTLE_BRAKING`].
-    pub gently: bool,
+    /// How gently the ego brakes for the target.
+    pub gentleness: Gentleness,
     /// The slots of all that are ahead in the order, a bit each; also of those that are only estimated to have left.
     pub ahead: u16,
 }
@@ -157,7 +179,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             axes: [Axis::UNKNOWN; PEERS],
             overlooked: [Held::Nothing; PEERS],
             claim: Held::Nothing,
-            choice: Choice { target: None, order: None, lane: None, gently: false, ahead: 0 },
+            choice: Choice { target: None, order: None, lane: None, gentleness: Gentleness::NONE, ahead: 0 },
             reviewed: Held::Nothing,
         }
     }
@@ -372,29 +394,32 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         let keep = |held: Option<u8>| held.filter(|slot| usize::from(*slot) != index);
-        let Choice { target, order, lane, gently, ahead } = self.choice;
+        let Choice { target, order, lane, gentleness, ahead } = self.choice;
         let (target, order, lane) = (keep(target), keep(order), keep(lane));
-        self.choice = Choice { target, order, lane, gently, ahead: ahead & !bit(index) };
+        self.choice = Choice { target, order, lane, gentleness, ahead: ahead & !bit(index) };
         if let Some(overlooked) = self.overlooked.get_mut(index) {
             overlooked.clear();
         }
     }
 
-    /// Chooses whom to follow, and how gently, and takes note of who is ahead on the lane.
-    pub(crate) fn choose(&mut self, target: Option<usize>, gently: bool, lane: Option<usize>) {
+    /// Chooses whom to follow, and how gently to brake for it, and takes note of who is ahead on the lane.
+    pub(crate) fn choose(&mut self, target: Option<usize>, gentleness: Gentleness, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
-        (self.choice.target, self.choice.gently, self.choice.lane) = (slot(target), gently, slot(lane));
+        (self.choice.target, self.choice.gentleness, self.choice.lane) = (slot(target), gentleness, slot(lane));
     }
 
-    /// Whether the ego, with its front bumper there, at this speed and with that crossing next, comes to a stand before the
-    /// conflict area by [`GENTLE_BRAKING`]. So it may make way for whom it follows without more, if that one comes by a leg that
-    /// crosses its own.
-    pub(crate) fn has_room(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> bool {
-        let Some(crossing) = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next)) else { return false };
-        let Some(point) = self.crossing_point(crossing) else { return false };
-        let begins = point.ahead(crossing.intersection.half.negated());
-        let stands = front.ahead(speed.over(GENTLE_REACTION)).ahead(stopping_way(speed));
-        standing.crossing == next && crossing.intersection.conflict(crossing.leg, standing.leg) && stands <= begins
+    /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
+    /// there: if that one comes by a leg that crosses its own, the more so the farther the conflict area is.
+    pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
+        let crossing = crossing.filter(|_| standing.crossing == next);
+        let point = crossing.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)));
+        match point {
+            Some((crossing, point)) if crossing.intersection.conflict(crossing.leg, standing.leg) => {
+                Gentleness::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
+            }
+            _ => Gentleness::NONE,
+        }
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.

@@ -4,7 +4,7 @@
 use heapless::Vec;
 
 use super::OnboardUnit;
-use crate::coordination::{Arrival, Crossing, Entry, Itinerary, MapError, Present, Side, Standing, standstill_behind};
+use crate::coordination::{Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind};
 use crate::estimator::Reading;
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
@@ -197,8 +197,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
         let target = [order, lane].into_iter().flatten().min_by_key(|index| self.asks(*index, now, next));
-        let gently = target.is_some_and(|index| self.is_gentle(index, next, front, state.speed));
-        self.coordination.choose(target, gently, lane);
+        let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
+        let is_new = before.target.map(usize::from) != target;
+        // Who has had to brake harder goes on until that is over.
+        self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
     }
 
     /// What a vehicle ahead asks of the law of eq. 5 with that crossing next: of two, the one with the smaller
@@ -210,17 +212,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         })
     }
 
-    /// Whether the ego makes way gently for a peer: while there is room, and never again when there was not.
-    fn is_gentle(&self, index: usize, next: usize, front: Position, speed: Speed) -> bool {
-        let choice = self.coordination.choice();
-        let is_new = choice.target.map(usize::from) != Some(index);
-        (is_new || choice.gently) && self.has_room(index, next, front, speed)
-    }
-
-    /// Whether there is room to make way for a peer gently.
-    pub(super) fn has_room(&self, index: usize, next: usize, front: Position, speed: Speed) -> bool {
-        let standing = self.coordination.standing(index);
-        standing.is_some_and(|standing| self.coordination.has_room(standing, next, front, speed))
+    /// How gently the ego may brake for a peer that it follows.
+    pub(super) fn gentleness(&self, index: Option<usize>, next: usize, front: Position, speed: Speed) -> Gentleness {
+        let standing = index.and_then(|index| self.coordination.standing(index));
+        standing.map_or(Gentleness::NONE, |standing| self.coordination.gentleness(standing, next, front, speed))
     }
 
     /// The standstill distance behind whom the ego follows.

@@ -10,7 +10,7 @@ use super::OnboardUnit;
 use crate::controller::Gains;
 use crate::coordination::{Entry, REVIEW};
 use crate::estimator::Reading;
-use crate::peers::Sample;
+use crate::peers::{Sample, Track};
 use crate::time::Instant;
 use crate::units::Position;
 
@@ -21,21 +21,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
         self.estimator.foresee_own(now, review, sample, &manner);
         let Some(mut review) = review.map(|review| review.max(now)) else { return };
-        let (mut crossing, mut gently) = (self.coordination.next(), self.coordination.choice().gently);
+        let (mut crossing, mut gentleness) = (self.coordination.next(), self.coordination.choice().gentleness);
         let mut gains = self.association.map(|(_, gains)| gains);
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
             let target = self.outlook(review, own.position, crossing);
             let is_new = target != manner.target;
-            let has_room = target.is_some_and(|index| self.has_room(index, crossing, own.position, own.speed));
-            if is_new || gently && !has_room {
+            let may = self.gentleness(target, crossing, own.position, own.speed);
+            if is_new || may < gentleness {
+                gentleness = may;
                 if is_new {
                     gains = target.and_then(|index| self.gains_behind(index, &own, review));
                 }
-                gently = has_room && (is_new || gently);
                 let association = gains.zip(target).map(|(gains, index)| (gains, self.standstill_at(crossing, index)));
-                manner = self.estimator.manner(self.driver_with(association, gently), target, &self.peers);
+                manner = self.estimator.manner(self.driver_with(association, gentleness), target, &self.peers);
             }
             review = review.plus(REVIEW);
             self.estimator.carry_own_on(now, review, &manner);
@@ -64,18 +64,23 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             if is_on_lane && reading.position > front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
                 lane = Some((index, reading.position));
             }
-            let is_ahead = if is_later { !is_on_lane } else { self.coordination.choice().is_ahead(index) };
             let is_here = standing.crossing == crossing && end.is_some_and(|end| rear < end);
-            if let (true, Some(station)) = (is_here && is_ahead, self.peers.get(index).and_then(|track| track.station())) {
-                let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
-                if order.is_none_or(|(_, last)| last.is_before(&entry)) {
-                    order = Some((index, entry));
-                }
+            let Some(station) = self.peers.get(index).and_then(Track::station).filter(|_| is_here) else { continue };
+            let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
+            let is_ahead = if is_later { !is_on_lane } else { self.is_ahead(index, &entry) };
+            if is_ahead && order.is_none_or(|(_, last)| last.is_before(&entry)) {
+                order = Some((index, entry));
             }
         }
         // Who is ahead on the same leg comes to a later crossing before the ego, and after all who are there now.
         let order = order.filter(|_| !(is_later && lane.is_some()));
         let candidates = [order.map(|(index, _)| index), lane.map(|(index, _)| index)];
         candidates.into_iter().flatten().min_by_key(|index| self.asks(*index, at, crossing))
+    }
+    /// Whether a station was ahead at the last review, and still is by what it has said since.
+    fn is_ahead(&self, index: usize, entry: &Entry) -> bool {
+        let arrival = self.coordination.registration().map(|registration| registration.arrival);
+        let own = Entry { station: self.config.station, arrival, claim: self.coordination.claim() };
+        self.coordination.choice().is_ahead(index) && entry.is_before(&own)
     }
 }

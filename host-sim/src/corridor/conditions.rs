@@ -62,7 +62,7 @@ pub fn config(corridor: &Corridor, conditions: &Conditions, index: usize, kind: 
     config.law.target_speed = speed(traffic.target_speed_mps);
     config.link.period = duration(1.0 / corridor.message_rate_hz);
     config.prediction.step = duration(conditions.step_s);
-    config.prediction.horizon = horizon(conditions.step_s);
+    config.prediction.horizon = horizon(corridor.horizon_s, conditions.step_s);
     let capable = config.limits.emergency_braking;
     let limits = conditions.envelope.limits();
     config.envelope =

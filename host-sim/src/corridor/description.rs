@@ -15,6 +15,8 @@ pub struct Corridor {
     pub period_s: f64,
     /// Prediction step `δt` of the core; 1 ms to 1 s.
     pub step_s: f64,
+    /// How far ahead the units look, in seconds.
+    pub horizon_s: f64,
     /// How often every vehicle sends its messages; 1 to 100 Hz.
     pub message_rate_hz: f64,
     /// Whose road the figures over time are about.

@@ -14,6 +14,7 @@ use crate::scenario::{Overrides, Span, envelope};
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 10.0..=86_400.0, default: 600.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
 const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.01 };
+const HORIZON: Number = Number { key: "horizon_s", unit: "seconds", limits: 0.5..=6.0, default: 5.9 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 1.0..=100.0, default: 10.0 };
 const EGO_AFTER: Number = Number { key: "ego_after_s", unit: "seconds", limits: 0.0..=86_400.0, default: 60.0 };
 const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 1.0..=50.0, default: 11.0 };
@@ -57,7 +58,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let _ = (top.value("kind"), top.text("about")?);
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let (duration, period) = (top.number(&DURATION)?, top.number(&PERIOD)?);
-    let (step, rate) = (top.number(&STEP)?, top.number(&RATE)?);
+    let (step, horizon, rate) = (top.number(&STEP)?, top.number(&HORIZON)?, top.number(&RATE)?);
     let (ego_road, ego_after) = (top.text("ego_road")?, top.number(&EGO_AFTER)?);
     let traffic = traffic(&document, top.section("traffic")?)?;
     let radio = radio(top.section("channel")?)?;
@@ -89,6 +90,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
             Some(step_s) => STEP.check(step_s).map_err(|error| error.in_option("--step"))?,
             None => step.value,
         },
+        horizon_s: horizon.value,
         message_rate_hz: rate.value,
         ego_road,
         ego_after_s: ego_after.value,

@@ -23,7 +23,7 @@ use crate::channel::OLDEST_S;
 use crate::modem::{Relay, V2xMessage};
 use crate::observer::Observer;
 use crate::vehicle::{Unit, duration, gnss, station, wish};
-use crate::world::horizon;
+use crate::world::{HORIZON_S, horizon};
 
 /// The recorded vehicle.
 pub const TARGET: usize = 0;
@@ -74,7 +74,7 @@ impl Listener {
         let mut config = Config::car(station(EGO));
         config.period = duration(step_s.min(LONGEST_PERIOD_S));
         config.prediction.step = duration(step_s);
-        config.prediction.horizon = horizon(step_s);
+        config.prediction.horizon = horizon(HORIZON_S, step_s);
         let ears = Deaf { unit: Unit::new(&config)?, baselines: baseline::all(TARGET, step_s) };
         let mut listener = Self {
             ears,

@@ -75,7 +75,7 @@ fn of_a_car(station: Option<u8>, period_s: Option<f64>, step_s: Option<f64>) -> 
     }
     if let Some(step_s) = step_s {
         config.prediction.step = duration(within("--step", step_s, 0.001..=1.0)?);
-        config.prediction.horizon = world::horizon(step_s);
+        config.prediction.horizon = world::horizon(world::HORIZON_S, step_s);
     }
     Ok(config)
 }
