@@ -27,7 +27,8 @@ use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
-use crate::modem::Course;
+use crate::ground::Point;
+use crate::modem::{Course, V2xMessage};
 use crate::plant::{Difference, Machine, Plant};
 use crate::scenario::Accuracy;
 use crate::sensors::Sensors;
@@ -195,25 +196,27 @@ impl<'a> Traffic<'a> {
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
         watches.iter_mut().for_each(|watch| watch.tick(at_s, &sightings));
-        for (from, message) in broadcasts {
-            let to: Vec<usize> = self.travellers.keys().copied().filter(|to| self.reaches(from, *to)).collect();
-            self.air.broadcast(at_s, from, to, message);
-        }
+        self.broadcast(at_s, broadcasts);
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
         }
         self.dismiss(at_s, watches, log)
     }
 
-    /// Whether one is within the radio's range of another one.
-    fn reaches(&self, from: usize, to: usize) -> bool {
-        let (Some(here), Some(there)) = (self.point(from), self.point(to)) else { return false };
-        from != to && Shift::between(here, there).length_m() <= self.conditions.radio.range_m
-    }
-
-    fn point(&self, index: usize) -> Option<crate::ground::Point> {
-        let traveller = self.travellers.get(&index)?;
-        Some(traveller.ground.road.at(traveller.way_m()).0)
+    /// Messages go to everyone within the radio's range.
+    fn broadcast(&mut self, at_s: f64, messages: Vec<(usize, V2xMessage)>) {
+        if messages.is_empty() {
+            return;
+        }
+        let place = |traveller: &Traveller| traveller.ground.road.at(traveller.way_m()).0;
+        let places: BTreeMap<usize, Point> = self.travellers.iter().map(|(index, one)| (*index, place(one))).collect();
+        let range_m = self.conditions.radio.range_m;
+        for (from, message) in messages {
+            let Some(here) = places.get(&from) else { continue };
+            let reaches =
+                |(to, there): &(&usize, &Point)| **to != from && Shift::between(*here, **there).length_m() <= range_m;
+            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), message);
+        }
     }
 
     fn sight(&self, at_s: f64, traveller: &Traveller) -> Sighting {
