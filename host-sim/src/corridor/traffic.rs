@@ -22,6 +22,7 @@ use super::description::{Corridor, Radio};
 use super::globe::Shift;
 use super::network::Network;
 use super::road::Ground;
+use super::tally::Tally;
 use super::trips::Trip;
 use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
@@ -84,11 +85,13 @@ pub struct Traffic<'a> {
     trips: &'a [Trip],
     conditions: Conditions,
     seed: u64,
+    ticks: u64,
     next: usize,
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
     air: Air,
     remains: Remains,
+    tally: Tally,
     logged: Option<usize>,
 }
 
@@ -135,11 +138,13 @@ impl<'a> Traffic<'a> {
             trips,
             conditions,
             seed,
+            ticks: 0,
             next: 0,
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
             remains: Remains::default(),
+            tally: Tally::default(),
             logged: None,
         }
     }
@@ -155,18 +160,8 @@ impl<'a> Traffic<'a> {
     /// The buses', and a configuration that the units refuse, as an error of invalid input.
     pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
-        let mut tick = 0u64;
-        loop {
-            #[allow(clippy::cast_precision_loss)]
-            let at_s = tick as f64 * self.corridor.period_s;
-            let is_over = self.next == self.trips.len()
-                && self.travellers.values().all(|traveller| traveller.has_left)
-                && self.waiting.iter().all(VecDeque::is_empty);
-            if is_over || at_s > longest_s {
-                break;
-            }
-            self.tick(at_s, watches, log)?;
-            tick += 1;
+        while !self.is_over() && self.at_s() <= longest_s {
+            self.tick(watches, log)?;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
         let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
@@ -177,10 +172,42 @@ impl<'a> Traffic<'a> {
         Ok(Remains { unserved, ..self.remains })
     }
 
-    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+    /// Runs it until then, and keeps no log.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn advance(&mut self, to_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
+        while self.at_s() < to_s {
+            self.tick(watches, &mut Vec::new())?;
+        }
+        Ok(())
+    }
+
+    /// What there was to do up to now.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The time of the next tick.
+    #[allow(clippy::cast_precision_loss)]
+    fn at_s(&self) -> f64 {
+        self.ticks as f64 * self.corridor.period_s
+    }
+
+    fn is_over(&self) -> bool {
+        self.next == self.trips.len()
+            && self.travellers.values().all(|traveller| traveller.has_left)
+            && self.waiting.iter().all(VecDeque::is_empty)
+    }
+
+    fn tick(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let at_s = self.at_s();
+        self.ticks += 1;
         self.admit(at_s)?;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
+                self.tally.heard += u64::from(!traveller.has_left);
                 traveller.vehicle.hear(at_s, &message)?;
             }
         }
@@ -195,6 +222,7 @@ impl<'a> Traffic<'a> {
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
+        self.tally.on_way += sightings.len() as u64;
         watches.iter_mut().for_each(|watch| watch.tick(at_s, &sightings));
         self.broadcast(at_s, broadcasts);
         for traveller in self.travellers.values_mut() {
