@@ -57,7 +57,7 @@ pub fn render(
         &["What is wrong", "Largest error, m", "rms, m", "Mean travel time, s", "Collisions"],
         &rows.collect::<Vec<_>>(),
     );
-    page.section("Beside others");
+    page.section("Beside seven others, over what a target does in a silence");
     motions::section(&mut page, &results.motions);
     speed(&mut page, &results.timing.scale);
     page.finish()
@@ -73,7 +73,7 @@ fn speed(page: &mut Page, loads: &[Load]) {
          parentheses: were); {SPAN_S} s of them, once the roads are full.{said}"
     ));
     let rows: Vec<Vec<Cell>> = loads.iter().map(|load| scale_row(load).map(Cell::number).to_vec()).collect();
-    page.table("Wall time on this machine.", &SCALE, &rows);
+    page.table("Wall time on this machine, and how many cores the threads had of it.", &SCALE, &rows);
     page.figure(&plot.title, &plot.caption, &[&plot.chart]);
 }
 

@@ -80,6 +80,7 @@ fn trajectories(experiment: &Experiment, journal: &Journal) -> Option<Plot> {
         guides,
         shades: shades.into_iter().collect(),
         height: 320.0,
+        listed: true,
         ..Chart::new(title, axes.0, axes.1)
     };
     Some(plot(title, caption, chart))

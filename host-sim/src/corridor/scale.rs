@@ -52,8 +52,23 @@ pub struct Load {
     pub times_real_time: f64,
     /// Simulated vehicle seconds per second, of all threads together.
     pub vehicle_seconds_per_s: f64,
-    /// Microseconds of a thread per vehicle second and peer heard.
+    /// How many cores the threads had on average, because others want them too; `None` where the system does not say.
+    pub cores: Option<f64>,
+    /// Microseconds of a core per vehicle second and peer heard; of a thread where the system does not say.
     pub us_per_vehicle_second_and_peer: f64,
+}
+
+/// What a share of the corridors came to.
+struct Share {
+    tally: Tally,
+    wall_s: f64,
+    core_s: Option<f64>,
+}
+
+/// For how long this thread has had a core; `None` where the system does not say.
+fn core_s() -> Option<f64> {
+    let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    Some(said.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }
 
 /// Measures it; nothing else is to run meanwhile. `travel_s` is the mean travel time.
@@ -74,18 +89,16 @@ pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f6
         let mine: Vec<u64> = seeds.iter().skip(first).step_by(threads).copied().collect();
         drive(experiment, &corridor, &mine, fill_s, &full)
     };
-    let shares: Vec<io::Result<(Tally, f64)>> = thread::scope(|scope| {
+    let shares: Vec<io::Result<Share>> = thread::scope(|scope| {
         let running: Vec<_> = (0..threads).map(|first| scope.spawn(move || share(first))).collect();
         let ended =
             running.into_iter().map(|share| share.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         ended.collect()
     });
-    let (mut all, mut wall_s) = (Tally::default(), 0.0_f64);
-    for share in shares {
-        let (tally, spent_s) = share.map_err(super::experiment::refused)?;
-        all = all.with(tally);
-        wall_s = wall_s.max(spent_s);
-    }
+    let shares: Vec<Share> = shares.into_iter().collect::<io::Result<_>>().map_err(super::experiment::refused)?;
+    let all = shares.iter().fold(Tally::default(), |sum, share| sum.with(share.tally));
+    let wall_s = shares.iter().map(|share| share.wall_s).fold(0.0, f64::max);
+    let core_s: Option<f64> = shares.iter().map(|share| share.core_s).sum();
     let vehicle_seconds = all.on_way as f64 * corridor.period_s;
     let peers_heard = all.heard as f64 / (vehicle_seconds * corridor.message_rate_hz).max(f64::MIN_POSITIVE);
     Ok(Load {
@@ -97,7 +110,9 @@ pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f6
         wall_s,
         times_real_time: SPAN_S / wall_s,
         vehicle_seconds_per_s: vehicle_seconds / wall_s,
-        us_per_vehicle_second_and_peer: 1e6 * wall_s * threads as f64 / (vehicle_seconds * peers_heard),
+        cores: core_s.map(|core_s| core_s / wall_s),
+        us_per_vehicle_second_and_peer: 1e6 * core_s.unwrap_or(wall_s * threads as f64)
+            / (vehicle_seconds * peers_heard),
     })
 }
 
@@ -114,7 +129,7 @@ fn drive(
     seeds: &[u64],
     fill_s: f64,
     full: &Barrier,
-) -> io::Result<(Tally, f64)> {
+) -> io::Result<Share> {
     let network = &experiment.network;
     let all: Vec<Vec<Trip>> = seeds.iter().map(|seed| trips(corridor, network, *seed)).collect();
     let mut worlds: Vec<(Traffic, Referee, Beliefs)> = seeds
@@ -135,7 +150,8 @@ fn drive(
     };
     let before = advance(fill_s);
     full.wait(); // whatever became of it: the others wait too
-    let start = Instant::now();
+    let (start, core_before_s) = (Instant::now(), core_s());
     let after = advance(fill_s + SPAN_S)?;
-    Ok((after.less(before?), start.elapsed().as_secs_f64()))
+    let core_s = core_s().zip(core_before_s).map(|(after, before)| after - before);
+    Ok(Share { tally: after.less(before?), wall_s: start.elapsed().as_secs_f64(), core_s })
 }

@@ -106,12 +106,12 @@ pub fn text(results: &Results) -> String {
 pub const SCALE: [&str; 8] = [
     "vehicles",
     "corridors",
-    "threads",
+    "cores had",
     "peers heard",
-    "wall time, s",
-    "times real time",
-    "vehicle s per s",
-    "µs per vehicle s, peer",
+    "wall, s",
+    "× real time",
+    "vehicle s / s",
+    "µs / vehicle s, peer",
 ];
 
 /// A row of it; the first cell says how many there were to be, and how many there were.
@@ -120,7 +120,7 @@ pub fn scale_row(load: &Load) -> [String; 8] {
     [
         format!("{} ({:.1})", load.vehicles, load.under_way),
         load.corridors.to_string(),
-        load.threads.to_string(),
+        number(load.cores, 2),
         format!("{:.1}", load.peers_heard),
         format!("{:.2}", load.wall_s),
         format!("{:.1}", load.times_real_time),
