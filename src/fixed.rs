@@ -225,8 +225,8 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
     if (dividend < 0) != (divisor < 0) { magnitude.wrapping_neg() } else { magnitude }
 }
 
-/// `dividend / divisor`, 0 for a divisor of 0: one instruction where words have 64 bits, and elsewhere as
-/// [`divide_by_bytes`] does it.
+/// `dividend / divisor`, 0 for a divisor of 0: one instruction where words have 64 bits, and elsewhere a few of 32
+/// bits by hand.
 #[must_use]
 #[cfg_attr(target_pointer_width = "64", inline)]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
@@ -240,7 +240,7 @@ pub const fn divide(dividend: u64, divisor: u64) -> u64 {
     divide_by_bytes(dividend, divisor)
 }
 
-/// The same. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for these it takes five 32-bit
+/// [`divide`] by hand. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for these it takes five 32-bit
 /// divisions by hand, which are an instruction each on a Cortex-M3 and up: the upper word, and the lower one byte by byte. A
 /// rest is below the divisor, which leaves room for the next byte.
 #[inline(always)]
