@@ -56,6 +56,25 @@ pub const fn mul_hi(a: i32, b: i32) -> i32 {
     ((a as i64 * b as i64 + (1 << 31)) >> 32) as i32
 }
 
+/// The same for a factor `b` that is not negative. Vectors on x86-64 have no signed product before SSE4.1; there it is made of the
+/// unsigned one, which is `2³²·b` more where `a` is negative. Elsewhere the signed one is one instruction.
+#[inline(always)]
+#[must_use]
+#[allow(
+    clippy::arithmetic_side_effects,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss
+)] // a product below 2⁶³ and half a bit; the sign as a mask is meant
+pub const fn mul_hi_share(a: i32, b: i32) -> i32 {
+    if cfg!(target_arch = "x86_64") {
+        let unsigned = ((a as u32 as u64 * b as u32 as u64 + (1 << 31)) >> 32) as u32;
+        unsigned.wrapping_sub(b as u32 & (a >> 31) as u32) as i32
+    } else {
+        mul_hi(a, b)
+    }
+}
+
 /// `x << bits`, saturating: compiles to `SSAT` and a shift.
 #[inline(always)]
 #[must_use]
@@ -206,13 +225,27 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
     if (dividend < 0) != (divisor < 0) { magnitude.wrapping_neg() } else { magnitude }
 }
 
-/// `dividend / divisor`, 0 for a divisor of 0. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for
-/// these it takes five 32-bit divisions by hand, which are an instruction each on a Cortex-M3 and up: the upper word, and the
-/// lower one byte by byte. A rest is below the divisor, which leaves room for the next byte.
+/// `dividend / divisor`, 0 for a divisor of 0: one instruction where words have 64 bits, and elsewhere a few of 32
+/// bits by hand.
 #[must_use]
-#[inline(never)]
-#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the words, and checked
+#[cfg_attr(target_pointer_width = "64", inline)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 pub const fn divide(dividend: u64, divisor: u64) -> u64 {
+    if cfg!(target_pointer_width = "64") {
+        return match dividend.checked_div(divisor) {
+            Some(quotient) => quotient,
+            None => 0,
+        };
+    }
+    divide_by_bytes(dividend, divisor)
+}
+
+/// [`divide`] by hand. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for these it takes five 32-bit
+/// divisions by hand, which are an instruction each on a Cortex-M3 and up: the upper word, and the lower one byte by byte. A
+/// rest is below the divisor, which leaves room for the next byte.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the words, and checked
+const fn divide_by_bytes(dividend: u64, divisor: u64) -> u64 {
     let small = divisor as u32;
     if divisor >= 1 << 24 || small == 0 {
         return match dividend.checked_div(divisor) {
@@ -259,6 +292,9 @@ mod tests {
                 let exact = i128::from(dividend).checked_div(i128::from(divisor)).unwrap_or(0);
                 let saturated = exact.min(i64::MAX.into());
                 prop_assert_eq!(i128::from(quotient(dividend, divisor)), saturated, "{} {}", dividend, divisor);
+                let [dividend, divisor] = [dividend, divisor].map(i64::unsigned_abs);
+                let exact = dividend.checked_div(divisor).unwrap_or(0);
+                prop_assert_eq!(divide_by_bytes(dividend, divisor), exact, "{} {}", dividend, divisor);
             }
         }
 
@@ -280,6 +316,7 @@ mod tests {
             };
             prop_assert!(near(mul_shl::<2>(a, b), 2) && near(mul_shl::<8>(a, b), 8));
             prop_assert_eq!(i128::from(mul_hi(a, b)), (exact + (1 << 31)) >> 32);
+            prop_assert_eq!(mul_hi_share(a, b & i32::MAX), mul_hi(a, b & i32::MAX));
         }
 
         #[test]

@@ -95,6 +95,11 @@ pub struct RunSettings {
     #[arg(long)]
     pub list: bool,
 
+    /// Measure how fast so many vehicles at once are simulated, in corridors side by side; for a corridor. A report says it of
+    /// 10,30,100,300
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub vehicles: Option<Vec<usize>>,
+
     /// Draw a one-page picture, for a corridor
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,

@@ -116,7 +116,11 @@ impl Options {
 
 impl RunOptions {
     fn read(RunArguments { scenario: scenario_file, settings }: RunArguments) -> Result<Self, Error> {
-        let foreign = [("--seeds", settings.seeds.is_some()), ("--picture", settings.picture.is_some())];
+        let foreign = [
+            ("--seeds", settings.seeds.is_some()),
+            ("--vehicles", settings.vehicles.is_some()),
+            ("--picture", settings.picture.is_some()),
+        ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
             let remedy = "leave it out; `sweep` runs a string with many seeds";
             return Err(Error::new("is for a corridor, and this is a string of vehicles", remedy).in_option(option));

@@ -50,6 +50,43 @@ fn a_short_run_passes_and_the_same_seed_is_the_same_bytes_outside_timing() {
 }
 
 #[test]
+fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_simulated() {
+    let folder = tempfile::tempdir().unwrap();
+    // The ego is to come within the 20 s.
+    let (of_second, of_harrison) = ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"");
+    let edits = [("ego_after_s = 60.0", "ego_after_s = 0.0"), (of_second, of_harrison)];
+    let file = short(folder.path(), &edits);
+    let report = folder.path().join("report");
+    let output = sim(&["run", &file, "--json", "--vehicles", "1,3", "--out", report.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let (steps, motions) = (results["steps"].as_array().unwrap(), results["motions"].as_array().unwrap());
+    assert_eq!((steps.len(), motions.len()), (7, 5));
+    let scale = results["timing"]["scale"].as_array().unwrap();
+    let asked: Vec<u64> = scale.iter().map(|load| load["vehicles"].as_u64().unwrap()).collect();
+    assert_eq!(asked, [1, 3]);
+    for load in scale {
+        let [under_way, peers, speed] =
+            ["under_way", "peers_heard", "times_real_time"].map(|key| load[key].as_f64().unwrap());
+        assert!(under_way > 0.1 && under_way < 10.0 && peers < under_way + 1.0 && speed > 1.0, "{load}");
+    }
+    let page = std::fs::read_to_string(report.join("index.html")).unwrap();
+    for title in [
+        "Figure 1. Trajectories at the first intersection",
+        "Figure 2. Error of the ego",
+        "Figure 3. Largest position error over prediction step",
+        "Figure 4. Updates per second on one core over prediction step",
+        "Figure 5. free acceleration",
+        "Figure 9. 5 m/s",
+        "Figure 10. How many times faster than real time",
+        "holdover loses",
+        "3 vehicles cost",
+    ] {
+        assert!(page.contains(title), "{title}");
+    }
+}
+
+#[test]
 fn a_limit_that_is_missed_is_a_failed_verdict() {
     let folder = tempfile::tempdir().unwrap();
     let file = short(folder.path(), &[("position_error_m = 0.2 ", "position_error_m = 0.0001 ")]);

@@ -5,14 +5,15 @@
 
 use super::{Bus, Frame};
 use holdover::time::Instant;
+use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::rc::Rc;
 
-/// The bus; it lives as long as its nodes.
+/// The bus; it lives as long as its nodes, which all belong to one thread: a world is run by one.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryBus {
-    inboxes: Arc<Mutex<Vec<Inbox>>>,
+    inboxes: Rc<RefCell<Vec<Inbox>>>,
 }
 
 type Inbox = VecDeque<(Instant, Frame)>;
@@ -34,20 +35,15 @@ impl MemoryBus {
     /// Attaches one more node. It receives what is sent from now on.
     #[must_use]
     pub fn node(&self) -> MemoryNode {
-        let mut inboxes = self.inboxes();
+        let mut inboxes = self.inboxes.borrow_mut();
         inboxes.push(Inbox::new());
         MemoryNode { bus: self.clone(), index: inboxes.len() - 1 }
-    }
-
-    /// No code panics while it holds the lock, so a poisoned one cannot be.
-    fn inboxes(&self) -> MutexGuard<'_, Vec<Inbox>> {
-        self.inboxes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Bus for MemoryNode {
     fn send(&mut self, at: Instant, frame: Frame) -> io::Result<()> {
-        for (index, inbox) in self.bus.inboxes().iter_mut().enumerate() {
+        for (index, inbox) in self.bus.inboxes.borrow_mut().iter_mut().enumerate() {
             if index != self.index {
                 insert(inbox, at, frame);
             }
@@ -56,7 +52,7 @@ impl Bus for MemoryNode {
     }
 
     fn receive(&mut self, upto: Instant) -> io::Result<Option<(Instant, Frame)>> {
-        Ok(take(&mut self.bus.inboxes()[self.index], upto))
+        Ok(take(&mut self.bus.inboxes.borrow_mut()[self.index], upto))
     }
 }
 

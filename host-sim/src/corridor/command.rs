@@ -9,13 +9,17 @@ use super::experiment::{Experiment, STEPS_S, Sides};
 use super::figures::{StepRow, WrongRow};
 use super::journal::Journal;
 use super::options::CorridorOptions;
-use super::{cost, page, picture, table, verdict};
+use super::{cost, page, picture, scale, table, verdict};
 use crate::error::Error;
+use crate::motions::rows::{self, Row};
 use crate::output;
 use crate::verdict::Verdict;
 
 /// Runs besides those of the seeds: the table of what is wrong.
 const WRONGS: usize = 6;
+
+/// Silences of each motion in the report, as many as `motions` makes.
+const SILENCES: u32 = 50;
 
 /// Wall-clock figures; everything else is the same for the same seed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -26,6 +30,8 @@ pub struct Timing {
     pub vehicle_seconds_per_s: f64,
     /// What a tick of the ego's unit costs at each prediction step.
     pub cost: Vec<cost::Cost>,
+    /// How fast so many vehicles at once are simulated; empty if it is not asked for.
+    pub scale: Vec<scale::Load>,
 }
 
 /// The results.
@@ -44,6 +50,8 @@ pub struct Results {
     pub wrong: Vec<WrongRow>,
     /// How the errors grow with the prediction step; empty without a report.
     pub steps: Vec<StepRow>,
+    /// What a target does in a silence, and who knows it; empty without a report.
+    pub motions: Vec<Row>,
     /// Why it failed; empty if it passed.
     pub failures: Vec<String>,
     /// Wall-clock figures.
@@ -57,8 +65,8 @@ pub struct Results {
 pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let experiment = Experiment::new(options.corridor.clone());
     let is_drawn = options.report.is_some() || options.picture.is_some();
-    let runs = 4 * options.seeds.len() + WRONGS + if is_drawn { STEPS_S.len() } else { 0 };
-    let bar = ProgressBar::new(runs as u64);
+    let drawn = if is_drawn { STEPS_S.len() } else { 0 };
+    let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len()) as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
         bar.set_style(style);
     }
@@ -76,7 +84,15 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
             cost::measure(row.step_s, &config, itinerary, &journal.log)
         })
         .collect();
+    let mut loads = Vec::new();
+    if let Some(travel_s) = sides.holdover.mean_travel_time_s {
+        for vehicles in &options.vehicles {
+            loads.push(scale::measure(&experiment, first, *vehicles, travel_s)?);
+            done();
+        }
+    }
     bar.finish_and_clear();
+    let motions = if options.report.is_some() { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
     let failures = verdict::failures(&options.corridor, &sides);
     let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
@@ -90,8 +106,9 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         sides,
         wrong,
         steps: steps.iter().map(|(row, _)| row.clone()).collect(),
+        motions,
         failures,
-        timing: Timing { wall_s, vehicle_seconds_per_s: driven_s / wall_s.max(1e-9), cost: costs },
+        timing: Timing { wall_s, vehicle_seconds_per_s: driven_s / wall_s.max(1e-9), cost: costs, scale: loads },
     };
     if options.json {
         output::say(table::text(&results).trim_end());

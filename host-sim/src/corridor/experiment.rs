@@ -44,7 +44,7 @@ pub struct Experiment {
     pub corridor: Corridor,
     /// Its roads.
     pub network: Network,
-    itineraries: Vec<&'static Itinerary>,
+    pub(super) itineraries: Vec<&'static Itinerary>,
 }
 
 impl Experiment {
@@ -184,6 +184,7 @@ impl Experiment {
     }
 }
 
-fn refused(error: io::Error) -> Error {
+/// What the units refuse.
+pub(super) fn refused(error: io::Error) -> Error {
     Error::new(error.to_string(), "change the scenario accordingly")
 }

@@ -4,10 +4,14 @@ use std::path::{Path, PathBuf};
 
 use super::description::Corridor;
 use super::read;
+use super::scale::VEHICLES;
 use crate::cli::RunSettings;
 use crate::error::Error;
 use crate::options::{can_be_file, can_be_folder};
 use crate::scenario::Overrides;
+
+/// More vehicles at once would take gigabytes.
+const MOST_VEHICLES: usize = 10_000;
 
 /// A corridor and what becomes of its results.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +28,8 @@ pub struct CorridorOptions {
     pub json: bool,
     /// Folder of the report; `None`: no report.
     pub report: Option<PathBuf>,
+    /// How fast so many vehicles at once are simulated is to be measured.
+    pub vehicles: Vec<usize>,
     /// Where to draw the one-page picture.
     pub picture: Option<PathBuf>,
 }
@@ -64,6 +70,13 @@ impl CorridorOptions {
         if let Some(picture) = &settings.picture {
             can_be_file("--picture", picture, &[named])?;
         }
+        let usual = if report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
+        let is_given = settings.vehicles.is_some();
+        let vehicles = settings.vehicles.unwrap_or(usual);
+        if let Some(beyond) = vehicles.iter().find(|number| !(1..=MOST_VEHICLES).contains(*number)) {
+            let remedy = format!("give numbers from 1 to {MOST_VEHICLES}");
+            return Err(Error::new(format!("is {beyond}"), remedy).in_option("--vehicles"));
+        }
         let mut command = format!("holdover-sim run {} --seed {}", named.display(), corridor.seed);
         if count > 1 {
             command += &format!(" --seeds {count}");
@@ -74,8 +87,12 @@ impl CorridorOptions {
         if settings.envelope {
             command += " --envelope";
         }
+        if is_given {
+            let numbers: Vec<String> = vehicles.iter().map(usize::to_string).collect();
+            command += &format!(" --vehicles {}", numbers.join(","));
+        }
         let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
         let seeds = (corridor.seed..=last).collect();
-        Ok(Self { corridor, name, command, seeds, json: settings.json, report, picture: settings.picture })
+        Ok(Self { corridor, name, command, seeds, json: settings.json, report, vehicles, picture: settings.picture })
     }
 }

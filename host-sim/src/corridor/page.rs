@@ -5,8 +5,10 @@ use super::experiment::{EXCERPT_S, Experiment};
 use super::figures::StepRow;
 use super::journal::Journal;
 use super::options::CorridorOptions;
-use super::plots::plots;
-use super::table::{LINES, SIDES, sides};
+use super::plots::{plots, scale};
+use super::scale::{Load, SPAN_S};
+use super::table::{LINES, SCALE, SIDES, proportion, scale_row, sides};
+use crate::motions;
 use crate::report::page::{Cell, Page};
 
 /// The page.
@@ -55,7 +57,24 @@ pub fn render(
         &["What is wrong", "Largest error, m", "rms, m", "Mean travel time, s", "Collisions"],
         &rows.collect::<Vec<_>>(),
     );
+    page.section("Beside seven others, over what a target does in a silence");
+    motions::section(&mut page, &results.motions);
+    speed(&mut page, &results.timing.scale);
     page.finish()
+}
+
+/// How fast the simulator is.
+fn speed(page: &mut Page, loads: &[Load]) {
+    let Some(plot) = scale(loads) else { return };
+    page.section("How fast this is simulated");
+    let said = proportion(loads).map_or(String::new(), |said| format!(" {said}."));
+    page.paragraph(&format!(
+        "Corridors side by side, each with a seed of its own, at rates at which so many vehicles are under way on average (in \
+         parentheses: were); {SPAN_S} s of them, once the roads are full.{said}"
+    ));
+    let rows: Vec<Vec<Cell>> = loads.iter().map(|load| scale_row(load).map(Cell::number).to_vec()).collect();
+    page.table("Wall time on this machine, and how many cores the threads had of it.", &SCALE, &rows);
+    page.figure(&plot.title, &plot.caption, &[&plot.chart]);
 }
 
 fn reasons(results: &Results) -> Vec<String> {

@@ -4,6 +4,7 @@ use super::command::Results;
 use super::experiment::Experiment;
 use super::figures::StepRow;
 use super::journal::Journal;
+use super::scale::Load;
 use crate::report::plot::{Axis, Chart, Guide, Interval, Layer, Series, Tone};
 use crate::report::sweep::PUBLISHED;
 
@@ -79,6 +80,7 @@ fn trajectories(experiment: &Experiment, journal: &Journal) -> Option<Plot> {
         guides,
         shades: shades.into_iter().collect(),
         height: 320.0,
+        listed: true,
         ..Chart::new(title, axes.0, axes.1)
     };
     Some(plot(title, caption, chart))
@@ -120,6 +122,23 @@ fn largest_errors(steps: &[(StepRow, Journal)]) -> Plot {
         .to_owned();
     let axes = (Axis::logarithmic("prediction step δt", "s"), Axis::logarithmic("largest error", "m"));
     plot(title, caption, Chart { layers, ..Chart::new(title, axes.0, axes.1) })
+}
+
+/// It depends on the machine.
+pub fn scale(loads: &[Load]) -> Option<Plot> {
+    if loads.is_empty() {
+        return None;
+    }
+    let points = loads.iter().map(|load| (load.vehicles as f64, load.times_real_time));
+    let layers = vec![Layer::Line { series: Series::new("", points), tone: Tone::Ours, marked: true }];
+    let title = "How many times faster than real time so many vehicles are simulated";
+    let caption = format!(
+        "Corridors side by side on {} thread(s) of this machine; a line that falls by as much as the number of vehicles grows is \
+         a cost in proportion.",
+        loads.iter().map(|load| load.threads).max().unwrap_or(1)
+    );
+    let axes = (Axis::logarithmic("vehicles under way at once", ""), Axis::logarithmic("times real time", ""));
+    Some(plot(title, caption, Chart { layers, ..Chart::new(title, axes.0, axes.1) }))
 }
 
 /// It depends on the machine.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::command::Results;
 use super::figures::Side;
+use super::scale::Load;
 
 /// A figure's name and how it is spelled of a side.
 pub type Line = (&'static str, fn(&Side) -> String);
@@ -92,10 +93,63 @@ pub fn text(results: &Results) -> String {
             );
         }
     }
+    text += &scale(&results.timing.scale);
     let verdict = if results.failures.is_empty() { "passed" } else { "failed" };
     let _ = writeln!(text, "\nverdict: {verdict}");
     results.failures.iter().for_each(|failure| {
         let _ = writeln!(text, "  {failure}");
     });
     text
+}
+
+/// The columns of the table of how fast the simulator is.
+pub const SCALE: [&str; 8] = [
+    "vehicles",
+    "corridors",
+    "cores had",
+    "peers heard",
+    "wall, s",
+    "× real time",
+    "vehicle s / s",
+    "µs / vehicle s, peer",
+];
+
+/// A row of it; the first cell says how many there were to be, and how many there were.
+#[must_use]
+pub fn scale_row(load: &Load) -> [String; 8] {
+    [
+        format!("{} ({:.1})", load.vehicles, load.under_way),
+        load.corridors.to_string(),
+        number(load.cores, 2),
+        format!("{:.1}", load.peers_heard),
+        format!("{:.2}", load.wall_s),
+        format!("{:.1}", load.times_real_time),
+        format!("{:.0}", load.vehicle_seconds_per_s),
+        format!("{:.1}", load.us_per_vehicle_second_and_peer),
+    ]
+}
+
+/// Whether the cost is in proportion, in words; nothing of less than two numbers of vehicles.
+#[must_use]
+pub fn proportion(loads: &[Load]) -> Option<String> {
+    let ([first, ..], [.., last]) = (loads, loads) else { return None };
+    let grown = last.us_per_vehicle_second_and_peer / first.us_per_vehicle_second_and_peer;
+    (loads.len() > 1).then(|| {
+        let (many, few) = (last.vehicles, first.vehicles);
+        format!("{many} vehicles cost {grown:.2} times as much per vehicle and peer heard as {few} do")
+    })
+}
+
+fn scale(loads: &[Load]) -> String {
+    let Some(said) = proportion(loads).or_else(|| (!loads.is_empty()).then(String::new)) else { return String::new() };
+    let mut text = String::from("\n");
+    let rows = std::iter::once(SCALE.map(str::to_owned)).chain(loads.iter().map(scale_row));
+    for [first, rest @ ..] in rows {
+        let _ = write!(text, "{first:14}");
+        rest.iter().zip(&SCALE[1..]).for_each(|(cell, name)| {
+            let _ = write!(text, "{cell:>width$}", width = name.chars().count() + 2);
+        });
+        text.push('\n');
+    }
+    text + &said + if said.is_empty() { "" } else { "\n" }
 }

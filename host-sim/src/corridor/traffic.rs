@@ -22,12 +22,14 @@ use super::description::{Corridor, Radio};
 use super::globe::Shift;
 use super::network::Network;
 use super::road::Ground;
+use super::tally::Tally;
 use super::trips::Trip;
 use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
-use crate::modem::Course;
+use crate::ground::Point;
+use crate::modem::{Course, V2xMessage};
 use crate::plant::{Difference, Machine, Plant};
 use crate::scenario::Accuracy;
 use crate::sensors::Sensors;
@@ -83,11 +85,13 @@ pub struct Traffic<'a> {
     trips: &'a [Trip],
     conditions: Conditions,
     seed: u64,
+    ticks: u64,
     next: usize,
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
     air: Air,
     remains: Remains,
+    tally: Tally,
     logged: Option<usize>,
 }
 
@@ -134,11 +138,13 @@ impl<'a> Traffic<'a> {
             trips,
             conditions,
             seed,
+            ticks: 0,
             next: 0,
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
             remains: Remains::default(),
+            tally: Tally::default(),
             logged: None,
         }
     }
@@ -154,18 +160,8 @@ impl<'a> Traffic<'a> {
     /// The buses', and a configuration that the units refuse, as an error of invalid input.
     pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
-        let mut tick = 0u64;
-        loop {
-            #[allow(clippy::cast_precision_loss)]
-            let at_s = tick as f64 * self.corridor.period_s;
-            let is_over = self.next == self.trips.len()
-                && self.travellers.values().all(|traveller| traveller.has_left)
-                && self.waiting.iter().all(VecDeque::is_empty);
-            if is_over || at_s > longest_s {
-                break;
-            }
-            self.tick(at_s, watches, log)?;
-            tick += 1;
+        while !self.is_over() && self.at_s() <= longest_s {
+            self.tick(watches, log)?;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
         let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
@@ -176,10 +172,42 @@ impl<'a> Traffic<'a> {
         Ok(Remains { unserved, ..self.remains })
     }
 
-    fn tick(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+    /// Runs it until then, and keeps no log.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn advance(&mut self, to_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
+        while self.at_s() < to_s {
+            self.tick(watches, &mut Vec::new())?;
+        }
+        Ok(())
+    }
+
+    /// What there was to do up to now.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The time of the next tick.
+    #[allow(clippy::cast_precision_loss)]
+    fn at_s(&self) -> f64 {
+        self.ticks as f64 * self.corridor.period_s
+    }
+
+    fn is_over(&self) -> bool {
+        self.next == self.trips.len()
+            && self.travellers.values().all(|traveller| traveller.has_left)
+            && self.waiting.iter().all(VecDeque::is_empty)
+    }
+
+    fn tick(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let at_s = self.at_s();
+        self.ticks += 1;
         self.admit(at_s)?;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
+                self.tally.heard += u64::from(!traveller.has_left);
                 traveller.vehicle.hear(at_s, &message)?;
             }
         }
@@ -194,26 +222,29 @@ impl<'a> Traffic<'a> {
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
+        self.tally.on_way += sightings.len() as u64;
         watches.iter_mut().for_each(|watch| watch.tick(at_s, &sightings));
-        for (from, message) in broadcasts {
-            let to: Vec<usize> = self.travellers.keys().copied().filter(|to| self.reaches(from, *to)).collect();
-            self.air.broadcast(at_s, from, to, message);
-        }
+        self.broadcast(at_s, broadcasts);
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
         }
         self.dismiss(at_s, watches, log)
     }
 
-    /// Whether one is within the radio's range of another one.
-    fn reaches(&self, from: usize, to: usize) -> bool {
-        let (Some(here), Some(there)) = (self.point(from), self.point(to)) else { return false };
-        from != to && Shift::between(here, there).length_m() <= self.conditions.radio.range_m
-    }
-
-    fn point(&self, index: usize) -> Option<crate::ground::Point> {
-        let traveller = self.travellers.get(&index)?;
-        Some(traveller.ground.road.at(traveller.way_m()).0)
+    /// Messages go to everyone within the radio's range.
+    fn broadcast(&mut self, at_s: f64, messages: Vec<(usize, V2xMessage)>) {
+        if messages.is_empty() {
+            return;
+        }
+        let place = |traveller: &Traveller| traveller.ground.road.at(traveller.way_m()).0;
+        let places: BTreeMap<usize, Point> = self.travellers.iter().map(|(index, one)| (*index, place(one))).collect();
+        let range_m = self.conditions.radio.range_m;
+        for (from, message) in messages {
+            let Some(here) = places.get(&from) else { continue };
+            let reaches =
+                |(to, there): &(&usize, &Point)| **to != from && Shift::between(*here, **there).length_m() <= range_m;
+            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), message);
+        }
     }
 
     fn sight(&self, at_s: f64, traveller: &Traveller) -> Sighting {

@@ -33,6 +33,7 @@ pub fn text(rows: &[Row]) -> String {
 #[must_use]
 pub fn standing(row: &Row) -> String {
     let published = if row.published { "published" } else { "not published" };
-    let (word, ratio, best) = (row.standing.word(), significant(row.ours_over_best, 3), row.best_baseline);
+    let (word, ratio, best) =
+        (row.standing.word(), significant(row.ours_over_best, 3), row.best_baseline.replace('_', " "));
     format!("{published}; holdover {word}, {ratio} times the rms of {best}")
 }

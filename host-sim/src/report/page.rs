@@ -38,6 +38,11 @@ impl Cell {
     pub fn limit(text: impl Into<String>, met: bool) -> Self {
         Self { text: text.into(), class: if met { "met" } else { "missed" } }
     }
+
+    /// A number that meets or misses a limit.
+    pub fn judged(text: impl Into<String>, met: bool) -> Self {
+        Self { text: text.into(), class: if met { "number met" } else { "number missed" } }
+    }
 }
 
 /// A page that grows from top to bottom.

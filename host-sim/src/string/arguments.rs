@@ -44,6 +44,10 @@ pub struct StringArguments {
     #[arg(long, value_name = "N", default_value = "1")]
     pub seed: u64,
 
+    /// So many seeds, from `--seed` on; the largest ratio of all of them counts
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
+    pub seeds: u64,
+
     /// Print the results as one JSON value on stdout
     #[arg(long)]
     pub json: bool,
@@ -62,6 +66,7 @@ pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim string                            the shipped gains and time gap
   holdover-sim string --time-gaps 1,0.8,0.6 --json
+  holdover-sim string --delays 0,0.025,0.05 --losses 0,0.1 --seeds 5
   holdover-sim string --delays 0.05 --losses 0.1 --frequencies 0.1,0.2
 
 Runs:

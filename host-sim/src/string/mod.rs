@@ -39,7 +39,7 @@ struct Results<'a> {
 /// A configuration that the units refuse, and places that cannot be written.
 pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
     let cells = options.time_gaps_s.len() * options.delays_s.len() * options.losses.len();
-    let bar = output::progress((cells * options.disturbances.len()) as u64);
+    let bar = output::progress((cells * options.disturbances.len()) as u64 * options.seeds);
     let rows = rows::run(options, || bar.inc(1))?;
     bar.finish_and_clear();
     let failures = rows::failures(&rows);

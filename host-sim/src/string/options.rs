@@ -18,8 +18,10 @@ pub struct StringOptions {
     pub losses: Vec<f64>,
     /// What the leader does.
     pub disturbances: Vec<Disturbance>,
-    /// Seed of what is lost.
+    /// The first seed of what is lost.
     pub seed: u64,
+    /// How many; at least 1, and none beyond 2^64.
+    pub seeds: u64,
     /// Results as JSON.
     pub json: bool,
     /// Folder of the report; `None`: no report.
@@ -32,18 +34,22 @@ impl StringOptions {
     /// # Errors
     /// Values that cannot be, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
-        let StringArguments { time_gaps, delays, losses, frequencies, seed, json, out, no_report } = arguments;
+        let StringArguments { time_gaps, delays, losses, frequencies, seed, seeds, json, out, no_report } = arguments;
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
         within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
+        if seeds.checked_sub(1).and_then(|more| seed.checked_add(more)).is_none() {
+            let remedy = "give at least 1, and no seed beyond 2^64";
+            return Err(Error::new(format!("is {seeds}"), remedy).in_option("--seeds"));
+        }
         let report = (!no_report).then_some(out);
         if let Some(folder) = &report {
             can_be_folder(folder)?;
         }
         let sines = frequencies.into_iter().map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
-        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, json, report })
+        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, json, report })
     }
 
     /// The same command again.
@@ -53,12 +59,13 @@ impl StringOptions {
         let frequencies: Vec<f64> =
             self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} --frequencies {} --seed {}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} --frequencies {} --seed {} --seeds {}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),
             list(&frequencies),
-            self.seed
+            self.seed,
+            self.seeds
         )
     }
 }

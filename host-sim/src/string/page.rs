@@ -34,7 +34,7 @@ fn table(page: &mut Page, rows: &[Row]) {
             Cell::number(row.time_gap_s.to_string()),
             Cell::number(row.delay_s.to_string()),
             Cell::number(row.loss.to_string()),
-            Cell::limit(ratio(row.holdover.as_ref()), met),
+            Cell::judged(ratio(row.holdover.as_ref()), met),
             Cell::text(place.unwrap_or_default()),
             Cell::number(ratio(row.as_it_stands.as_ref())),
             Cell::number(ratio(row.age_times_speed.as_ref())),

@@ -57,23 +57,30 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
             cells.extend(options.losses.iter().map(|&loss| (time_gap_s, delay_s, loss)));
         }
     }
-    let jobs: Vec<_> =
-        cells.iter().flat_map(|cell| options.disturbances.iter().map(move |which| (*cell, *which))).collect();
-    let one = |&(cell, disturbance)| {
-        let outcome = outcome(cell, disturbance, options.seed);
+    let seeds: Vec<u64> = (0..options.seeds).map(|more| options.seed + more).collect();
+    let mut jobs = Vec::new();
+    for &cell in &cells {
+        for &disturbance in &options.disturbances {
+            jobs.extend(seeds.iter().map(|&seed| (cell, disturbance, seed)));
+        }
+    }
+    let one = |&(cell, disturbance, seed)| {
+        let outcome = outcome(cell, disturbance, seed);
         done();
         outcome
     };
     // Collected in order before anything is compared, so that the number of threads decides nothing.
     let outcomes: Vec<Outcome> = jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
-    let of_cell = |(cell, outcomes): (&(f64, f64, f64), &[Outcome])| row(*cell, outcomes);
-    Ok(cells.iter().zip(outcomes.chunks(options.disturbances.len())).map(of_cell).collect())
+    let of_cell = |(cell, outcomes): (&(f64, f64, f64), &[Outcome])| row(*cell, outcomes, seeds.len());
+    Ok(cells.iter().zip(outcomes.chunks(options.disturbances.len() * seeds.len())).map(of_cell).collect())
 }
 
-fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome]) -> Row {
-    let worst = |of: fn(&Outcome) -> &Option<Worst>| {
+/// The outcomes of all disturbances, of each all seeds.
+fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome], seeds: usize) -> Row {
+    let largest = |outcomes: &[Outcome], of: fn(&Outcome) -> &Option<Worst>| {
         outcomes.iter().filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
     };
+    let worst = |of| largest(outcomes, of);
     Row {
         time_gap_s,
         delay_s,
@@ -81,7 +88,7 @@ fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome]) -> Ro
         holdover: worst(|outcome| &outcome.holdover),
         as_it_stands: worst(|outcome| &outcome.as_it_stands),
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
-        by_disturbance: outcomes.iter().map(|outcome| outcome.holdover.clone()).collect(),
+        by_disturbance: outcomes.chunks(seeds).map(|of_one| largest(of_one, |outcome| &outcome.holdover)).collect(),
         collisions: outcomes.iter().map(|outcome| outcome.collisions).sum(),
     }
 }
@@ -155,4 +162,24 @@ pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
     let mut gaps: Vec<f64> = rows.iter().map(|row| row.time_gap_s).collect();
     gaps.sort_by(|a, b| b.total_cmp(a));
     gaps.into_iter().take_while(|gap| holds(*gap)).last()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(ratio: f64, disturbance: &str) -> Outcome {
+        let worst = Some(Worst { ratio, disturbance: disturbance.into(), vehicle: 1 });
+        Outcome { holdover: worst.clone(), as_it_stands: worst, age_times_speed: None, collisions: 1 }
+    }
+
+    #[test]
+    fn the_largest_of_all_seeds_counts_for_each_disturbance_and_for_all() {
+        let outcomes =
+            [("step", 0.9), ("step", 1.1), ("1 Hz", 0.7), ("1 Hz", 0.6)].map(|(which, ratio)| outcome(ratio, which));
+        let row = row((1.0, 0.1, 0.2), &outcomes, 2);
+        let ratios: Vec<f64> = row.by_disturbance.iter().flatten().map(|worst| worst.ratio).collect();
+        assert_eq!(ratios, [1.1, 0.7]);
+        assert_eq!((row.holdover.unwrap().ratio, row.age_times_speed, row.collisions), (1.1, None, 4));
+    }
 }

@@ -3,6 +3,7 @@
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
+use std::rc::Rc;
 
 use crate::channel::{Channel, ChannelModel, Link};
 use crate::modem::V2xMessage;
@@ -13,7 +14,8 @@ struct Flight {
     arrives_us: i64,
     number: u64,
     to: usize,
-    message: V2xMessage,
+    /// All copies of a broadcast are one.
+    message: Rc<V2xMessage>,
 }
 
 impl PartialEq for Flight {
@@ -34,14 +36,14 @@ impl Ord for Flight {
 }
 
 /// A message that has arrived.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Arrived {
     /// When, in seconds of the run.
     pub at_s: f64,
     /// At whom.
     pub to: usize,
     /// What it says.
-    pub message: V2xMessage,
+    pub message: Rc<V2xMessage>,
 }
 
 /// The channel and all that is on its way in it.
@@ -60,12 +62,13 @@ impl Air {
 
     /// Sends a message from one vehicle to those.
     pub fn broadcast(&mut self, at_s: f64, from: usize, to: impl IntoIterator<Item = usize>, message: V2xMessage) {
+        let message = Rc::new(message);
         for to in to {
             for arrives_s in self.channel.send(Link { from, to }, at_s) {
                 self.sent += 1;
                 // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
                 let arrives_us = micros(arrives_s).max(micros(at_s) + 1);
-                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message }));
+                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message: Rc::clone(&message) }));
             }
         }
     }

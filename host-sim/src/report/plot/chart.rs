@@ -39,13 +39,25 @@ pub struct Chart {
     pub guides: Vec<Guide>,
     /// The data.
     pub layers: Vec<Layer>,
+    /// All names stand in the legend, as for lines that end in the middle.
+    pub listed: bool,
 }
 
 impl Chart {
     /// An empty chart of the usual height.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         let (shades, guides, layers) = (Vec::new(), Vec::new(), Vec::new());
-        Self { title: title.into(), description: String::new(), x, y, height: 230.0, shades, guides, layers }
+        Self {
+            title: title.into(),
+            description: String::new(),
+            x,
+            y,
+            height: 230.0,
+            shades,
+            guides,
+            layers,
+            listed: false,
+        }
     }
 
     fn axes(&self) -> (&Axis, &Axis) {
@@ -64,7 +76,7 @@ impl Chart {
     /// Lines are labelled where they end if there is room; everything else, or everything, stands in the legend.
     fn labels_ends(&self, width: Width) -> bool {
         let lines = self.layers.iter().filter(|l| l.entry().swatch == Swatch::Line && !l.entry().name.is_empty());
-        width == Width::Wide && lines.count() <= MOST_END_LABELS
+        !self.listed && width == Width::Wide && lines.count() <= MOST_END_LABELS
     }
 }
 

@@ -51,7 +51,7 @@ impl Figure for HeatMap {
                 let area = Area { left, top, right: left + pitch - 1.0, bottom: top + ROW - 1.0 };
                 let depth = (shade.share.clamp(0.0, 1.0) * DEPTHS).round();
                 svg.rectangle(&format!("heat h{depth}"), area);
-                svg.text("tick", Anchor::Middle, (left + pitch / 2.0, top + 15.0), &shade.label);
+                svg.text("value", Anchor::Middle, (left + pitch / 2.0, top + 15.0), &shade.label);
             }
         }
         svg.finish(pixels, TOP + ROW * self.rows.len() as f64 + 4.0, &self.title, &self.description)

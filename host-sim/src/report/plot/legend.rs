@@ -13,6 +13,8 @@ const BETWEEN: f64 = 16.0;
 const LABEL_PITCH: f64 = TEXT_HEIGHT + 2.0;
 const LABEL_OFFSET: f64 = 12.0;
 const LABEL_MOST: f64 = 150.0;
+/// Labels are bold, which makes them so many times as wide.
+const BOLD: f64 = 1.1;
 
 /// How an entry shows its tone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +92,7 @@ pub(super) fn shortened(text: &str, width: f64) -> String {
 /// The width that labels at the ends of lines need beside the frame.
 pub(super) fn label_margin<'a>(names: impl IntoIterator<Item = &'a str>) -> f64 {
     let widest = names.into_iter().map(text_width).fold(0.0, f64::max).min(LABEL_MOST);
-    if widest > 0.0 { widest + LABEL_OFFSET + 4.0 } else { 0.0 }
+    if widest > 0.0 { BOLD * widest + LABEL_OFFSET + 4.0 } else { 0.0 }
 }
 
 /// Labels lines at their ends, right of `area`: each as near to its line as the others allow.

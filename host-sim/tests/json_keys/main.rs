@@ -1,0 +1,151 @@
+//! `--json` of every command: its keys are those that `docs` tells, no more and no less, and outside `timing` the same input is
+//! the same bytes on any number of threads.
+
+mod documented;
+
+use std::path::Path;
+use std::process::Command;
+
+use documented::{Documents, differences};
+use holdover::time::Duration;
+use holdover_sim::hil::judge::judge;
+use holdover_sim::hil::lock_step;
+use holdover_sim::hil::session::{self, Setup};
+use holdover_sim::hil::virtual_bus::{Behaviour, bench};
+use holdover_sim::scenario::{Overrides, Scenario};
+use holdover_sim::world;
+use serde_json::Value;
+
+fn run(folder: &Path, arguments: &str, threads: &str) -> Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
+        .env("RAYON_NUM_THREADS", threads)
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .arg("--json")
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{arguments}: {said}");
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{arguments}: {error}\n{said}"))
+}
+
+/// What is left without wall-clock figures, as bytes.
+fn timeless(value: &Value) -> String {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(members) => {
+                members.remove("timing");
+                members.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    let mut value = value.clone();
+    strip(&mut value);
+    value.to_string()
+}
+
+/// Runs each line twice, and holds what comes against the table under that heading.
+fn holds(heading: &str, folder: &Path, lines: &[&str]) {
+    let once = |arguments: &&str| {
+        let [first, again] = ["1", "3"].map(|threads| run(folder, arguments, threads));
+        assert_eq!(timeless(&first), timeless(&again), "{arguments}");
+        first
+    };
+    let values: Vec<Value> = lines.iter().map(once).collect();
+    let mut differences = differences(&Documents::read().keys(heading), &values);
+    // A corridor has the rows of `motions` with a report only; they are held below.
+    differences.retain(|difference| !difference.starts_with("motions[]."));
+    assert!(differences.is_empty(), "{heading}: {}", differences.join("; "));
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+#[test]
+fn of_run_on_a_string() {
+    let folder = folder();
+    std::fs::write(folder.path().join("short.toml"), "duration_s = 3").unwrap();
+    holds("run", folder.path(), &["run short.toml --no-report"]);
+}
+
+#[test]
+fn of_run_on_a_corridor() {
+    let folder = folder();
+    let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
+    let text =
+        text.replacen("duration_s = 600.0", "duration_s = 10.0", 1).replacen("after_s = 60.0", "after_s = 0.0", 1);
+    // The ego is to come within the ten seconds.
+    let text = text.replacen("ego_road = \"2nd Street, northwest\"", "ego_road = \"Harrison Street, southwest\"", 1);
+    std::fs::write(folder.path().join("short.toml"), text).unwrap();
+    holds("--json", folder.path(), &["run short.toml --no-report --picture p.svg --vehicles 1,2"]);
+}
+
+#[test]
+fn of_evaluate() {
+    let folder = folder();
+    let drive = |t: u32| format!("{},{},10\n", f64::from(t) / 10.0, t);
+    let motion: String = (0..60).map(drive).collect();
+    std::fs::write(folder.path().join("drive.csv"), format!("t_s,position_m,speed_mps\n{motion}")).unwrap();
+    let link: String = (0..60).map(|t| format!("{},0.05\n", f64::from(t) / 10.0)).collect();
+    std::fs::write(folder.path().join("link.csv"), format!("t_s,delay_s\n{link}")).unwrap();
+    let lines =
+        ["--channel link.csv", "--outage 0.5,1"].map(|how| format!("evaluate --motion drive.csv {how} --no-report"));
+    holds("evaluate", folder.path(), &lines.each_ref().map(String::as_str));
+}
+
+#[test]
+fn of_sweep_and_price() {
+    let folder = folder();
+    std::fs::write(folder.path().join("short.toml"), "duration_s = 5").unwrap();
+    holds("sweep", folder.path(), &["sweep short.toml --seeds 2 --steps 0.1,1 --no-report"]);
+    holds("price", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
+}
+
+#[test]
+fn of_gains() {
+    holds("gains", folder().path(), &["gains --no-report"]);
+}
+
+#[test]
+fn of_string() {
+    holds("string", folder().path(), &["string --delays 0.1 --losses 0.2 --frequencies 1 --seeds 2 --no-report"]);
+}
+
+#[test]
+fn of_motions() {
+    holds("motions", folder().path(), &["motions --silences 1 --no-report"]);
+}
+
+#[test]
+fn of_replay() {
+    let folder = folder();
+    std::fs::write(folder.path().join("short.toml"), "duration_s = 2").unwrap();
+    run(folder.path(), "run short.toml --no-report --candump good.log", "1");
+    // Its checksum is not right.
+    std::fs::write(folder.path().join("bad.log"), "(1.000000) can0 484#0102030405060708\n").unwrap();
+    holds("replay", folder.path(), &["replay good.log", "replay bad.log"]);
+}
+
+#[test]
+fn of_hil() {
+    let scenario = Scenario::parse(Path::new("hil"), "duration_s = 4", &Overrides::default()).unwrap();
+    let config = world::config(&scenario, scenario.ego);
+    let faults = vec!["corrupt@1:1".parse().unwrap()];
+    let setup = Setup { scenario, config, wait: Duration::from_millis(3000), faults };
+    let json = |is_in_steps: bool| {
+        let (port, mut rig) = bench(Behaviour::good(setup.config, is_in_steps));
+        let outcome = if is_in_steps {
+            lock_step::run(&setup, port, &mut rig, |_| {})
+        } else {
+            session::run(&setup, port, &mut rig, |_| {})
+        };
+        serde_json::to_value(judge(&setup, &outcome.unwrap())).unwrap()
+    };
+    let values = [json(true), json(false)];
+    assert_eq!(timeless(&values[0]), timeless(&json(true)));
+    let differences = differences(&Documents::read().keys("hil"), &values);
+    assert!(differences.is_empty(), "{}", differences.join("; "));
+}
