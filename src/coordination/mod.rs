@@ -14,18 +14,20 @@
 //!   Beyond the last one it is in no order any more, but goes on saying where it is. Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
 
 pub mod axis;
+mod gentleness;
 pub mod map;
 pub mod order;
 pub mod path;
 
 pub use axis::{Axis, Standing};
+pub use gentleness::Gentleness;
 pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
 pub use order::{Arrival, Entry};
 pub use path::{Path, Place, Scale, Segment};
 
 use crate::held::Held;
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
+use crate::units::{Distance, Position, Speed};
 use crate::wire::{Predecessor, StationHash};
 
 /// Behind a vehicle that comes by a crossing leg the standstill distance is the length of the conflict area, if that is longer:
@@ -47,43 +49,6 @@ pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 /// of a position on the globe (11 mm) out.
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
-
-/// How hard the ego brakes, at most, to make way for one on a crossing leg: the first of these by which it would still come to
-/// a stand before the conflict area. The order may put somebody ahead who is just as near, and the law then asks for a gap of tens
-/// of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot hear it has the less to be
-/// surprised by: in 4 s of the first, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
-const GENTLE_MM_PER_S2: [i32; 3] = [600, 1_000, 1_500];
-
-/// What it takes until the brakes are on.
-const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
-
-/// How gently the ego brakes for its target: so many from the end of [`GENTLE_MM_PER_S2`], or 0, as hard as its configuration
-/// lets its controller. So the harder is the smaller one.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Gentleness(u8);
-
-impl Gentleness {
-    /// As the configuration says.
-    pub(crate) const NONE: Self = Self(0);
-
-    /// The gentlest braking by which the ego comes to a stand within this way.
-    #[allow(clippy::cast_possible_truncation)] // of three
-    fn within(way: Distance, speed: Speed) -> Self {
-        let (mm_per_s, left) = (i64::from(speed.to_mm_per_s()), way.minus(speed.over(GENTLE_REACTION)));
-        let stands = |mm_per_s2: &&i32| {
-            let mm = crate::fixed::quotient(mm_per_s.saturating_mul(mm_per_s), i64::from(**mm_per_s2).saturating_mul(2));
-            Distance::from_mm(crate::fixed::saturate_i32(mm)) <= left
-        };
-        Self(GENTLE_MM_PER_S2.iter().rev().take_while(stands).count() as u8)
-    }
-
-    /// The braking that it allows of what the configuration does.
-    pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
-        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.iter().nth_back(place));
-        gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))
-    }
-}
 
 /// Whom the ego has to mind, as of the last review.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

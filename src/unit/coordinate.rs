@@ -4,7 +4,9 @@
 use heapless::Vec;
 
 use super::OnboardUnit;
-use crate::coordination::{Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind};
+use crate::coordination::{
+    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind,
+};
 use crate::estimator::Reading;
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};

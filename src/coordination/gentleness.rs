@@ -1,0 +1,78 @@
+//! How gently the ego makes way for one that comes by a leg that crosses its own: the way to the conflict area and its speed enter,
+//! a limit on its braking leaves.
+
+use crate::fixed::{quotient, saturate_i32};
+use crate::units::{Acceleration, Distance, Seconds, Speed};
+
+/// How hard the ego brakes, at most, to make way for one on a crossing leg: the first of these by which it would still come to
+/// a stand before the conflict area. The order may put somebody ahead who is just as near, and the law then asks for a gap of tens
+/// of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot hear it has the less to be
+/// surprised by: in 4 s of the first, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
+const GENTLE_MM_PER_S2: [i32; 3] = [600, 1_000, 1_500];
+
+/// What it takes until the brakes are on.
+const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
+
+/// How gently the ego brakes for its target: so many from the end of [`GENTLE_MM_PER_S2`], or 0, as hard as its configuration
+/// lets its controller. So the harder is the smaller one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Gentleness(u8);
+
+impl Gentleness {
+    /// As the configuration says.
+    pub(crate) const NONE: Self = Self(0);
+
+    /// The gentlest braking by which the ego comes to a stand within this way.
+    #[allow(clippy::cast_possible_truncation)] // of three
+    pub(crate) fn within(way: Distance, speed: Speed) -> Self {
+        let (mm_per_s, left) = (i64::from(speed.to_mm_per_s()), way.minus(speed.over(GENTLE_REACTION)));
+        let stands = |mm_per_s2: &&i32| {
+            let mm = quotient(mm_per_s.saturating_mul(mm_per_s), i64::from(**mm_per_s2).saturating_mul(2));
+            Distance::from_mm(saturate_i32(mm)) <= left
+        };
+        Self(GENTLE_MM_PER_S2.iter().rev().take_while(stands).count() as u8)
+    }
+
+    /// The braking that it allows of what the configuration does.
+    pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
+        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.iter().nth_back(place));
+        gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_the_gentlest_braking_that_stands_within_the_way_and_not_a_millimetre_more() {
+        let allowed = |mm, mm_per_s| {
+            let gentle = Gentleness::within(Distance::from_mm(mm), Speed::from_mm_per_s(mm_per_s));
+            gentle.limit(Acceleration::from_mm_per_s2(4_000)).to_mm_per_s2()
+        };
+        // 12 m/s for 1 s, then v²/2b.
+        for (mm_per_s2, mm) in [(600, 132_000), (1_000, 84_000), (1_500, 60_000)] {
+            assert_eq!(allowed(mm + 1, 12_000), mm_per_s2);
+            assert!(allowed(mm - 1, 12_000) > mm_per_s2);
+        }
+        assert_eq!(allowed(59_900, 12_000), 4_000);
+        assert_eq!(allowed(-1, 0), 4_000);
+        assert_eq!(allowed(0, 0), 600);
+    }
+
+    #[test]
+    fn it_never_makes_a_vehicle_brake_harder_than_it_would() {
+        let gentle = Gentleness::within(Distance::from_mm(60_001), Speed::from_mm_per_s(12_000));
+        assert_eq!(gentle.limit(Acceleration::from_mm_per_s2(1_200)).to_mm_per_s2(), 1_200);
+        assert_eq!(Gentleness::NONE.limit(Acceleration::from_mm_per_s2(4_000)).to_mm_per_s2(), 4_000);
+    }
+
+    #[test]
+    fn of_two_the_harder_is_the_smaller() {
+        assert!(Gentleness::NONE < Gentleness::within(Distance::from_mm(61_000), Speed::from_mm_per_s(12_000)));
+        let (near, far) = (Distance::from_mm(61_000), Distance::from_mm(200_000));
+        let speed = Speed::from_mm_per_s(12_000);
+        assert!(Gentleness::within(near, speed) < Gentleness::within(far, speed));
+    }
+}
