@@ -202,7 +202,6 @@ impl<const PEERS: usize> Coordination<PEERS> {
     }
 
     /// Where the conflict area of that crossing ends on the ego's axis.
-    #[must_use]
     pub(crate) fn end_of(&self, place: usize) -> Option<Position> {
         let crossing = self.itinerary?.crossings.get(place)?;
         Some(self.crossing_point(crossing)?.ahead(crossing.intersection.half))
@@ -377,14 +376,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// there: if that one comes by a leg that crosses its own, the more so the farther the conflict area is.
     pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
-        let crossing = crossing.filter(|_| standing.crossing == next);
-        let point = crossing.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)));
-        match point {
-            Some((crossing, point)) if crossing.intersection.conflict(crossing.leg, standing.leg) => {
-                Gentleness::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
-            }
-            _ => Gentleness::NONE,
-        }
+        let Some(crossing) = crossing.filter(|_| standing.crossing == next) else { return Gentleness::NONE };
+        let Some(point) = self.crossing_point(crossing) else { return Gentleness::NONE };
+        let Intersection { half, .. } = *crossing.intersection;
+        let crosses = crossing.intersection.conflict(crossing.leg, standing.leg);
+        if crosses { Gentleness::within(point.ahead_of(front).minus(half), speed) } else { Gentleness::NONE }
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.
