@@ -120,3 +120,17 @@ fn after_a_pause_a_station_says_first_where_it_is() {
     assert!(!bus.hear(1.0, &message(1, None)));
     assert!(bus.hear(1.1, &message(1, Some(route(4, 0, 40)))));
 }
+
+#[test]
+fn a_station_that_was_silent_while_it_left_is_heard_to_have_left() {
+    let mut bus = Bus::new();
+    assert!(bus.hear(0.0, &message(3, Some(route(4, 0, 20)))));
+    // Then it was silent for 8 s. It has crossed by another leg, and turns to where the unit does not go.
+    let heard: Vec<bool> = (0..8)
+        .map(|tenths| bus.hear(8.0 + 0.1 * f64::from(tenths), &message(3, Some(route(4, 0, -60 - tenths)))))
+        .collect();
+    assert_eq!(heard, [true, true, true, true, false, false, false, false]);
+    // It matters again, and then no more.
+    assert!(bus.hear(9.0, &message(3, Some(route(5, 0, 150)))));
+    assert!(bus.hear(9.1, &message(3, Some(route(9, 0, 150)))));
+}

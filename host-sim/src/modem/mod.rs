@@ -6,7 +6,8 @@
 //! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
 //! less relevant one; whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a
 //! silence. A slot that changes hands rests until nothing has been said in it for [`SLOT_REUSE_S`], because before that the
-//! unit takes the new station for a mistake. A station that cannot matter is not relayed even if there is room.
+//! unit takes the new station for a mistake. A station that cannot matter is not relayed even if there is room;
+//! but one in a slot that ceases to matter is until the unit has heard that.
 //!
 //! *Intents* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
 //! every [`INTENT_EVERY_S`], so that eight peers fit the bus.
@@ -93,6 +94,8 @@ struct Tenant {
     from_s: f64,
     /// How often it has been relayed, up to [`NEWS`].
     relayed: u8,
+    /// How often it has been relayed since it ceased to matter.
+    gone: u8,
     intent: Option<(Intent, f64)>,
 }
 
@@ -146,7 +149,7 @@ impl Relay {
         let station = message.motion.station;
         self.place(at_s, message);
         let rank = self.rank(station, at_s);
-        if rank == Rank::Irrelevant {
+        if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
             return;
         }
         let Some(slot) = self.slot_of(station, rank, at_s) else {
@@ -160,6 +163,7 @@ impl Relay {
             Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
                 tenant.relayed_s = at_s;
                 tenant.relayed = tenant.relayed.saturating_add(1).min(NEWS);
+                tenant.gone = if rank == Rank::Irrelevant { tenant.gone.saturating_add(1) } else { 0 };
             }
             _ => return,
         }
@@ -175,6 +179,12 @@ impl Relay {
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             debug_assert!(sent.is_ok(), "a peer says nothing that the catalogue has no line for");
         }
+    }
+
+    /// Whether a station that matters no more is in a slot and has not said so: who was silent while it left would otherwise be
+    /// waited for, because the unit last heard of it on its way.
+    fn has_to_say_so(&self, station: StationHash) -> bool {
+        self.slots.iter().flatten().any(|tenant| tenant.station == station && tenant.gone < NEWS)
     }
 
     /// Takes note of where a station says it is; what is older than a silence that a slot outlives is forgotten.
@@ -204,7 +214,7 @@ impl Relay {
             }
             (None, _) => self.least_relevant(rank, at_s)?,
         };
-        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, intent: None });
+        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, gone: 0, intent: None });
         Some(slot)
     }
 
