@@ -16,10 +16,8 @@
 #                    in VCAN_SERIAL0, then in VCAN_SERIAL1, and so on
 #   --timeout S      end the command after S seconds (default: 600)
 #   --memory SIZE    of user-mode Linux (default: 1G, taken as it is used)
-#   --real-time      let it come before the machine's other programs, where this user may say so, as a bus waits for none;
-#                    a command that does nothing but compute then has a processor for itself
-#   --busy           the same for a command that never rests: Linux takes a twentieth of every second from such real-time
-#                    programs, so it comes first by its nice value
+#   --real-time      let it come before the machine's other programs, where this user may say so, as a bus waits for none. A
+#                    command that never rests loses 50 ms of each second to them all the same: Linux sees to it
 #   --uml            use user-mode Linux even where the machine has vcan
 #   -h, --help       this text
 #
@@ -86,7 +84,7 @@ usage() {
 
 wrong() {
     say "$*"
-    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--real-time | --busy] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
+    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--real-time] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
     exit 2
 }
 
@@ -123,12 +121,9 @@ has_slcan() {
     [ "$(id -u)" = 0 ] && { [ -d /sys/module/slcan ] || modprobe slcan 2>/dev/null; }
 }
 
-# Adds to `first` what lets a command come before others, as far as this user may.
+# Adds to `first` what lets a command come before others, if it is to and this user may say so.
 come_first() {
-    case $real_time in
-    yes) ! chrt --rr 1 true 2>/dev/null || first+=(chrt --rr 1) ;;
-    busy) [ -n "$(nice -n -20 true 2>&1)" ] || first+=(nice -n -20) ;;
-    esac
+    if [ $real_time = true ] && chrt --rr 1 true 2>/dev/null; then first+=(chrt --rr 1); fi
 }
 
 run_here() {
@@ -217,7 +212,7 @@ run_in_uml() {
     # It is several processes of which one runs at a time; that they stay on one processor makes each system call of the
     # command's three times as fast.
     local first=()
-    [ $real_time = no ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
+    [ $real_time = false ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
     come_first
     [ ${#serial[@]} = 0 ] || first+=(perl -e "$carry" "${serial[@]}" --)
     # Through a pipe, because the kernel would put the user's terminal into raw mode.
@@ -245,13 +240,12 @@ run_in_uml() {
     exit "$(cat "$job/status")"
 }
 
-limit=600 memory=1G uml=false real_time=no serial=()
+limit=600 memory=1G uml=false real_time=false serial=()
 while [ $# -gt 0 ]; do
     case $1 in
     -h | --help) usage && exit ;;
     --uml) uml=true && shift ;;
-    --real-time) real_time=yes && shift ;;
-    --busy) real_time=busy && shift ;;
+    --real-time) real_time=true && shift ;;
     --serial | --timeout | --memory)
         [ $# -ge 2 ] || wrong "$1 needs a value"
         case $1 in

@@ -139,6 +139,34 @@ fn a_device_that_answers_something_else_than_its_twin_is_a_verdict() {
     assert!(results.deviation.unexplained > 100, "{:?}", results.deviation);
 }
 
+/// A seventieth of the time it stands still, as an emulator does that gets no processor.
+fn pauses(behaviour: &mut Behaviour) {
+    behaviour.pause = Some((Duration::from_millis(1_770), Duration::from_millis(25)));
+}
+
+#[test]
+fn a_device_that_stands_still_now_and_then_differs_by_what_its_time_stamps_explain() {
+    let results = run(&setup("", &[]), pauses);
+    assert_eq!(results.deviation.unexplained, 0, "{:?}", results.reasons);
+    assert!(results.deviation.command_mps2 > 0.02 || results.deviation.position_m > 0.1, "{:?}", results.deviation);
+}
+
+#[test]
+fn what_is_wrong_with_a_device_is_not_explained_by_its_standing_still() {
+    let wrong: [fn(&mut Behaviour); 2] = [
+        |behaviour| behaviour.garble = one_step_too_much,
+        |behaviour| behaviour.config.prediction.model.standstill = false, // keeps 2 m less than its twin
+    ];
+    for wrong in wrong {
+        let results = run(&setup(SHORT, &[]), |behaviour| {
+            pauses(behaviour);
+            wrong(behaviour);
+        });
+        assert_eq!(results.verdict, "failed");
+        assert!(results.deviation.unexplained > 100, "{:?}", results.deviation);
+    }
+}
+
 /// Adds 0.256 m/s² to every command, well protected.
 fn one_step_too_much(frame: Frame) -> Frame {
     let Id::Standard(id) = frame.id() else { return frame };

@@ -14,6 +14,9 @@ use crate::bus::Frame;
 /// Motions that are remembered: a second of them.
 const INPUTS: usize = 100;
 
+/// Commands by which the lag of one is told: of a quarter of a second, in which clocks drift apart by nothing to speak of.
+const LAG_BEATS: usize = 25;
+
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beat {
@@ -131,6 +134,18 @@ impl Monitor {
         News::Command(command, is_new)
     }
 
+    /// How much later the last command was on the bus than the device's own count of periods says, by the earliest of those
+    /// just before it: it ticked late, or its line was slow. It does not tell a delay that all of them have.
+    #[must_use]
+    pub fn lag(&self) -> Duration {
+        let Some(last) = self.beats.last() else { return Duration::ZERO };
+        let lag = |beat: &Beat| {
+            let counted = i64::from(last.tick.wrapping_sub(beat.tick) & 63);
+            last.at.since(beat.at).as_micros() - counted * self.period.as_micros()
+        };
+        Duration::from_micros(self.beats.iter().rev().take(LAG_BEATS).map(lag).max().unwrap_or(0))
+    }
+
     /// Its commands.
     #[must_use]
     pub fn beats(&self) -> &[Beat] {
@@ -226,6 +241,18 @@ mod tests {
         }
         let missed = device.monitor.missed();
         assert_eq!(missed, [(Instant::from_micros(56_000), 3)]);
+    }
+
+    #[test]
+    fn a_command_that_comes_later_than_its_count_says_has_a_lag() {
+        let mut device = Device::new();
+        let mut lags = Vec::new();
+        for (millis, tick) in [(0, 61), (10, 62), (21, 63), (52, 0), (53, 1), (54, 2), (60, 3), (80, 4)] {
+            device.command(millis, tick);
+            lags.push(device.monitor.lag().as_millis());
+        }
+        // The first frame is not trusted. From the fourth on: a stall, its backlog, on time again, and a lost period.
+        assert_eq!(lags, [0, 0, 1, 22, 13, 4, 0, 10]);
     }
 
     #[test]

@@ -143,7 +143,9 @@ impl Ears {
                     self.restart();
                 }
                 // Before the run the two may have been given power at different times.
-                let window = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                let gap = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                let window =
+                    gap.max(Duration::from_micros(self.config.period.as_micros() + self.monitor.lag().as_micros()));
                 self.last_beat = Some(at);
                 self.told = self.twin.tick(at).map(|said| (said, window));
                 if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0) {
