@@ -5,7 +5,7 @@ use holdover::Config;
 use holdover::time::Duration;
 use holdover::wire::{StationHash, e2e};
 use holdover_sim::bus::{Frame, Port};
-use holdover_sim::hil::judge::{Results, judge};
+use holdover_sim::hil::judge::{LATENCY_P99_MS, Results, judge};
 use holdover_sim::hil::lock_step;
 use holdover_sim::hil::rig::Rig;
 use holdover_sim::hil::session::{self, Setup};
@@ -20,7 +20,7 @@ fn setup(scenario: &str, faults: &[&str]) -> Setup {
     let scenario = Scenario::parse(Path::new("test"), scenario, &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    Setup { scenario, config, wait: Duration::from_millis(3000), faults }
+    Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms: LATENCY_P99_MS, faults }
 }
 
 /// Four seconds on a clean channel.
@@ -115,6 +115,18 @@ fn a_late_device_is_a_verdict() {
     let results = run(&setup(SHORT, &[]), |behaviour| behaviour.latency = Duration::from_millis(24));
     assert_eq!(results.verdict, "failed");
     assert!(results.reasons[0].starts_with("late: commands 3"), "{:?}", results.reasons);
+}
+
+#[test]
+fn how_late_is_too_late_can_be_said() {
+    let mut setup = setup(SHORT, &[]);
+    setup.latency_p99_ms = 5.0;
+    let results = run(&setup, |behaviour| behaviour.latency = Duration::from_millis(7));
+    assert!(
+        results.reasons[0].ends_with("ms after the motion in one of 100, of at most 5 ms"),
+        "{:?}",
+        results.reasons
+    );
 }
 
 #[test]

@@ -176,15 +176,17 @@ impl Monitor {
         &self.restarts
     }
 
-    /// Periods in which it said nothing, each gap with the time of its end.
+    /// Periods in which it said nothing, each gap with the time of its end. A command that was late, and the next one was not,
+    /// is late and not missing.
     #[must_use]
     pub fn missed(&self) -> Vec<(Instant, i64)> {
-        let period = self.period;
-        let gap = |pair: &[Beat]| {
-            let periods = pair[1].at.since(pair[0].at).as_micros() + period.as_micros() / 2;
-            (pair[1].at, periods.div_euclid(period.as_micros()) - 1)
+        let period = self.period.as_micros();
+        let gap = |(index, pair): (usize, &[Beat])| {
+            let late = pair[1].at.since(pair[0].at).as_micros();
+            let next = self.beats.get(index + 2).map_or(late, |next| next.at.since(pair[0].at).as_micros() - period);
+            (pair[1].at, (late.min(next) + period / 2).div_euclid(period) - 1)
         };
-        self.beats.windows(2).map(gap).filter(|(_, missed)| *missed > 0).collect()
+        self.beats.windows(2).enumerate().map(gap).filter(|(_, missed)| *missed > 0).collect()
     }
 }
 
@@ -236,11 +238,21 @@ mod tests {
     #[test]
     fn a_gap_is_counted_in_whole_periods() {
         let mut device = Device::new();
-        for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7)] {
+        // The commands of the periods 4 and 5 are missing, and that of 6 is late; that of 8 is late and none is missing.
+        for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7), (77, 8), (81, 9), (91, 10)] {
             device.command(millis, tick);
         }
         let missed = device.monitor.missed();
-        assert_eq!(missed, [(Instant::from_micros(56_000), 3)]);
+        assert_eq!(missed, [(Instant::from_micros(56_000), 2)]);
+    }
+
+    #[test]
+    fn a_device_that_is_slower_than_its_period_misses_every_other_one() {
+        let mut device = Device::new();
+        for beat in 0..10 {
+            device.command(15 * u64::from(beat), beat);
+        }
+        assert_eq!(device.monitor.missed().len(), 8); // the first one is not trusted
     }
 
     #[test]

@@ -49,6 +49,8 @@ pub struct Setup {
     pub config: Config,
     /// How long it may take to say its first word.
     pub wait: Duration,
+    /// How long after its vehicle's motion its command may come, but for one of 100, in milliseconds.
+    pub latency_p99_ms: f64,
     /// What is done to it.
     pub faults: Vec<Fault>,
 }
