@@ -68,7 +68,7 @@ power_on='{"execute": "qmp_capabilities"}
 {"execute": "cont"}'
 
 # The core polls, and a program that takes all the time that there is, and comes before all others, loses 50 ms of each second at
-# one blow to those others: Linux sees to it. So it rests for one of every ten milliseconds.
+# one blow to those others: Linux sees to it. So it rests for one of every five milliseconds.
 rest='my $device = getppid; system "chrt --rr -p 3 $$ 2>/dev/null";
     while (getppid == $device) { kill $_->[0], $device and select undef, undef, undef, $_->[1] for ["STOP", 0.001], ["CONT", 0.004] }'
 perl -e "$rest" &

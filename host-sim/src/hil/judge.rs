@@ -128,7 +128,7 @@ impl Results {
 #[must_use]
 pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let mut scenario = summarise(&setup.scenario, &outcome.trace, outcome.realtime_factor);
-    scenario.bound.violations = violations(setup, &outcome.trace);
+    scenario.bound.violations = violations(setup, outcome);
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
@@ -202,9 +202,17 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     }
 }
 
-/// Ticks at which a target was outside its bound, but for the faults' aftermath: who is lied to, lies.
-fn violations(setup: &Setup, trace: &Trace) -> usize {
-    let is_judged = |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s));
+/// Ticks at which a target was outside its bound, but for the faults' aftermath, since who is lied to lies; and for ticks at
+/// which the harness was a period late or just had been, since what the device had said by then was heard later.
+fn violations(setup: &Setup, outcome: &Outcome) -> usize {
+    let trace = &outcome.trace;
+    let warm_up = outcome.lateness_us.len().saturating_sub(trace.times_s.len() + 1);
+    let was_late = |tick: usize| {
+        let around = outcome.lateness_us.iter().skip((warm_up + tick).saturating_sub(3)).take(5);
+        around.into_iter().any(|late_us| *late_us > setup.config.period.as_micros())
+    };
+    let is_judged =
+        |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s)) && !was_late(tick);
     let judged = |ticks: &Vec<Tick>| {
         let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
         ticks.iter().enumerate().map(target).collect()
