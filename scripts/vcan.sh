@@ -161,6 +161,7 @@ carry='
             socket($line, AF_UNIX, SOCK_STREAM, 0) && connect($line, sockaddr_un $path) or die "vcan: $path: $!\n";
         } else {
             open($line, "+<", $path) or die "vcan: $path: $!\n";
+            system "stty", "-F", $path, "raw", "-echo"; # the speed it keeps
         }
         socketpair(my $guest, my $end, AF_UNIX, SOCK_STREAM, PF_UNSPEC) or die "vcan: $!\n";
         push @serve, [$guest, $end, $line];
