@@ -4,7 +4,10 @@
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 const SIM: &str = env!("CARGO_BIN_EXE_holdover-sim");
 /// How often it is asked.
@@ -39,6 +42,14 @@ fn scenario(text: &str) -> (tempfile::TempDir, String) {
 
 fn device(arguments: &str) -> String {
     format!("exec {SIM} ecu --bus vcan0 {arguments}")
+}
+
+/// Whether it is so within five seconds.
+fn soon(is_so: impl Fn() -> bool) -> bool {
+    (0..100).any(|_| {
+        sleep(Duration::from_millis(50));
+        is_so()
+    })
 }
 
 /// A process that was started here, and is ended.
@@ -81,6 +92,36 @@ fn in_lock_step_a_unit_that_ran_before_is_told_to_be_started_anew() {
     assert_eq!(code, 1);
     let reason = results["reasons"][0].as_str().unwrap().to_owned();
     assert!(reason.starts_with("the device has run before"), "{reason}");
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn in_lock_step_a_unit_that_ticks_by_itself_is_told_so() {
+    let (code, results) = once(&["--lock-step", "--device", &device("")]);
+    assert_eq!(code, 1);
+    let reason = results["reasons"][0].as_str().unwrap().to_owned();
+    assert!(reason.starts_with("the device ticks by itself"), "{reason}");
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_harness_that_is_killed_takes_its_device_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pid");
+    let command = format!("echo $$ >'{}'; {}", file.display(), device(""));
+    let mut harness = Command::new(SIM)
+        .args(["hil", "--bus", "vcan0", "--device", &command])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let pid = || std::fs::read_to_string(&file).ok().and_then(|text| text.trim().parse::<u32>().ok());
+    assert!(soon(|| pid().is_some()));
+    let place = format!("/proc/{}", pid().unwrap());
+    assert!(Path::new(&place).exists());
+    harness.kill().unwrap();
+    harness.wait().unwrap();
+    assert!(soon(|| !Path::new(&place).exists()));
 }
 
 #[test]

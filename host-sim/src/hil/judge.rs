@@ -321,6 +321,9 @@ fn said(cut: &Cut) -> String {
         Cut::Gone { at_s, ended: how } => {
             format!("the device is gone: its last frame was at {at_s:.2} s{}", ended(how))
         }
+        Cut::NotFresh { tick: 1 } => {
+            "the device ticks by itself: it gives more answers than it is asked for; start it in lock step".into()
+        }
         Cut::NotFresh { tick } => format!(
             "the device has run before: its first answer has the count {tick} instead of 1; for lock step give it power anew"
         ),
