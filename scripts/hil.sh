@@ -43,11 +43,11 @@ check_kernel() {
 check_tests() {
     local binaries
     # Built outside: user-mode Linux has one processor.
-    binaries=$(cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
+    mapfile -t binaries < <(cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
         grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
-    [ -n "$binaries" ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
+    [ ${#binaries[@]} -gt 0 ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
     # A test's own folder is its package's. One at a time, because they share the bus.
-    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim; for binary in $0; do "$binary" --ignored --test-threads 1 || exit; done' "$binaries"
+    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim; for binary; do "$binary" --ignored --test-threads 1 || exit; done' tests "${binaries[@]}"
 }
 
 # images TARGET: builds the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step.
@@ -86,7 +86,7 @@ check_ecu() {
     for mode in '' --lock-step; do
         echo "-- a process of Linux, ${mode:-real time}"
         judge vcan0 $mode
-        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "$sim ecu --bus vcan0 --station 1 $mode"
+        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $mode"
     done
 }
 

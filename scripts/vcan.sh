@@ -195,8 +195,10 @@ carry='
 # Everything that the guest's first process needs lies in $job. File descriptors 3 and 4 are the consoles 1 and 2.
 run_in_uml() {
     local job number status kernel memory_in=/dev/shm
-    job=$(mktemp -d)
+    job=$(mktemp -d /tmp/vcan.XXXXXX)
     trap "rm -rf '$job'" EXIT
+    # The kernel's command line is divided at blanks, and this script may lie in a folder that has one in its name.
+    install -m 755 "$0" "$job/init"
     for number in "${!serial[@]}"; do
         export "VCAN_SERIAL$number=/dev/ttyS$number"
     done
@@ -221,7 +223,7 @@ run_in_uml() {
     exec 3> >(exec cat) && out=$!
     exec 4> >(exec cat >&2) && err=$!
     TMPDIR=$memory_in timeout --kill-after=5 "$limit" "${first[@]}" linux.uml "mem=$memory" root=/dev/root rootfstype=hostfs \
-        rootflags=/ rw "init=$(realpath "$0")" "VCAN_JOB=$job" "uml_dir=$job" umid=kernel con=null con0=null,fd:1 con1=null,fd:3 \
+        rootflags=/ rw "init=$job/init" "VCAN_JOB=$job" "uml_dir=$job" umid=kernel con=null con0=null,fd:1 con1=null,fd:3 \
         con2=null,fd:4 ssl=null quiet </dev/null >"$job/log" 2>&1 &
     kernel=$!
     trap "kill $kernel 2>/dev/null || true; exit 143" INT TERM

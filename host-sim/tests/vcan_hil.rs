@@ -41,7 +41,7 @@ fn scenario(text: &str) -> (tempfile::TempDir, String) {
 }
 
 fn device(arguments: &str) -> String {
-    format!("exec {SIM} ecu --bus vcan0 {arguments}")
+    format!("exec '{SIM}' ecu --bus vcan0 {arguments}")
 }
 
 /// Whether it is so within five seconds.
