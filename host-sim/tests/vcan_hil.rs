@@ -140,7 +140,7 @@ fn at_the_full_rate_of_eight_peers_no_frame_is_lost() {
     let vehicle = "[[vehicle]]\n".repeat(9);
     let text = format!("duration_s = 6\nego = 4\n{vehicle}[channel]\noutages = []\nloss = 0.0\n");
     let (_folder, file) = scenario(&text);
-    let (code, results) = judged(&[&file, "--device", &format!("exec {SIM} ecu {file} --bus vcan0")]);
+    let (code, results) = judged(&[&file, "--device", &format!("exec '{SIM}' ecu {file} --bus vcan0")]);
     assert_eq!((code, &results["reasons"]), (0, &serde_json::json!([])));
     let harness = &results["timing"]["harness"];
     assert_eq!(harness["lost"], 0);
@@ -159,7 +159,7 @@ fn a_device_that_is_silent_or_ends_or_goes_half_way_is_a_verdict_in_time() {
     let (code, results) = once(&[&file, "--wait", "5", "--device", "exit 7"]);
     let reason = results["reasons"][0].as_str().unwrap().to_owned();
     assert!(code == 1 && reason.ends_with("its process ended: exit status: 7"), "{reason}");
-    let short = format!("timeout 4 {SIM} ecu --bus vcan0");
+    let short = format!("timeout 4 '{SIM}' ecu --bus vcan0");
     let (code, results) = judged(&[&file, "--device", &short]);
     let reason = results["reasons"][0].as_str().unwrap().to_owned();
     assert!(code == 1 && reason.starts_with("the device is gone: its last frame was at "), "{reason}");
