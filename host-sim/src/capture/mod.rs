@@ -83,14 +83,19 @@ pub enum Failure {
     Log(io::Error),
 }
 
-/// Writes down what happens until then; how many frames that were. The log is whole whenever nothing happens.
+/// Writes down what happens until then; how many frames that were. The log is whole up to a tenth of a second
+/// ago, however it ends.
 ///
 /// # Errors
 /// The port's and the log's.
 pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> Result<u64, Failure> {
-    let mut frames = 0;
+    let (mut frames, mut flushed) = (0, port.now());
     loop {
         let now = port.now();
+        if now.since(flushed) >= PAUSE {
+            log.flush().map_err(Failure::Log)?;
+            flushed = now;
+        }
         if until.is_some_and(|until| until <= now) {
             log.finish().map_err(Failure::Log)?;
             return Ok(frames);
@@ -103,10 +108,7 @@ pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Optio
                 output::say("the interface is down; going on when it is up");
                 continue;
             }
-            None => {
-                log.flush().map_err(Failure::Log)?;
-                continue;
-            }
+            None => continue,
         }
         frames += 1;
     }
