@@ -19,8 +19,8 @@ use crate::world::{Tick, Trace};
 pub const LATE_MAX_MS: f64 = 40.0;
 /// And so late in one of a hundred: a period.
 pub const LATE_P99_MS: f64 = 10.0;
-/// So long the device may take, unless somebody says otherwise, from its vehicle's motion to its command, but for one of a hundred: two periods, because it
-/// need not tick when its vehicle speaks.
+/// So long the device may take from its vehicle's motion to its command, unless somebody says otherwise, but for one of a
+/// hundred: two periods, because it need not tick when its vehicle speaks.
 pub const LATENCY_P99_MS: f64 = 20.0;
 /// Share of periods that a device in real time may miss on a system that is none.
 pub const MISSED_SHARE: f64 = 0.01;

@@ -33,11 +33,11 @@ fn SysTick() {
 /// Starts both. A core clock of up to 1.6 GHz fits the 24 bits of the core's timer.
 pub fn start(mut timer: SYST, clocks: &Clocks) {
     RCC_APB1ENR.set(0, 1); // TIM2
-    TIM2_PSC.write(clocks.counter_hz / 1_000_000 - 1);
+    TIM2_PSC.write((clocks.counter_hz / 1_000_000).saturating_sub(1));
     TIM2_EGR.write(1); // takes the prescaler over
     TIM2_CR1.write(1); // on
     timer.set_clock_source(SystClkSource::Core);
-    timer.set_reload(clocks.core_hz / TICK_HZ - 1);
+    timer.set_reload((clocks.core_hz / TICK_HZ).saturating_sub(1));
     timer.clear_current();
     timer.enable_interrupt();
     timer.enable_counter();

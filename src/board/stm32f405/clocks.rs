@@ -45,7 +45,8 @@ impl Clocks {
         const PLL_ON: u32 = 1 << 24;
         const PLL_READY: u32 = 1 << 25;
         // The oscillator that the chip starts with says that it is ready, or no instruction would be executed. A chip that
-        // denies it has no clock tree: it is the emulator's model, whose core's timer counts at 168 MHz and whose others at 1 GHz.
+        // denies it has no clock tree: it is the emulator's model, whose core's
+        // timer counts at 168 MHz and whose others at 1 GHz.
         if RCC_CR.read() & INTERNAL_READY == 0 {
             return Self::new(168_000_000, 1_000_000_000, 1, 1);
         }
