@@ -44,6 +44,9 @@ pub fn start(mut timer: SYST, clocks: &Clocks) {
 }
 
 /// The time since the start, to a microsecond; from any context.
+///
+/// Not inlined, because in the interrupt of the port the compiler then no longer sees that a division of its queue cannot panic.
+#[inline(never)]
 pub fn now() -> Instant {
     interrupt::free(|token| {
         let count = TIM2_CNT.read();
