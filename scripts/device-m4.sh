@@ -3,10 +3,9 @@
 #
 # Runs a command beside the firmware on a Cortex-M4F in the emulator (QEMU's `netduinoplus2`, an STM32F405). The emulator
 # has no CAN controller for that chip; the firmware is a serial CAN adapter's other end, and Linux's own line discipline
-# `slcan` makes the CAN interface `slcan0` of it. The exit status is the command's.
+# `slcan` makes the CAN interface `slcan0` of it, in user-mode Linux (see vcan.sh). The exit status is the command's.
 #
 #   --timeout S    end both after S seconds (default: 600)
-#   --uml          use user-mode Linux even where the machine has vcan and slcan (see vcan.sh)
 #   -h, --help     this text
 #
 # The image:  cargo build --profile firmware --target thumbv7em-none-eabihf --bin holdover-ecu
@@ -38,7 +37,6 @@ while [ $# -gt 0 ]; do
     case $1 in
     -h | --help) sed -n '2,/^set -/{/^set -/d;s/^# \{0,1\}//;p}' "$0" && exit ;;
     --timeout) options+=("$1" "${2:-}") && shift 2 ;;
-    --uml) options+=("$1") && shift ;;
     -*) say "no option $1; device-m4.sh --help" && exit 2 ;;
     *) break ;;
     esac
@@ -54,17 +52,14 @@ command -v qemu-system-arm >/dev/null || { say "no qemu-system-arm; remedy: apt-
 # takes longer.
 first=(taskset -c "$(taskset -cp $$ | sed 's/.*[:,-] *//')")
 ! chrt --rr 1 true 2>/dev/null || first+=(chrt --rr 1)
-words=$(mktemp)
-"${first[@]}" qemu-system-arm -M netduinoplus2 -display none -monitor none -serial pty -kernel "$image" </dev/null >"$words" 2>&1 &
+words=$(mktemp) line=$(mktemp -u)
+# A multiplexer, though there is one reader only: it keeps a few bytes for a receiver that holds one, as the emulator's model of
+# this chip does; without it each byte would take two switches between the emulator's threads.
+"${first[@]}" qemu-system-arm -M netduinoplus2 -display none -monitor none -kernel "$image" \
+    -chardev "socket,id=line,path=$line,server=on,wait=off,mux=on" -serial chardev:line </dev/null >"$words" 2>&1 &
 qemu=$!
-trap 'kill $qemu 2>/dev/null; wait; rm -f "$words"' EXIT
-# QEMU says which pseudo-terminal it is.
-line=
-for _ in $(seq 300); do
-    line=$(sed -n 's/^char device redirected to \([^ ]*\).*/\1/p' "$words")
-    [ -n "$line" ] && break || sleep 0.1
-done
-[ -n "$line" ] || { say "the emulator did not start:" && cat "$words" >&2 && exit 125; }
-stty -F "$line" raw -echo
+trap 'kill $qemu 2>/dev/null; wait; rm -f "$words" "$line"' EXIT
+for _ in $(seq 300); do [ -S "$line" ] && break || sleep 0.1; done
+[ -S "$line" ] || { say "the emulator did not start:" && cat "$words" >&2 && exit 125; }
 here=$(dirname "$(realpath "$0")")
 "$here/vcan.sh" --real-time "${options[@]}" --serial "$line" -- "$here/device-m4.sh" --inside "$@"

@@ -11,15 +11,13 @@
 # another, and its exit status is that of this script. Its stdin is empty. In user-mode Linux it is root, has one
 # processor and no network but `lo` and `vcan0`; build outside of it and run inside.
 #
-#   --serial PATH    a serial line of the machine (`/dev/pts/3`, the other end of some emulator's) for SLCAN; may be
-#                    repeated. The command finds its name, `/dev/ttyS0` in user-mode Linux, in VCAN_SERIAL0, then in
-#                    VCAN_SERIAL1, and so on
+#   --serial PATH    a serial line of the machine (`/dev/ttyUSB0`) for SLCAN, or the socket of an emulator's, for which
+#                    user-mode Linux is needed; may be repeated. The command finds its name, `/dev/ttyS0` in user-mode Linux,
+#                    in VCAN_SERIAL0, then in VCAN_SERIAL1, and so on
 #   --timeout S      end the command after S seconds (default: 600)
 #   --memory SIZE    of user-mode Linux (default: 1G, taken as it is used)
-#   --real-time      let it come before the machine's other programs, where this user may say so, as a bus waits for none;
-#                    a command that does nothing but compute then has a processor for itself
-#   --busy           the same for a command that never rests: Linux takes a twentieth of every second from such real-time
-#                    programs, so it comes first by its nice value
+#   --real-time      let it come before the machine's other programs, where this user may say so, as a bus waits for none. A
+#                    command that never rests loses 50 ms of each second to them all the same: Linux sees to it
 #   --uml            use user-mode Linux even where the machine has vcan
 #   -h, --help       this text
 #
@@ -86,7 +84,7 @@ usage() {
 
 wrong() {
     say "$*"
-    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--real-time | --busy] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
+    say "usage: vcan.sh [--serial PATH] [--timeout S] [--memory SIZE] [--real-time] [--uml] [--] COMMAND [ARG...]; vcan.sh --help says more"
     exit 2
 }
 
@@ -116,17 +114,16 @@ make_vcan() {
     as_root ip link set vcan0 up 2>/dev/null
 }
 
-# A serial line becomes a CAN interface by the kernel's slcan, and only root may do that.
+# A serial line becomes a CAN interface by the kernel's slcan, and only root may do that. A socket is no serial line.
 has_slcan() {
+    local line
+    for line in "${serial[@]}"; do [ -c "$line" ] || return; done
     [ "$(id -u)" = 0 ] && { [ -d /sys/module/slcan ] || modprobe slcan 2>/dev/null; }
 }
 
-# Adds to `first` what lets a command come before others, as far as this user may.
+# Adds to `first` what lets a command come before others, if it is to and this user may say so.
 come_first() {
-    case $real_time in
-    yes) ! chrt --rr 1 true 2>/dev/null || first+=(chrt --rr 1) ;;
-    busy) [ -n "$(nice -n -20 true 2>&1)" ] || first+=(nice -n -20) ;;
-    esac
+    if [ $real_time = true ] && chrt --rr 1 true 2>/dev/null; then first+=(chrt --rr 1); fi
 }
 
 run_here() {
@@ -150,22 +147,59 @@ install_packages() {
             "apt-get install ${packages[*]}; or, as root: modprobe vcan && ip link add dev vcan0 type vcan && ip link set vcan0 up"
 }
 
-# The kernel learns by a signal what its serial lines are ready for, and a pseudo-terminal of the host gives none when it can
-# be written to again. Any other one makes the kernel look; without this a frame would wait for the next one to come in.
-remind() {
-    while [ ! -s "$1" ]; do sleep 0.1; done
-    local first=()
-    ! chrt --rr 1 true 2>/dev/null || first=(chrt --rr 1)
-    exec "${first[@]}" perl -e 'select(undef, undef, undef, 0.0005) while kill "IO", $ARGV[0]' "$(cat "$1")"
-}
+# carry LINE... -- COMMAND...: runs the kernel with a socket in place of each line, and carries bytes between the two. Sockets,
+# because what goes over a pseudo-terminal waits for a thread of the host's kernel that waits for every other program. The
+# kernel learns by a signal what its lines are ready for, and gets none when they can be written to again: so whoever takes
+# the bytes sends it. What comes while nobody in the guest reads is dropped, as by a serial port.
+carry='
+    use strict; use Fcntl; use Socket; use IO::Handle;
+    my ($kernel, @serve) = $$;
+    $^F = 99; # the sockets stay open for the kernel
+    while ((my $path = shift) ne "--") {
+        my $line;
+        if (-S $path) {
+            socket($line, AF_UNIX, SOCK_STREAM, 0) && connect($line, sockaddr_un $path) or die "vcan: $path: $!\n";
+        } else {
+            open($line, "+<", $path) or die "vcan: $path: $!\n";
+            system "stty", "-F", $path, "raw", "-echo"; # the speed it keeps
+        }
+        socketpair(my $guest, my $end, AF_UNIX, SOCK_STREAM, PF_UNSPEC) or die "vcan: $!\n";
+        push @serve, [$guest, $end, $line];
+        next if fork;
+        system "chrt --rr -p 2 $$ 2>/dev/null"; # before the kernel, which would not let it run while it has something to do
+        $_->blocking(0) for $end, $line;
+        my ($in, $out) = ("", ""); # to the kernel, and from it
+        while (getppid == $kernel) {
+            my ($read, $write) = ("", "");
+            vec($read, fileno $line, 1) = $in eq "";
+            vec($read, fileno $end, 1) = $out eq "";
+            vec($write, fileno $end, 1) = $in ne "";
+            vec($write, fileno $line, 1) = $out ne "";
+            select $read, $write, undef, 1;
+            if (vec $read, fileno $line, 1) {
+                sysread $line, $in, 4096 or exit;
+                $in = "" unless O_ASYNC & fcntl $guest, F_GETFL, 0; # the kernel has it open
+            }
+            if (vec $read, fileno $end, 1) {
+                sysread $end, $out, 4096 or exit;
+                kill IO => $kernel;
+            }
+            substr $in, 0, syswrite($end, $in) || 0, "" if $in ne "";
+            substr $out, 0, syswrite($line, $out) || 0, "" if $out ne "";
+        }
+        exit;
+    }
+    exec @ARGV, map { "ssl$_=fd:" . fileno $serve[$_][0] } 0 .. $#serve;
+'
 
 # Everything that the guest's first process needs lies in $job. File descriptors 3 and 4 are the consoles 1 and 2.
 run_in_uml() {
-    local job lines=() number status kernel memory_in=/dev/shm
-    job=$(mktemp -d)
+    local job number status kernel memory_in=/dev/shm
+    job=$(mktemp -d /tmp/vcan.XXXXXX)
     trap "rm -rf '$job'" EXIT
+    # The kernel's command line is divided at blanks, and this script may lie in a folder that has one in its name.
+    install -m 755 "$0" "$job/init"
     for number in "${!serial[@]}"; do
-        lines+=("ssl$number=tty:${serial[number]}")
         export "VCAN_SERIAL$number=/dev/ttyS$number"
     done
     {
@@ -181,18 +215,18 @@ run_in_uml() {
     # It is several processes of which one runs at a time; that they stay on one processor makes each system call of the
     # command's three times as fast.
     local first=()
-    [ $real_time = no ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
+    [ $real_time = false ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
     come_first
+    [ ${#serial[@]} = 0 ] || first+=(perl -e "$carry" "${serial[@]}" --)
     # Through a pipe, because the kernel would put the user's terminal into raw mode.
     local out err
     exec 3> >(exec cat) && out=$!
     exec 4> >(exec cat >&2) && err=$!
     TMPDIR=$memory_in timeout --kill-after=5 "$limit" "${first[@]}" linux.uml "mem=$memory" root=/dev/root rootfstype=hostfs \
-        rootflags=/ rw "init=$(realpath "$0")" "VCAN_JOB=$job" "uml_dir=$job" umid=kernel con=null con0=null,fd:1 con1=null,fd:3 \
-        con2=null,fd:4 ssl=null "${lines[@]}" quiet </dev/null >"$job/log" 2>&1 &
+        rootflags=/ rw "init=$job/init" "VCAN_JOB=$job" "uml_dir=$job" umid=kernel con=null con0=null,fd:1 con1=null,fd:3 \
+        con2=null,fd:4 ssl=null quiet </dev/null >"$job/log" 2>&1 &
     kernel=$!
     trap "kill $kernel 2>/dev/null || true; exit 143" INT TERM
-    [ ${#serial[@]} = 0 ] || remind "$job/kernel/pid" &
     status=0
     wait "$kernel" || status=$?
     exec 3>&- 4>&-
@@ -209,18 +243,17 @@ run_in_uml() {
     exit "$(cat "$job/status")"
 }
 
-limit=600 memory=1G uml=false real_time=no serial=()
+limit=600 memory=1G uml=false real_time=false serial=()
 while [ $# -gt 0 ]; do
     case $1 in
     -h | --help) usage && exit ;;
     --uml) uml=true && shift ;;
-    --real-time) real_time=yes && shift ;;
-    --busy) real_time=busy && shift ;;
+    --real-time) real_time=true && shift ;;
     --serial | --timeout | --memory)
         [ $# -ge 2 ] || wrong "$1 needs a value"
         case $1 in
         --serial)
-            [ -c "$2" ] || wrong "--serial $2: no such serial line"
+            [ -c "$2" ] || [ -S "$2" ] || wrong "--serial $2: no such serial line"
             serial+=("$2")
             ;;
         --timeout) limit=$2 ;;

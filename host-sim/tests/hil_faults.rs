@@ -1,7 +1,7 @@
 //! The fault buttons on a bus in memory: what the device does, what the harness says, and that it recovers.
 
 use holdover::time::Duration;
-use holdover_sim::hil::judge::{Results, judge};
+use holdover_sim::hil::judge::{LATENCY_P99_MS, Results, judge};
 use holdover_sim::hil::session::{self, Setup};
 use holdover_sim::hil::virtual_bus::{Behaviour, bench};
 use holdover_sim::scenario::{Overrides, Scenario};
@@ -13,7 +13,13 @@ fn press(fault: &str) -> Results {
     let text = "duration_s = 12\n[channel]\noutages = []\nloss = 0.0";
     let scenario = Scenario::parse(Path::new("test"), text, &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
-    let setup = Setup { scenario, config, wait: Duration::from_millis(3000), faults: vec![fault.parse().unwrap()] };
+    let setup = Setup {
+        scenario,
+        config,
+        wait: Duration::from_millis(3000),
+        latency_p99_ms: LATENCY_P99_MS,
+        faults: vec![fault.parse().unwrap()],
+    };
     let (port, mut rig) = bench(Behaviour::good(config, false));
     let outcome = session::run(&setup, port, &mut rig, |_| {}).unwrap();
     judge(&setup, &outcome)

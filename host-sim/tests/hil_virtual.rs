@@ -5,7 +5,7 @@ use holdover::Config;
 use holdover::time::Duration;
 use holdover::wire::{StationHash, e2e};
 use holdover_sim::bus::{Frame, Port};
-use holdover_sim::hil::judge::{Results, judge};
+use holdover_sim::hil::judge::{LATENCY_P99_MS, Results, judge};
 use holdover_sim::hil::lock_step;
 use holdover_sim::hil::rig::Rig;
 use holdover_sim::hil::session::{self, Setup};
@@ -20,7 +20,7 @@ fn setup(scenario: &str, faults: &[&str]) -> Setup {
     let scenario = Scenario::parse(Path::new("test"), scenario, &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    Setup { scenario, config, wait: Duration::from_millis(3000), faults }
+    Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms: LATENCY_P99_MS, faults }
 }
 
 /// Four seconds on a clean channel.
@@ -118,6 +118,18 @@ fn a_late_device_is_a_verdict() {
 }
 
 #[test]
+fn how_late_is_too_late_can_be_said() {
+    let mut setup = setup(SHORT, &[]);
+    setup.latency_p99_ms = 5.0;
+    let results = run(&setup, |behaviour| behaviour.latency = Duration::from_millis(7));
+    assert!(
+        results.reasons[0].ends_with("ms after the motion in one of 100, of at most 5 ms"),
+        "{:?}",
+        results.reasons
+    );
+}
+
+#[test]
 fn a_late_harness_is_inconclusive_whatever_the_device_does() {
     let stall = (Duration::from_millis(4_000), Duration::from_millis(60));
     let results = run(&setup(SHORT, &[]), |behaviour| behaviour.stall = Some(stall));
@@ -137,6 +149,34 @@ fn a_device_that_answers_something_else_than_its_twin_is_a_verdict() {
     let results = run(&setup(SHORT, &[]), |behaviour| behaviour.garble = one_step_too_much);
     assert_eq!(results.verdict, "failed");
     assert!(results.deviation.unexplained > 100, "{:?}", results.deviation);
+}
+
+/// A seventieth of the time it stands still, as an emulator does that gets no processor.
+fn pauses(behaviour: &mut Behaviour) {
+    behaviour.pause = Some((Duration::from_millis(1_770), Duration::from_millis(25)));
+}
+
+#[test]
+fn a_device_that_stands_still_now_and_then_differs_by_what_its_time_stamps_explain() {
+    let results = run(&setup("", &[]), pauses);
+    assert_eq!(results.deviation.unexplained, 0, "{:?}", results.reasons);
+    assert!(results.deviation.command_mps2 > 0.02 || results.deviation.position_m > 0.1, "{:?}", results.deviation);
+}
+
+#[test]
+fn what_is_wrong_with_a_device_is_not_explained_by_its_standing_still() {
+    let wrong: [fn(&mut Behaviour); 2] = [
+        |behaviour| behaviour.garble = one_step_too_much,
+        |behaviour| behaviour.config.prediction.model.standstill = false, // keeps 2 m less than its twin
+    ];
+    for wrong in wrong {
+        let results = run(&setup(SHORT, &[]), |behaviour| {
+            pauses(behaviour);
+            wrong(behaviour);
+        });
+        assert_eq!(results.verdict, "failed");
+        assert!(results.deviation.unexplained > 100, "{:?}", results.deviation);
+    }
 }
 
 /// Adds 0.256 m/s² to every command, well protected.

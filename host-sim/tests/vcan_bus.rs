@@ -35,7 +35,7 @@ fn shell(command: &str) -> Output {
 }
 
 fn sim(arguments: &str) -> Output {
-    shell(&format!("{} {arguments}", env!("CARGO_BIN_EXE_holdover-sim")))
+    shell(&format!("'{}' {arguments}", env!("CARGO_BIN_EXE_holdover-sim")))
 }
 
 #[test]
@@ -194,4 +194,27 @@ fn a_command_without_its_interface_ends_with_exit_code_2() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(said.starts_with("error: --bus: there is no network interface \"vcan7\"; "), "{said}");
     }
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_recording_that_is_killed_has_all_but_the_last_moment() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("killed.log");
+    let mut port = open();
+    let mut recorder = Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
+        .args(["record", "--bus", "vcan0", "--output"])
+        .arg(&file)
+        .spawn()
+        .unwrap();
+    heard(&mut port, 1_000);
+    for count in 0..300_u16 {
+        Port::send(&mut port, frame(0x123, &count.to_be_bytes())).unwrap();
+        heard(&mut port, 5);
+    }
+    recorder.kill().unwrap();
+    recorder.wait().unwrap();
+    let log = std::fs::read_to_string(&file).unwrap();
+    // A tenth of a second is 20 of them.
+    assert!(log.ends_with('\n') && log.lines().count() > 250, "{}", log.lines().count());
 }

@@ -4,7 +4,10 @@
 #![cfg(target_os = "linux")]
 
 use serde_json::Value;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
 
 const SIM: &str = env!("CARGO_BIN_EXE_holdover-sim");
 /// How often it is asked.
@@ -38,7 +41,15 @@ fn scenario(text: &str) -> (tempfile::TempDir, String) {
 }
 
 fn device(arguments: &str) -> String {
-    format!("exec {SIM} ecu --bus vcan0 {arguments}")
+    format!("exec '{SIM}' ecu --bus vcan0 {arguments}")
+}
+
+/// Whether it is so within five seconds.
+fn soon(is_so: impl Fn() -> bool) -> bool {
+    (0..100).any(|_| {
+        sleep(Duration::from_millis(50));
+        is_so()
+    })
 }
 
 /// A process that was started here, and is ended.
@@ -85,6 +96,36 @@ fn in_lock_step_a_unit_that_ran_before_is_told_to_be_started_anew() {
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn in_lock_step_a_unit_that_ticks_by_itself_is_told_so() {
+    let (code, results) = once(&["--lock-step", "--device", &device("")]);
+    assert_eq!(code, 1);
+    let reason = results["reasons"][0].as_str().unwrap().to_owned();
+    assert!(reason.starts_with("the device ticks by itself"), "{reason}");
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_harness_that_is_killed_takes_its_device_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pid");
+    let command = format!("echo $$ >'{}'; {}", file.display(), device(""));
+    let mut harness = Command::new(SIM)
+        .args(["hil", "--bus", "vcan0", "--device", &command])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let pid = || std::fs::read_to_string(&file).ok().and_then(|text| text.trim().parse::<u32>().ok());
+    assert!(soon(|| pid().is_some()));
+    let place = format!("/proc/{}", pid().unwrap());
+    assert!(Path::new(&place).exists());
+    harness.kill().unwrap();
+    harness.wait().unwrap();
+    assert!(soon(|| !Path::new(&place).exists()));
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn in_real_time_the_process_passes_the_papers_scenario() {
     let (code, results) = judged(&["--device", &device("")]);
     assert_eq!((code, &results["reasons"]), (0, &serde_json::json!([])));
@@ -99,7 +140,7 @@ fn at_the_full_rate_of_eight_peers_no_frame_is_lost() {
     let vehicle = "[[vehicle]]\n".repeat(9);
     let text = format!("duration_s = 6\nego = 4\n{vehicle}[channel]\noutages = []\nloss = 0.0\n");
     let (_folder, file) = scenario(&text);
-    let (code, results) = judged(&[&file, "--device", &format!("exec {SIM} ecu {file} --bus vcan0")]);
+    let (code, results) = judged(&[&file, "--device", &format!("exec '{SIM}' ecu {file} --bus vcan0")]);
     assert_eq!((code, &results["reasons"]), (0, &serde_json::json!([])));
     let harness = &results["timing"]["harness"];
     assert_eq!(harness["lost"], 0);
@@ -118,7 +159,7 @@ fn a_device_that_is_silent_or_ends_or_goes_half_way_is_a_verdict_in_time() {
     let (code, results) = once(&[&file, "--wait", "5", "--device", "exit 7"]);
     let reason = results["reasons"][0].as_str().unwrap().to_owned();
     assert!(code == 1 && reason.ends_with("its process ended: exit status: 7"), "{reason}");
-    let short = format!("timeout 4 {SIM} ecu --bus vcan0");
+    let short = format!("timeout 4 '{SIM}' ecu --bus vcan0");
     let (code, results) = judged(&[&file, "--device", &short]);
     let reason = results["reasons"][0].as_str().unwrap().to_owned();
     assert!(code == 1 && reason.starts_with("the device is gone: its last frame was at "), "{reason}");

@@ -64,36 +64,51 @@ pub fn capture(options: &CaptureOptions) -> Result<Verdict, Error> {
     let until = options.length.map(|length| port.now().plus(length));
     match record(&mut port, log, until) {
         Ok(frames) => output::say(&format!("{frames} frames recorded")),
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
-        Err(error) => return Err(Error::unwritable(name, &error)),
+        Err(Failure::Log(error)) if error.kind() == ErrorKind::BrokenPipe => {}
+        Err(Failure::Log(error)) => return Err(Error::unwritable(name, &error)),
+        Err(Failure::Port(error)) => {
+            let remedy = "see whether it is still there: ip -details link";
+            return Err(Error::new(format!("the interface failed: {error}"), remedy).in_option("--bus"));
+        }
     }
     Ok(Verdict::Pass)
 }
 
-/// Writes down what happens until then; how many frames that were. The log is whole whenever nothing happens.
+/// What can end a recording before its time.
+#[derive(Debug)]
+pub enum Failure {
+    /// The interface has gone.
+    Port(io::Error),
+    /// The log cannot be written.
+    Log(io::Error),
+}
+
+/// Writes down what happens until then; how many frames that were. The log is whole up to a tenth of a second
+/// ago, however it ends.
 ///
 /// # Errors
 /// The port's and the log's.
-pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> io::Result<u64> {
-    let mut frames = 0;
+pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> Result<u64, Failure> {
+    let (mut frames, mut flushed) = (0, port.now());
     loop {
         let now = port.now();
+        if now.since(flushed) >= PAUSE {
+            log.flush().map_err(Failure::Log)?;
+            flushed = now;
+        }
         if until.is_some_and(|until| until <= now) {
-            log.finish()?;
+            log.finish().map_err(Failure::Log)?;
             return Ok(frames);
         }
         let pause = now.plus(PAUSE);
-        match port.wait(until.map_or(pause, |until| until.min(pause)))? {
-            Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame)?,
-            Some((at, Event::Error(error))) => log.write_error(at, &error)?,
+        match port.wait(until.map_or(pause, |until| until.min(pause))).map_err(Failure::Port)? {
+            Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame).map_err(Failure::Log)?,
+            Some((at, Event::Error(error))) => log.write_error(at, &error).map_err(Failure::Log)?,
             Some((_, Event::Down)) => {
                 output::say("the interface is down; going on when it is up");
                 continue;
             }
-            None => {
-                log.flush()?;
-                continue;
-            }
+            None => continue,
         }
         frames += 1;
     }

@@ -3,6 +3,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use super::judge::LATENCY_P99_MS;
 use crate::ecu::arguments::UnitArguments;
 
 /// The arguments of `hil`.
@@ -31,6 +32,10 @@ pub struct HilArguments {
     /// How long the device may take to say its first word
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub wait: f64,
+
+    /// How long after its vehicle's motion the device's command may come, but for one of 100; in real time
+    #[arg(long, value_name = "MS", default_value_t = LATENCY_P99_MS, allow_negative_numbers = true)]
+    pub latency: f64,
 
     /// Press a fault button, such as power@5:1 (below); may be repeated
     #[arg(long, value_name = "FAULT")]

@@ -1,10 +1,14 @@
 //! How far the device is from its twin: what the two said in a tick and how well the time of that tick is known enter; the
 //! largest differences leave, and how many of them the time does not explain.
 //!
-//! *What explains a difference in real time:* the device ticked at some moment between its command before and this one, so
-//! by up to that long before its twin; and a frame that came in between was known to the twin only. In that time the target
-//! makes way, news moves the estimate by what it corrects, and commands move by their jerk. Differences within what those
-//! make up are explained by the time stamps. In lock step there is nothing to explain: everything has to be the same.
+//! *What explains a difference in real time:* the device ticked at some moment within a period before its command was on the
+//! bus, or within a period and its lag, which its count of periods tells (see [`super::monitor::Monitor::lag`]); the twin ticks
+//! when the command is on the bus, and a frame that came in between was known to the twin only. In that window the target makes
+//! way, news moves the estimate by what it corrects, and commands move by their jerk and by what the twin's own did. Differences
+//! within what those make up are explained by the time stamps. In lock step there is nothing to explain: everything has to be
+//! the same.
+
+use std::collections::VecDeque;
 
 use holdover::time::Duration;
 use holdover::units::{Acceleration, Speed};
@@ -23,6 +27,10 @@ const COMMAND_ROUNDING_MPS2: f64 = 0.02;
 const HARDEST_MPS2: f64 = 8.0;
 /// Hardest change of a command: that of the law, in m/s³.
 const JERK_MPS3: f64 = 5.0;
+/// How much longer than the window the modes may differ: less than a period.
+const MODE_LATER_S: f64 = 0.008;
+/// How long the twin's commands are remembered, in seconds.
+const MEMORY_S: f64 = 1.0;
 
 /// The differences so far.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,10 +49,10 @@ pub struct Deviation {
     pub command_mps2: f64,
     /// Times of the run at which a difference is not explained, in seconds.
     pub unexplained_s: Vec<f64>,
-    /// What the twin said last.
-    last: Option<Said>,
-    /// In how many ticks the modes have differed in a row.
-    modes_in_a_row: u32,
+    /// What the twin commanded in the last window, and the command before it: time of the run and m/s².
+    recent: VecDeque<(f64, f64)>,
+    /// Since when the modes differ.
+    modes_since_s: Option<f64>,
 }
 
 impl Deviation {
@@ -55,17 +63,28 @@ impl Deviation {
         self.same += u64::from(same(device, &twin.command));
         let difference = (mps2(device.acceleration) - mps2(twin.command.acceleration)).abs();
         self.command_mps2 = self.command_mps2.max(difference);
-        let moved =
-            self.last.map_or(0.0, |last| (mps2(last.command.acceleration) - mps2(twin.command.acceleration)).abs());
-        let allowed = COMMAND_ROUNDING_MPS2 + moved + JERK_MPS3 * seconds(window);
+        let allowed = COMMAND_ROUNDING_MPS2 + self.moved(at_s, twin, window) + JERK_MPS3 * seconds(window);
         let is_other = device.mode != twin.command.mode;
         self.modes += u64::from(is_other);
-        // One of them may hear of a change a tick before the other.
-        self.modes_in_a_row = if is_other { self.modes_in_a_row + 1 } else { 0 };
-        if difference > allowed || self.modes_in_a_row > 2 {
+        // One of them may hear of a change a window and a tick before the other.
+        self.modes_since_s = is_other.then(|| self.modes_since_s.unwrap_or(at_s));
+        let is_long = self.modes_since_s.is_some_and(|since_s| at_s - since_s > seconds(window) + MODE_LATER_S);
+        if difference > allowed || is_long {
             self.unexplained_s.push(at_s);
         }
-        self.last = Some(*twin);
+    }
+
+    /// How far the twin's commands were apart in that window.
+    fn moved(&mut self, at_s: f64, twin: &Said, window: Duration) -> f64 {
+        self.recent.push_back((at_s, mps2(twin.command.acceleration)));
+        while self.recent.get(1).is_some_and(|(then_s, _)| *then_s <= at_s - MEMORY_S) {
+            self.recent.pop_front();
+        }
+        let begin_s = at_s - seconds(window);
+        let before = self.recent.iter().rposition(|(then_s, _)| *then_s <= begin_s).unwrap_or(0);
+        let within = self.recent.iter().skip(before).map(|(_, command)| *command);
+        let (least, most) = within.fold((f64::MAX, f64::MIN), |(least, most), x| (least.min(x), most.max(x)));
+        most - least
     }
 
     /// An estimate of the device, and its twin's of the same tick.
@@ -75,7 +94,7 @@ impl Deviation {
         self.position_m = self.position_m.max(position);
         self.speed_mps = self.speed_mps.max(speed);
         // A sample of another age: one of the two has news that the other has not, and news corrects.
-        let is_other = (device.age.as_micros() - twin.age.as_micros()).unsigned_abs() > 2 * 10_000;
+        let is_other = device.age.minus(twin.age).as_micros().abs() > (window.as_micros() + 10_000).max(20_000);
         let corrected_s = if is_other { seconds(device.age.max(twin.age)) } else { 0.0 };
         let window_s = seconds(window) + 0.001;
         let allowed_m = POSITION_ROUNDING_M + mps(twin.speed) * window_s + HARDEST_MPS2 * corrected_s.powi(2);

@@ -19,8 +19,8 @@ use crate::world::{Tick, Trace};
 pub const LATE_MAX_MS: f64 = 40.0;
 /// And so late in one of a hundred: a period.
 pub const LATE_P99_MS: f64 = 10.0;
-/// So long the device may take from its vehicle's motion to its command, but for one of a hundred: two periods, because it
-/// need not tick when its vehicle speaks.
+/// So long the device may take from its vehicle's motion to its command, unless somebody says otherwise, but for one of a
+/// hundred: two periods, because it need not tick when its vehicle speaks.
 pub const LATENCY_P99_MS: f64 = 20.0;
 /// Share of periods that a device in real time may miss on a system that is none.
 pub const MISSED_SHARE: f64 = 0.01;
@@ -128,7 +128,7 @@ impl Results {
 #[must_use]
 pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let mut scenario = summarise(&setup.scenario, &outcome.trace, outcome.realtime_factor);
-    scenario.bound.violations = violations(setup, &outcome.trace);
+    scenario.bound.violations = violations(setup, outcome);
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
@@ -202,9 +202,17 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     }
 }
 
-/// Ticks at which a target was outside its bound, but for the faults' aftermath: who is lied to, lies.
-fn violations(setup: &Setup, trace: &Trace) -> usize {
-    let is_judged = |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s));
+/// Ticks at which a target was outside its bound, but for the faults' aftermath, since who is lied to lies; and for ticks at
+/// which the harness was a period late or just had been, since what the device had said by then was heard later.
+fn violations(setup: &Setup, outcome: &Outcome) -> usize {
+    let trace = &outcome.trace;
+    let warm_up = outcome.lateness_us.len().saturating_sub(trace.times_s.len() + 1);
+    let was_late = |tick: usize| {
+        let around = outcome.lateness_us.iter().skip((warm_up + tick).saturating_sub(3)).take(5);
+        around.into_iter().any(|late_us| *late_us > setup.config.period.as_micros())
+    };
+    let is_judged =
+        |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s)) && !was_late(tick);
     let judged = |ticks: &Vec<Tick>| {
         let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
         ticks.iter().enumerate().map(target).collect()
@@ -268,8 +276,11 @@ fn failed(
     };
     if let Some(p99) = timing.latency.p99_ms.filter(|_| !deviation.lock_step) {
         limit(
-            p99 <= LATENCY_P99_MS,
-            format!("late: commands {p99:.1} ms after the motion in one of 100, of at most {LATENCY_P99_MS} ms"),
+            p99 <= setup.latency_p99_ms,
+            format!(
+                "late: commands {p99:.1} ms after the motion in one of 100, of at most {} ms",
+                setup.latency_p99_ms
+            ),
         );
     }
     #[allow(clippy::cast_precision_loss)] // counts
@@ -277,10 +288,12 @@ fn failed(
     limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
     limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));
     limit(device.restarts == 0, format!("it started anew {} times by itself", device.restarts));
-    limit(
-        deviation.unexplained == 0,
-        format!("{} ticks differ from the twin's by more than the time stamps explain", deviation.unexplained),
+    let first_s = outcome.deviation.unexplained_s.iter().find(|at_s| !setup.is_excused(**at_s)).unwrap_or(&0.0);
+    let differ = format!(
+        "{} ticks differ from the twin's by more than the time stamps explain; the first at {first_s:.2} s",
+        deviation.unexplained
     );
+    limit(deviation.unexplained == 0, differ);
     if let Some((at_s, device, twin)) = outcome.steps.as_ref().and_then(|steps| steps.first.as_ref()) {
         let cause = format!(
             "{} of {} frames are not the twin's; the first at {at_s:.2} s: {device} instead of {twin}",
@@ -307,6 +320,9 @@ fn said(cut: &Cut) -> String {
         }
         Cut::Gone { at_s, ended: how } => {
             format!("the device is gone: its last frame was at {at_s:.2} s{}", ended(how))
+        }
+        Cut::NotFresh { tick: 1 } => {
+            "the device ticks by itself: it gives more answers than it is asked for; start it in lock step".into()
         }
         Cut::NotFresh { tick } => format!(
             "the device has run before: its first answer has the count {tick} instead of 1; for lock step give it power anew"

@@ -14,6 +14,9 @@ use crate::bus::Frame;
 /// Motions that are remembered: a second of them.
 const INPUTS: usize = 100;
 
+/// Commands by which the lag of one is told: of a quarter of a second, in which clocks drift apart by nothing to speak of.
+const LAG_BEATS: usize = 25;
+
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beat {
@@ -131,6 +134,18 @@ impl Monitor {
         News::Command(command, is_new)
     }
 
+    /// How much later the last command was on the bus than the device's own count of periods says, by the earliest of those
+    /// just before it: it ticked late, or its line was slow. It does not tell a delay that all of them have.
+    #[must_use]
+    pub fn lag(&self) -> Duration {
+        let Some(last) = self.beats.last() else { return Duration::ZERO };
+        let lag = |beat: &Beat| {
+            let counted = i64::from(last.tick.wrapping_sub(beat.tick) & 63);
+            last.at.since(beat.at).as_micros() - counted * self.period.as_micros()
+        };
+        Duration::from_micros(self.beats.iter().rev().take(LAG_BEATS).map(lag).max().unwrap_or(0))
+    }
+
     /// Its commands.
     #[must_use]
     pub fn beats(&self) -> &[Beat] {
@@ -161,15 +176,17 @@ impl Monitor {
         &self.restarts
     }
 
-    /// Periods in which it said nothing, each gap with the time of its end.
+    /// Periods in which it said nothing, each gap with the time of its end. A command that was late, and the next one was not,
+    /// is late and not missing.
     #[must_use]
     pub fn missed(&self) -> Vec<(Instant, i64)> {
-        let period = self.period;
-        let gap = |pair: &[Beat]| {
-            let periods = pair[1].at.since(pair[0].at).as_micros() + period.as_micros() / 2;
-            (pair[1].at, periods.div_euclid(period.as_micros()) - 1)
+        let period = self.period.as_micros();
+        let gap = |(index, pair): (usize, &[Beat])| {
+            let late = pair[1].at.since(pair[0].at).as_micros();
+            let next = self.beats.get(index + 2).map_or(late, |next| next.at.since(pair[0].at).as_micros() - period);
+            (pair[1].at, (late.min(next) + period / 2).div_euclid(period) - 1)
         };
-        self.beats.windows(2).map(gap).filter(|(_, missed)| *missed > 0).collect()
+        self.beats.windows(2).enumerate().map(gap).filter(|(_, missed)| *missed > 0).collect()
     }
 }
 
@@ -221,11 +238,33 @@ mod tests {
     #[test]
     fn a_gap_is_counted_in_whole_periods() {
         let mut device = Device::new();
-        for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7)] {
+        // The commands of the periods 4 and 5 are missing, and that of 6 is late; that of 8 is late and none is missing.
+        for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7), (77, 8), (81, 9), (91, 10)] {
             device.command(millis, tick);
         }
         let missed = device.monitor.missed();
-        assert_eq!(missed, [(Instant::from_micros(56_000), 3)]);
+        assert_eq!(missed, [(Instant::from_micros(56_000), 2)]);
+    }
+
+    #[test]
+    fn a_device_that_is_slower_than_its_period_misses_every_other_one() {
+        let mut device = Device::new();
+        for beat in 0..10 {
+            device.command(15 * u64::from(beat), beat);
+        }
+        assert_eq!(device.monitor.missed().len(), 8); // the first one is not trusted
+    }
+
+    #[test]
+    fn a_command_that_comes_later_than_its_count_says_has_a_lag() {
+        let mut device = Device::new();
+        let mut lags = Vec::new();
+        for (millis, tick) in [(0, 61), (10, 62), (21, 63), (52, 0), (53, 1), (54, 2), (60, 3), (80, 4)] {
+            device.command(millis, tick);
+            lags.push(device.monitor.lag().as_millis());
+        }
+        // The first frame is not trusted. From the fourth on: a stall, its backlog, on time again, and a lost period.
+        assert_eq!(lags, [0, 0, 1, 22, 13, 4, 0, 10]);
     }
 
     #[test]

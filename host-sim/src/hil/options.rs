@@ -53,6 +53,10 @@ impl HilOptions {
             let error = Error::new(format!("is {}", arguments.wait), "give seconds from 0.1 to 3600");
             return Err(error.in_option("--wait"));
         }
+        if !(1.0..=1000.0).contains(&arguments.latency) {
+            let error = Error::new(format!("is {}", arguments.latency), "give milliseconds from 1 to 1000");
+            return Err(error.in_option("--latency"));
+        }
         let faults = arguments.fault.iter().map(|fault| fault.parse()).collect::<Result<Vec<Fault>, Error>>()?;
         let refuse = |cause: &str, remedy: &str| Err(Error::new(cause, remedy).in_option("--fault"));
         if arguments.lock_step && !faults.is_empty() {
@@ -70,7 +74,13 @@ impl HilOptions {
         }
         Ok(Self {
             bus: arguments.bus,
-            setup: Setup { scenario, config, wait: duration(arguments.wait), faults },
+            setup: Setup {
+                scenario,
+                config,
+                wait: duration(arguments.wait),
+                latency_p99_ms: arguments.latency,
+                faults,
+            },
             name: arguments.scenario.display().to_string(),
             lock_step: arguments.lock_step,
             device: arguments.device,

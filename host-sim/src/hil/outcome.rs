@@ -25,7 +25,7 @@ pub enum Cut {
         /// How its process ended, if it did.
         ended: Option<String>,
     },
-    /// In lock step, the device had ticked before.
+    /// In lock step, the device had ticked before, or ticks by itself.
     NotFresh {
         /// The count of its first answer.
         tick: u8,

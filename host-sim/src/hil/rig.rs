@@ -30,6 +30,10 @@ pub trait Rig {
     fn has_ended(&mut self) -> Option<String>;
 }
 
+/// Runs the device's command, `$0`, until it ends or the harness does: then nobody holds the other end of the pipe any more that
+/// is its stdin, and its whole group is killed. A harness that is interrupted could not do that itself.
+const LEASH: &str = r#"exec 3<&0 </dev/null; { cat <&3 >/dev/null; kill -KILL 0; } & exec 3<&-; eval "$0""#;
+
 /// The rig of a machine with a CAN interface. The device is a command, or somebody else's.
 pub struct MachineRig {
     interface: String,
@@ -60,7 +64,7 @@ impl Rig for MachineRig {
         self.end()?;
         let Some(command) = self.command.as_ref().filter(|_| on) else { return Ok(()) };
         let mut shell = Command::new("sh");
-        shell.args(["-c", command]).stdin(Stdio::null()).stdout(io::stderr());
+        shell.args(["-c", LEASH, command]).stdin(Stdio::piped()).stdout(io::stderr());
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut shell, 0);
         self.device = Some(shell.spawn()?);

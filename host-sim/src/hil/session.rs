@@ -49,6 +49,8 @@ pub struct Setup {
     pub config: Config,
     /// How long it may take to say its first word.
     pub wait: Duration,
+    /// How long after its vehicle's motion its command may come, but for one of 100, in milliseconds.
+    pub latency_p99_ms: f64,
     /// What is done to it.
     pub faults: Vec<Fault>,
 }
@@ -143,7 +145,9 @@ impl Ears {
                     self.restart();
                 }
                 // Before the run the two may have been given power at different times.
-                let window = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                let gap = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                let window =
+                    gap.max(Duration::from_micros(self.config.period.as_micros() + self.monitor.lag().as_micros()));
                 self.last_beat = Some(at);
                 self.told = self.twin.tick(at).map(|said| (said, window));
                 if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0) {

@@ -30,6 +30,8 @@ pub struct Behaviour {
     pub latency: Duration,
     /// When the harness stands still, from the beginning of the bus's time on, and for how long.
     pub stall: Option<(Duration, Duration)>,
+    /// How often the device and its line stand still, and for how long: nothing is lost, and all of it is late.
+    pub pause: Option<(Duration, Duration)>,
     /// When it dies for good, from the beginning of the bus's time on.
     pub dies_after: Option<Duration>,
     /// Changes a frame of the device on its way out.
@@ -41,7 +43,7 @@ impl Behaviour {
     #[must_use]
     pub fn good(config: Config, lock_step: bool) -> Self {
         let latency = Duration::from_micros(300);
-        Self { config, lock_step, latency, stall: None, dies_after: None, garble: |frame| frame }
+        Self { config, lock_step, latency, stall: None, pause: None, dies_after: None, garble: |frame| frame }
     }
 }
 
@@ -54,6 +56,8 @@ struct Shared {
     inboxes: Vec<VecDeque<(Instant, Event)>>,
     /// What the device is about to send.
     answers: VecDeque<(Instant, Frame)>,
+    /// What waits for the device to go on.
+    held: Vec<Frame>,
 }
 
 /// A port of the bus.
@@ -79,6 +83,7 @@ pub fn bench(behaviour: Behaviour) -> (VirtualPort, VirtualRig) {
         device,
         inboxes: vec![VecDeque::new(), VecDeque::new()],
         answers: VecDeque::new(),
+        held: Vec::new(),
     };
     let shared = Rc::new(RefCell::new(shared));
     let port = |index| VirtualPort { shared: Rc::clone(&shared), index };
@@ -93,11 +98,23 @@ impl Shared {
             let event = if Some(index) == from { Event::Sent(frame) } else { Event::Received(frame) };
             inbox.push_back((at, event));
         }
-        if from.is_some()
-            && let Some(answer) = self.device.as_mut().and_then(|device| device.receive(at, &frame))
-        {
+        if from.is_some() {
+            if self.goes_on().is_some() { self.held.push(frame) } else { self.give(at, frame) }
+        }
+    }
+
+    /// The device receives it.
+    fn give(&mut self, at: Instant, frame: Frame) {
+        if let Some(answer) = self.device.as_mut().and_then(|device| device.receive(at, &frame)) {
             self.answer(&answer.frames);
         }
+    }
+
+    /// When the device goes on, if it stands still.
+    fn goes_on(&self) -> Option<Instant> {
+        let (every, length) = self.behaviour.pause?;
+        let since = Duration::from_micros(self.now.since(START).as_micros().rem_euclid(every.as_micros()));
+        (since < length).then(|| self.now.plus(length.minus(since)))
     }
 
     fn answer(&mut self, frames: &[holdover::wire::Frame]) {
@@ -109,6 +126,13 @@ impl Shared {
     fn advance(&mut self, until: Instant) {
         if self.behaviour.dies_after.is_some_and(|after| self.now.since(START) > after) {
             self.device = None;
+        }
+        if let Some(end) = self.goes_on() {
+            self.now = until.min(end);
+            return;
+        }
+        for frame in std::mem::take(&mut self.held) {
+            self.give(self.now, frame);
         }
         let answer = self.answers.front().map(|(at, _)| *at);
         let tick = self.device.as_ref().and_then(|device| (!self.behaviour.lock_step).then(|| device.wakes()));

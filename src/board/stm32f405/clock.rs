@@ -1,67 +1,65 @@
-//! The core's timer: its interrupt at 100 Hz enters, instants and ticks leave.
+//! The chip's timers: a counter of microseconds and the core's timer, whose interrupt comes at 100 Hz, enter; instants and
+//! ticks leave.
+//!
+//! Time is what the counter says, and it counts whatever becomes of the interrupts. Were it the number of interrupts, one that
+//! is lost, because the core stood still for longer than a period (a debugger, an emulator that gets no processor), would
+//! leave the unit's time a period behind until the next synchronisation. So it costs a tick and nothing else.
 
+use super::clocks::Clocks;
+use super::registers::{RCC_APB1ENR, TIM2_CNT, TIM2_CR1, TIM2_EGR, TIM2_PSC};
 use core::cell::Cell;
 use cortex_m::interrupt::{self, Mutex};
+use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m::peripheral::{SCB, SYST};
 use cortex_m_rt::exception;
 use holdover::time::Instant;
 
 const TICK_HZ: u32 = 100;
-const TICK_MICROS: u64 = 1_000_000 / TICK_HZ as u64;
 
-#[derive(Clone, Copy)]
-struct Timer {
-    /// Periods since the start: 64 bits, because 32 wrap after 497 days.
-    periods: u64,
-    reload: u32,
-    cycles_per_micro: u32,
-}
-
-static TIMER: Mutex<Cell<Timer>> = Mutex::new(Cell::new(Timer { periods: 0, reload: 0, cycles_per_micro: 1 }));
+/// The counter's last reading, and how often it had begun anew: every 71 minutes.
+static COUNT: Mutex<Cell<(u32, u32)>> = Mutex::new(Cell::new((0, 0)));
+/// Interrupts of the core's timer.
+static PERIODS: Mutex<Cell<u32>> = Mutex::new(Cell::new(0));
 
 #[exception]
 fn SysTick() {
+    now(); // often enough to see that the counter has begun anew
     interrupt::free(|token| {
-        let timer = TIMER.borrow(token).get();
-        TIMER.borrow(token).set(Timer { periods: timer.periods.wrapping_add(1), ..timer });
+        let periods = PERIODS.borrow(token);
+        periods.set(periods.get().wrapping_add(1));
     });
 }
 
-/// Starts the timer. A core clock of up to 1.6 GHz fits its 24 bits.
-pub fn start(mut counter: SYST, core_hz: u32) {
-    let reload = core_hz / TICK_HZ - 1;
-    interrupt::free(|token| {
-        TIMER.borrow(token).set(Timer { periods: 0, reload, cycles_per_micro: core_hz / 1_000_000 });
-    });
-    counter.set_clock_source(SystClkSource::Core);
-    counter.set_reload(reload);
-    counter.clear_current();
-    counter.enable_interrupt();
-    counter.enable_counter();
+/// Starts both. A core clock of up to 1.6 GHz fits the 24 bits of the core's timer.
+pub fn start(mut timer: SYST, clocks: &Clocks) {
+    RCC_APB1ENR.set(0, 1); // TIM2
+    TIM2_PSC.write((clocks.counter_hz / 1_000_000).saturating_sub(1));
+    TIM2_EGR.write(1); // takes the prescaler over
+    TIM2_CR1.write(1); // on
+    timer.set_clock_source(SystClkSource::Core);
+    timer.set_reload((clocks.core_hz / TICK_HZ).saturating_sub(1));
+    timer.clear_current();
+    timer.enable_interrupt();
+    timer.enable_counter();
 }
 
 /// The time since the start, to a microsecond; from any context.
+///
+/// Not inlined, because in the interrupt of the port the compiler then no longer sees that a division of its queue cannot panic.
+#[inline(never)]
 pub fn now() -> Instant {
-    let (timer, cycles) = interrupt::free(|token| {
-        let timer = TIMER.borrow(token).get();
-        let left = SYST::get_current();
-        // The counter may have wrapped with interrupts off: then the count of periods is one behind it, and the reading
-        // may be from either side of the wrap, so it is taken again.
-        if SCB::is_pendst_pending() {
-            let periods = timer.periods.wrapping_add(1);
-            (Timer { periods, ..timer }, timer.reload.wrapping_sub(SYST::get_current()))
-        } else {
-            (timer, timer.reload.wrapping_sub(left))
-        }
-    });
-    let micros = cycles.checked_div(timer.cycles_per_micro).unwrap_or(0);
-    Instant::from_micros(timer.periods.wrapping_mul(TICK_MICROS).wrapping_add(u64::from(micros)))
+    interrupt::free(|token| {
+        let count = TIM2_CNT.read();
+        let (last, turns) = COUNT.borrow(token).get();
+        let turns = if count < last { turns.wrapping_add(1) } else { turns };
+        COUNT.borrow(token).set((count, turns));
+        Instant::from_micros(u64::from(turns) << 32 | u64::from(count))
+    })
 }
 
 /// The ticks, each handed out once.
 pub struct Ticks {
-    seen: u64,
+    seen: u32,
 }
 
 impl Ticks {
@@ -85,6 +83,6 @@ impl Ticks {
     }
 }
 
-fn periods() -> u64 {
-    interrupt::free(|token| TIMER.borrow(token).get().periods)
+fn periods() -> u32 {
+    interrupt::free(|token| PERIODS.borrow(token).get())
 }

@@ -15,6 +15,8 @@ const INTERNAL_MHZ: u32 = 16;
 #[derive(Clone, Copy)]
 pub struct Clocks {
     pub core_hz: u32,
+    /// Of the timers on the slower bus, which run at twice its clock where that is divided.
+    pub counter_hz: u32,
     /// Of USART1.
     #[cfg(not(feature = "bxcan"))]
     pub fast_bus_hz: u32,
@@ -24,9 +26,10 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    const fn new(core_hz: u32, _fast: u32, _slow: u32) -> Self {
+    const fn new(core_hz: u32, counter_hz: u32, _fast: u32, _slow: u32) -> Self {
         Self {
             core_hz,
+            counter_hz,
             #[cfg(not(feature = "bxcan"))]
             fast_bus_hz: core_hz / _fast,
             #[cfg(feature = "bxcan")]
@@ -42,9 +45,10 @@ impl Clocks {
         const PLL_ON: u32 = 1 << 24;
         const PLL_READY: u32 = 1 << 25;
         // The oscillator that the chip starts with says that it is ready, or no instruction would be executed. A chip that
-        // denies it has no clock tree: it is the emulator's model, whose timer counts at 168 MHz.
+        // denies it has no clock tree: it is the emulator's model, whose core's
+        // timer counts at 168 MHz and whose others at 1 GHz.
         if RCC_CR.read() & INTERNAL_READY == 0 {
-            return Self::new(168_000_000, 1, 1);
+            return Self::new(168_000_000, 1_000_000_000, 1, 1);
         }
         RCC_CR.set(0, CRYSTAL_ON);
         let crystal = RCC_CR.wait_for(CRYSTAL_READY);
@@ -53,11 +57,11 @@ impl Clocks {
         RCC_PLLCFGR.write((mhz / 2) | 168 << 6 | source | 7 << 24);
         RCC_CR.set(0, PLL_ON);
         if !RCC_CR.wait_for(PLL_READY) {
-            return Self::new(INTERNAL_MHZ * 1_000_000, 1, 1);
+            return Self::new(INTERNAL_MHZ * 1_000_000, INTERNAL_MHZ * 1_000_000, 1, 1);
         }
         // Five wait states at 168 MHz and 3.3 V; caches and prefetch on. Then the buses: core/2 and core/4, and the PLL.
         FLASH_ACR.write(5 | 0b111 << 8);
         RCC_CFGR.write(0b100 << 13 | 0b101 << 10 | 0b10);
-        Self::new(168_000_000, 2, 4)
+        Self::new(168_000_000, 84_000_000, 2, 4)
     }
 }

@@ -70,7 +70,7 @@ impl Board {
         let restarts = watchdog::restarts()?;
         let clocks = Clocks::start();
         let inbox = port::start(&clocks, arrivals);
-        clock::start(peripherals.SYST, clocks.core_hz);
+        clock::start(peripherals.SYST, &clocks);
         // SAFETY: the port's interrupt has its handler, below, and nothing relies on its being off.
         unsafe { NVIC::unmask(Number(Selected::INTERRUPT)) };
         let (busy, watchdog) = (Pin::start(), Watchdog::start());

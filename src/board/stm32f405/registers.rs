@@ -20,6 +20,11 @@ pub const FLASH_ACR: Register = Register(0x4002_3c00);
 pub const GPIOA_MODER: Register = Register(0x4002_0000);
 pub const GPIOA_BSRR: Register = Register(0x4002_0018);
 pub const GPIOA_AFRH: Register = Register(0x4002_0024);
+/// The counter of microseconds.
+pub const TIM2_CR1: Register = Register(0x4000_0000);
+pub const TIM2_EGR: Register = Register(0x4000_0014);
+pub const TIM2_CNT: Register = Register(0x4000_0024);
+pub const TIM2_PSC: Register = Register(0x4000_0028);
 /// The serial line.
 pub const USART1_SR: Register = Register(0x4001_1000);
 pub const USART1_DR: Register = Register(0x4001_1004);
