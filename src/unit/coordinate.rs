@@ -8,10 +8,11 @@ use crate::coordination::{
     Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind,
 };
 use crate::estimator::Reading;
+use crate::fixed::{quotient, saturate_i32};
 use crate::health::Refusal;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
-use crate::units::{Distance, Position, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Gain, Position, Seconds, Speed};
 use crate::wire::geo::GeoPosition;
 use crate::wire::motion::Motion;
 use crate::wire::route::Route;
@@ -198,16 +199,43 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
-        let target = [order, lane].into_iter().flatten().min_by_key(|index| self.asks(*index, now, next));
+        let target = self.more_careful(order, lane, now, next, front, state.speed);
         let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
     }
 
-    /// What a vehicle ahead asks of the law of eq. 5 with that crossing next: of two, the one with the smaller
-    /// `r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration, because everything else in the law is the ego's own.
-    pub(super) fn asks(&self, index: usize, at: Instant, next: usize) -> i64 {
+    /// Of the one just ahead in the order and the one just ahead on the leg, whom the ego follows with its front bumper there, at
+    /// this speed and with that crossing next: the one that asks for more caution.
+    ///
+    /// The one with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
+    /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. For the first of them the ego brakes
+    /// with no more than `b`, if gently, so that one asks for no less than `r + (t_g + γ) v - b/k`.
+    pub(super) fn more_careful(
+        &self,
+        order: Option<usize>,
+        lane: Option<usize>,
+        at: Instant,
+        next: usize,
+        front: Position,
+        speed: Speed,
+    ) -> Option<usize> {
+        let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
+        let law = &self.config.law;
+        let gentle = self.gentleness(order, next, front, speed).limit(Acceleration::MAX);
+        let least =
+            front.ahead(speed.over(law.time_gap)).ahead(speed.over(law.damping)).ahead(braked_over(gentle, law.gain));
+        let asks_first = if gentle == Acceleration::MAX {
+            self.asks(first, at, next)
+        } else {
+            self.asks(first, at, next).max(least.to_bits())
+        };
+        Some(if asks_first <= self.asks(ahead, at, next) { first } else { ahead })
+    }
+
+    /// `q_j` of a vehicle ahead with that crossing next, in words of a position.
+    fn asks(&self, index: usize, at: Instant, next: usize) -> i64 {
         self.rear(index, at).map_or(i64::MAX, |(reading, rear)| {
             let damped = reading.speed.over(self.config.law.damping);
             rear.ahead(damped).ahead(self.standstill_at(next, index).negated()).to_bits()
@@ -268,3 +296,9 @@ const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 
 /// A peer that told its route less than this ago is not placed by the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);
+
+/// `-b/k`, to the millimetre.
+fn braked_over(braking: Acceleration, gain: Gain) -> Distance {
+    let mm = quotient(i64::from(braking.to_mm_per_s2()).saturating_mul(1_000), i64::from(gain.to_milli()).max(1));
+    Distance::from_mm(saturate_i32(mm)).negated()
+}

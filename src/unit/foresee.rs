@@ -26,7 +26,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
-            let target = self.outlook(review, own.position, crossing);
+            let target = self.outlook(review, &own, crossing);
             let is_new = target != manner.target;
             let may = self.gentleness(target, crossing, own.position, own.speed);
             if is_new || may < gentleness {
@@ -49,10 +49,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(Gains::look_up(&self.config.law, own.speed, ahead.speed, headway))
     }
 
-    /// Whom the ego will follow, with its front bumper there and that crossing next, by the order and the horizons as they are
+    /// Whom the ego will follow, with that state and that crossing next, by the order and the horizons as they are
     /// known now. Who registers in between is not known.
-    fn outlook(&self, at: Instant, front: Position, crossing: usize) -> Option<usize> {
-        let end = self.coordination.end_of(crossing);
+    fn outlook(&self, at: Instant, own: &Reading, crossing: usize) -> Option<usize> {
+        let (front, end) = (own.position, self.coordination.end_of(crossing));
         let is_later = crossing != self.coordination.next();
         let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
         for index in 0..PEERS {
@@ -74,8 +74,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         // Who is ahead on the same leg comes to a later crossing before the ego, and after all who are there now.
         let order = order.filter(|_| !(is_later && lane.is_some()));
-        let candidates = [order.map(|(index, _)| index), lane.map(|(index, _)| index)];
-        candidates.into_iter().flatten().min_by_key(|index| self.asks(*index, at, crossing))
+        let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
+        self.more_careful(order, lane, at, crossing, front, own.speed)
     }
     /// Whether a station was ahead at the last review, and still is by what it has said since.
     fn is_ahead(&self, index: usize, entry: &Entry) -> bool {
