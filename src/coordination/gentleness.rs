@@ -13,7 +13,7 @@ const GENTLE_MM_PER_S2: [i32; 3] = [600, 1_000, 1_500];
 /// What it takes until the brakes are on.
 const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
 
-/// How gently the ego brakes for its target: so many from the end of [`GENTLE_MM_PER_S2`], or 0, as hard as its configuration
+/// How gently the ego brakes for its target: so many from the end of the three limits, or 0, as hard as its configuration
 /// lets its controller. So the harder is the smaller one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -134,7 +134,8 @@ fn of_hil() {
     let scenario = Scenario::parse(Path::new("hil"), "duration_s = 4", &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = vec!["corrupt@1:1".parse().unwrap()];
-    let setup = Setup { scenario, config, wait: Duration::from_millis(3000), faults };
+    let latency_p99_ms = holdover_sim::hil::judge::LATENCY_P99_MS;
+    let setup = Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms, faults };
     let json = |is_in_steps: bool| {
         let (port, mut rig) = bench(Behaviour::good(setup.config, is_in_steps));
         let outcome = if is_in_steps {
