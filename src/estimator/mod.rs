@@ -252,7 +252,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let present = self.grid.at_or_before(now);
         let whole = steps(self.length);
         let length = until.map_or(whole, |until| {
-            self.grid.at_or_before(until).saturating_sub(present).saturating_add(1).clamp(1, whole)
+            self.grid.at_or_before(until).saturating_sub(present).saturating_add(1).min(whole).max(1)
         });
         let (driver, length_ahead) = (manner.driver, manner.length_ahead);
         self.own_forecast(manner, usize::try_from(length).unwrap_or(0), |forecast, own| {

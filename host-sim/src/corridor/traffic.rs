@@ -23,7 +23,7 @@ use super::globe::Shift;
 use super::network::Network;
 use super::road::Ground;
 use super::tally::Tally;
-use super::trips::Trip;
+use super::trips::{HEARD_S, Trip};
 use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
@@ -42,7 +42,7 @@ const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
 /// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
 const ENTRY_BRAKING_MPS2: f64 = 2.0;
 
-/// Nobody appears nearer than this behind a vehicle that is silent at that moment, in metres.
+/// Nobody appears nearer than this behind a vehicle that is silent at that moment or within [`HEARD_S`], in metres.
 const UNHEARD_M: f64 = 100.0;
 
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
@@ -282,13 +282,13 @@ impl<'a> Traffic<'a> {
     }
 
     /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and does not happen
-    /// to be silent near by. Who comes up behind somebody has long heard of it; one that appears out of nothing has not.
+    /// to be silent near by, or to fall silent at once. Who comes up behind somebody has long heard of it; one that appears out of nothing has not.
     fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
-        if last.is_dark(at_s) && gap_m < UNHEARD_M {
+        if (last.is_dark(at_s) || last.is_dark(at_s + HEARD_S)) && gap_m < UNHEARD_M {
             return false;
         }
         let (v, w) = (trip.speed_mps, last.vehicle.plant.speed_mps);

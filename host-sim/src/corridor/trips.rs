@@ -36,7 +36,7 @@ impl Trip {
 }
 
 /// A vehicle that appears has been on its way, and on the air, before; so its silence begins when it has been so for a while.
-const HEARD_S: f64 = 2.0;
+pub const HEARD_S: f64 = 2.0;
 
 /// The trips, in the order of their arrival.
 #[must_use]
