@@ -4,16 +4,16 @@
 use crate::fixed::{quotient, saturate_i32};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
 
-/// How hard the ego brakes, at most, to make way for one on a crossing leg: the first of these by which it would still come to
+/// How hard the ego brakes, at most, to make way for one on a crossing leg: the last of these by which it would still come to
 /// a stand before the conflict area. The order may put somebody ahead who is just as near, and the law then asks for a gap of tens
 /// of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot hear it has the less to be
-/// surprised by: in 4 s of the first, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
-const GENTLE_MM_PER_S2: [i32; 3] = [600, 1_000, 1_500];
+/// surprised by: in 4 s of the last, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
+const GENTLE_MM_PER_S2: [i32; 3] = [1_500, 1_000, 600];
 
 /// What it takes until the brakes are on.
 const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
 
-/// How gently the ego brakes for its target: so many from the end of the three limits, or 0, as hard as its configuration
+/// How gently the ego brakes for its target: the place of its limit, or 0, as hard as its configuration
 /// lets its controller. So the harder is the smaller one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -31,12 +31,12 @@ impl Gentleness {
             let mm = quotient(mm_per_s.saturating_mul(mm_per_s), i64::from(**mm_per_s2).saturating_mul(2));
             Distance::from_mm(saturate_i32(mm)) <= left
         };
-        Self(GENTLE_MM_PER_S2.iter().rev().take_while(stands).count() as u8)
+        Self(GENTLE_MM_PER_S2.iter().take_while(stands).count() as u8)
     }
 
     /// The braking that it allows of what the configuration does.
     pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
-        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.iter().nth_back(place));
+        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.get(place));
         gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))
     }
 }

@@ -77,6 +77,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
         self.more_careful(order, lane, at, crossing, front, own.speed)
     }
+
     /// Whether a station was ahead at the last review, and still is by what it has said since.
     fn is_ahead(&self, index: usize, entry: &Entry) -> bool {
         let arrival = self.coordination.registration().map(|registration| registration.arrival);

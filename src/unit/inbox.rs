@@ -113,11 +113,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// A station speaks in one slot at a time. The one in which it was, if it now speaks in another.
     ///
     /// # Errors
-    /// [`Refusal::StationConflict`]: it has said something newer there.
+    /// [`Refusal::StationConflict`]: it was heard there within `slot_reuse`. Or else whoever takes its name could end what is
+    /// certain of it, and with that the check of whether what is said of it can be.
     fn left_slot(&self, index: usize, sample: &Sample) -> Result<Option<usize>, Refusal> {
         let left = self.peers.index_of(sample.station).filter(|left| *left != index);
-        let newest = left.and_then(|left| self.peers.get(left)).and_then(Track::newest);
-        if newest.is_some_and(|newest| newest.at > sample.at) { Err(Refusal::StationConflict) } else { Ok(left) }
+        let track = left.and_then(|left| self.peers.get(left));
+        let silence = track.and_then(|track| track.link().silence(sample.received));
+        let is_heard = silence.is_some_and(|silence| silence < self.config.link.slot_reuse);
+        if is_heard { Err(Refusal::StationConflict) } else { Ok(left) }
     }
 
     /// What was known of a station in a slot that it has left is from before, and ends.
