@@ -89,7 +89,7 @@ fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
     };
     let speeds =
         chart("speed", "m/s", vec![line("ego", speed, Tone::Ego), line("vehicle ahead", ahead, Tone::Other(0))]);
-    let gaps = chart("gap", "m", vec![line("gap to the vehicle ahead", gap, Tone::Ours)]);
+    let gaps = chart("gap", "m", vec![line("gap", gap, Tone::Ours)]);
     page.figure("Drive", "The ego under the device's commands, behind the simulated vehicle ahead.", &[&speeds, &gaps]);
     if options.lock_step {
         return;
