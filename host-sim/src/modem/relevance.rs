@@ -62,6 +62,8 @@ pub struct Course {
     /// The intersections of the unit's way, each with the way to it.
     crossings: Vec<Ahead>,
     route: Option<Route>,
+    /// Whom the driver told it to follow.
+    told: Option<StationHash>,
     followed: Option<StationHash>,
 }
 
@@ -75,7 +77,7 @@ impl Course {
     /// The way of a string, behind that station.
     #[must_use]
     pub fn behind(station: StationHash) -> Self {
-        Self { followed: Some(station), ..Self::default() }
+        Self { told: Some(station), followed: Some(station), ..Self::default() }
     }
 
     /// Takes in one of the unit's own messages.
@@ -85,7 +87,8 @@ impl Course {
             Said::Intent(intent) => {
                 self.followed = match intent.predecessor {
                     Predecessor::Station(station) => Some(station),
-                    Predecessor::None | Predecessor::Unknown => None,
+                    // Who waits for a first message names nobody, and has to hear whom it waits for.
+                    Predecessor::None | Predecessor::Unknown => self.told,
                 }
             }
             _ => {}

@@ -103,6 +103,18 @@ fn the_station_silent_for_longest_makes_room_when_it_has_been_for_two_seconds() 
 }
 
 #[test]
+fn whom_the_driver_told_it_to_follow_has_a_slot_kept_while_the_unit_names_nobody() {
+    let mut relay = Relay::new(BaseId::DEFAULT);
+    relay.set_out(Course::behind(StationHash(99)));
+    relay.take(&Said::Intent(Intent { predecessor: Predecessor::Unknown, ..intent(1) }));
+    for station in (1..=PEERS as u8).chain([99]) {
+        let mut frames = Vec::new();
+        relay.hear(0.0, &message(station, None), &mut frames);
+        assert_eq!(frames.is_empty(), usize::from(station) == PEERS, "{station}");
+    }
+}
+
+#[test]
 fn an_intent_is_relayed_when_it_changes_and_otherwise_twice_a_second() {
     let mut unit = Unit::new();
     assert_eq!(unit.hear(0.0, &message(3, Some(intent(11_000)))).1, 1);
