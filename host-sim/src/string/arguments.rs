@@ -6,8 +6,8 @@ use std::path::PathBuf;
 /// The arguments of `string`.
 #[derive(Clone, Debug, Args)]
 pub struct StringArguments {
-    /// Time gaps of the ten followers, in seconds from 0.1 to 3.995; the shipped one is 1
-    #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', default_value = "1", allow_negative_numbers = true)]
+    /// Time gaps of the ten followers, in seconds from 0.1 to 3.995; the shipped one if there are none
+    #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub time_gaps: Vec<f64>,
 
     /// Delays of every message, in seconds from 0 to 1
@@ -40,6 +40,10 @@ pub struct StringArguments {
     )]
     pub frequencies: Vec<f64>,
 
+    /// The step alone, at which chance decides: no sines
+    #[arg(long, conflicts_with = "frequencies")]
+    pub step_only: bool,
+
     /// Seed of what is lost
     #[arg(long, value_name = "N", default_value = "1")]
     pub seed: u64,
@@ -65,7 +69,7 @@ pub struct StringArguments {
 pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim string                            the shipped gains and time gap
-  holdover-sim string --time-gaps 1,0.8,0.6 --json
+  holdover-sim string --time-gaps 1,1.2,1.4,1.6 --step-only --seeds 40 --json
   holdover-sim string --delays 0,0.025,0.05 --losses 0,0.1 --seeds 5
   holdover-sim string --delays 0.05 --losses 0.1 --frequencies 0.1,0.2
 
@@ -85,6 +89,6 @@ Figures:
   age times speed  the same law on the newest message, moved on by its age
 
 Exit codes:
-  0  with holdover no ratio is above 1.01
-  1  one is; the results say which
+  0  with holdover no ratio is above 1.01, and everybody follows all the time
+  1  that is not so; the results say where
   2  bad input; one line on stderr names option, cause and remedy";

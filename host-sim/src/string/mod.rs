@@ -28,6 +28,8 @@ use rows::Row;
 struct Results<'a> {
     /// The largest ratio allowed.
     limit: f64,
+    /// The time gap that is shipped.
+    shipped_time_gap_s: f64,
     /// The smallest of the time gaps at and above which it holds; none if it does not hold at the largest.
     smallest_time_gap_s: Option<f64>,
     rows: &'a [Row],
@@ -49,7 +51,8 @@ pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
     };
     if options.json {
         let smallest_time_gap_s = rows::smallest_time_gap_s(&rows);
-        let results = Results { limit: rows::LIMIT, smallest_time_gap_s, rows: &rows };
+        let shipped_time_gap_s = options::shipped_time_gap_s();
+        let results = Results { limit: rows::LIMIT, shipped_time_gap_s, smallest_time_gap_s, rows: &rows };
         let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
         output::print(&format!("{json}\n"))?;
         failures.iter().for_each(|failure| output::say(&format!("verdict: FAILED: {failure}")));

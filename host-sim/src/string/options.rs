@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use holdover::parameters;
+
 use super::arguments::StringArguments;
 use super::disturbance::Disturbance;
 use crate::error::Error;
@@ -34,7 +36,9 @@ impl StringOptions {
     /// # Errors
     /// Values that cannot be, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
-        let StringArguments { time_gaps, delays, losses, frequencies, seed, seeds, json, out, no_report } = arguments;
+        let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, json, out, no_report } =
+            arguments;
+        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
@@ -47,7 +51,7 @@ impl StringOptions {
         if let Some(folder) = &report {
             can_be_folder(folder)?;
         }
-        let sines = frequencies.into_iter().map(Disturbance::Sine);
+        let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
         Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, json, report })
     }
@@ -58,16 +62,23 @@ impl StringOptions {
         let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
         let frequencies: Vec<f64> =
             self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
+        let sines =
+            if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} --frequencies {} --seed {} --seeds {}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --seed {} --seeds {}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),
-            list(&frequencies),
             self.seed,
             self.seeds
         )
     }
+}
+
+/// The time gap that a unit keeps where nobody asks for another.
+#[must_use]
+pub fn shipped_time_gap_s() -> f64 {
+    f64::from(parameters::TIME_GAP.to_millis()) / 1e3
 }
 
 fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {

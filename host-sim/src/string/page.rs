@@ -1,6 +1,6 @@
 //! The report of string stability: rows enter, an HTML page with a table and curves leaves.
 
-use super::options::StringOptions;
+use super::options::{StringOptions, shipped_time_gap_s};
 use super::rows::{LIMIT, Row};
 use super::table::ratio;
 use crate::report::page::{Cell, Page};
@@ -18,10 +18,15 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Str
     page.paragraph(WHAT);
     table(&mut page, rows);
     page.command(&options.command());
+    if options.time_gaps_s.len() > 1 {
+        over_time_gap(&mut page, &options.time_gaps_s, rows);
+    }
     for &time_gap_s in &options.time_gaps_s {
         let rows: Vec<&Row> = rows.iter().filter(|row| row.time_gap_s == time_gap_s).collect();
         over_delay(&mut page, time_gap_s, &options.losses, &rows);
-        over_frequency(&mut page, time_gap_s, options, &rows);
+        if options.disturbances.iter().any(|disturbance| disturbance.frequency_hz().is_some()) {
+            over_frequency(&mut page, time_gap_s, options, &rows);
+        }
     }
     page.finish()
 }
@@ -48,6 +53,26 @@ fn table(page: &mut Page, rows: &[Row]) {
 
 fn guide() -> Guide {
     Guide { at: LIMIT, label: format!("limit {LIMIT}") }
+}
+
+fn over_time_gap(page: &mut Page, time_gaps_s: &[f64], rows: &[Row]) {
+    let caption = "Largest ratio of all delays and losses over the time gap; the smallest at and above which it is within the \
+                   limit is the smallest that can be shipped.";
+    let line = |name: &str, tone: Tone, of: &dyn Fn(&Row) -> Option<f64>| {
+        let largest =
+            |time_gap_s: f64| rows.iter().filter(|row| row.time_gap_s == time_gap_s).filter_map(of).reduce(f64::max);
+        let points = time_gaps_s.iter().filter_map(|&time_gap_s| Some((time_gap_s, largest(time_gap_s)?)));
+        Layer::Line { series: Series::new(name, points), tone, marked: true }
+    };
+    let layers = vec![
+        line("age times speed", Tone::Other(1), &|row| Some(row.age_times_speed.as_ref()?.ratio)),
+        line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
+    ];
+    let axes = (Axis::linear("time gap", "s"), Axis::linear("largest ratio", "").including(1.0));
+    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s());
+    let chart =
+        Chart { description: caption.into(), layers, guides: vec![guide()], ..Chart::new(&title, axes.0, axes.1) };
+    page.figure(&title, caption, &[&chart]);
 }
 
 fn over_delay(page: &mut Page, time_gap_s: f64, losses: &[f64], rows: &[&Row]) {

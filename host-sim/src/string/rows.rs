@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use holdover::wire::command::ModeCode;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -13,6 +14,7 @@ use super::uncompensated::{self, Reading};
 use crate::error::Error;
 use crate::run::simulate;
 use crate::scenario::{MAX_VEHICLES, Overrides, Scenario};
+use crate::world::{Tick, Trace};
 
 /// The largest ratio that is allowed.
 pub const LIMIT: f64 = 1.01;
@@ -36,6 +38,8 @@ pub struct Row {
     pub by_disturbance: Vec<Option<Worst>>,
     /// Collisions with holdover.
     pub collisions: usize,
+    /// Followers whose units did not always drive by their law while it was measured, of all runs.
+    pub not_following: usize,
 }
 
 /// The outcome of one disturbance.
@@ -44,6 +48,7 @@ struct Outcome {
     as_it_stands: Option<Worst>,
     age_times_speed: Option<Worst>,
     collisions: usize,
+    not_following: usize,
 }
 
 /// Runs all of it on all cores; `done` is called after each disturbance.
@@ -90,6 +95,7 @@ fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome], seeds
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
         by_disturbance: outcomes.chunks(seeds).map(|of_one| largest(of_one, |outcome| &outcome.holdover)).collect(),
         collisions: outcomes.iter().map(|outcome| outcome.collisions).sum(),
+        not_following: outcomes.iter().map(|outcome| outcome.not_following).sum(),
     }
 }
 
@@ -100,7 +106,7 @@ fn outcome(
 ) -> Result<Outcome, Error> {
     let scenario = scenario(time_gap_s, delay_s, loss, disturbance)?;
     let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
-    let speeds = |ticks: &Vec<crate::world::Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
+    let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
     let units = Speeds { period_s: scenario.period_s, vehicles: trace.vehicles.iter().map(speeds).collect() };
     let without = |reading| uncompensated::run(&scenario, seed, reading).worst(disturbance);
     Ok(Outcome {
@@ -108,14 +114,22 @@ fn outcome(
         as_it_stands: without(Reading::AsItStands),
         age_times_speed: without(Reading::AgeTimesSpeed),
         collisions: summary.collisions,
+        not_following: not_following(&trace, disturbance.measured_from_s()),
     })
+}
+
+/// How many followers' units did not always drive by their law from that time on.
+fn not_following(trace: &Trace, from_s: f64) -> usize {
+    let begins = trace.times_s.partition_point(|at_s| *at_s < from_s - 1e-9);
+    let follows = |tick: &Tick| matches!(tick.mode, ModeCode::Cooperative | ModeCode::Holdover);
+    trace.vehicles.iter().skip(1).filter(|ticks| !ticks.iter().skip(begins).all(follows)).count()
 }
 
 /// The string: everybody at the gap and the speed that are wanted.
 ///
 /// # Errors
 /// None that values within the options' limits make.
-pub fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
+fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
     let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
     let vehicle = |gap: &str| {
@@ -148,16 +162,25 @@ pub fn failures(rows: &[Row]) -> Vec<String> {
     let crashed = |row: &Row| {
         (row.collisions > 0).then(|| format!("{} collisions at a delay of {} s", row.collisions, row.delay_s))
     };
-    rows.iter().filter_map(above).chain(rows.iter().filter_map(crashed)).collect()
+    // One that stands passes nothing on, so no ratio tells.
+    let lost = |row: &Row| {
+        (row.not_following > 0).then(|| {
+            let Row { time_gap_s, delay_s, loss, not_following, .. } = row;
+            format!(
+                "{not_following} vehicles that did not follow at a time gap of {time_gap_s} s, a delay of {delay_s} s and a \
+                 loss of {loss}"
+            )
+        })
+    };
+    let each = |of: &dyn Fn(&Row) -> Option<String>| rows.iter().filter_map(of).collect::<Vec<_>>();
+    [each(&above), each(&crashed), each(&lost)].concat()
 }
 
 /// The smallest time gap for which the limit holds there and at every larger one that was tried.
 #[must_use]
 pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
     let holds = |gap: f64| {
-        rows.iter()
-            .filter(|row| row.time_gap_s == gap)
-            .all(|row| row.holdover.as_ref().is_none_or(|worst| worst.ratio <= LIMIT))
+        rows.iter().filter(|row| row.time_gap_s == gap).all(|row| failures(std::slice::from_ref(row)).is_empty())
     };
     let mut gaps: Vec<f64> = rows.iter().map(|row| row.time_gap_s).collect();
     gaps.sort_by(|a, b| b.total_cmp(a));
@@ -170,7 +193,7 @@ mod tests {
 
     fn outcome(ratio: f64, disturbance: &str) -> Outcome {
         let worst = Some(Worst { ratio, disturbance: disturbance.into(), vehicle: 1 });
-        Outcome { holdover: worst.clone(), as_it_stands: worst, age_times_speed: None, collisions: 1 }
+        Outcome { holdover: worst.clone(), as_it_stands: worst, age_times_speed: None, collisions: 1, not_following: 0 }
     }
 
     #[test]

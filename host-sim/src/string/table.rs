@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::amplification::Worst;
+use super::options::shipped_time_gap_s;
 use super::rows::{LIMIT, Row, smallest_time_gap_s};
 
 /// The table.
@@ -31,7 +32,11 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     }
     match smallest_time_gap_s(rows) {
         Some(gap) => {
-            let _ = writeln!(text, "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried");
+            let shipped = shipped_time_gap_s();
+            let _ = writeln!(
+                text,
+                "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried; {shipped} s is shipped"
+            );
         }
         None => {
             let _ = writeln!(text, "above {LIMIT} at the largest time gap that was tried");
