@@ -230,7 +230,7 @@ impl Config {
         envelope: None,
     };
 
-    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
     /// interpolation needs).
     #[must_use]
     pub const fn car(station: StationHash) -> Self {
@@ -249,7 +249,7 @@ impl Config {
             body: Body::CAR,
             correction: true,
             law: Law {
-                time_gap: Seconds::from_millis(1000),
+                time_gap: parameters::TIME_GAP,
                 standstill: Distance::from_mm(2000),
                 table: true,
                 gain: parameters::GAIN,

@@ -35,9 +35,10 @@ pub const TARGET: StationHash = StationHash(2);
 /// The slot that the rig puts the target in.
 pub const SLOT: Slot = Slot(2);
 
-/// A car whose horizon fits [`Unit`].
+/// A car whose horizon fits [`Unit`], and that keeps 1 s: the scenes are laid out for that.
 pub fn config() -> Config {
     let mut config = Config::car(EGO);
+    config.law.time_gap = holdover::units::Seconds::from_millis(1_000);
     config.prediction.horizon = holdover::time::Duration::from_millis(600);
     config
 }

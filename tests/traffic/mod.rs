@@ -173,8 +173,11 @@ pub fn settled_with(config: &Config) -> (Unit, Traffic) {
     (unit, traffic)
 }
 
+/// Behind a target at the gap of 1 s.
 pub fn settled() -> (Unit, Traffic) {
-    settled_with(&Config::car(EGO))
+    let mut config = Config::car(EGO);
+    config.law.time_gap = Seconds::from_millis(1_000);
+    settled_with(&config)
 }
 
 pub fn wish(predecessor: Predecessor) -> EgoIntent {

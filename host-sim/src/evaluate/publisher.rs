@@ -6,7 +6,7 @@
 //! that believed in a law which nobody drives by would be metres off.
 
 use holdover::Config;
-use holdover::units::{Acceleration, Jerk};
+use holdover::units::{Acceleration, Jerk, Seconds};
 use holdover::wire::intent::{Intent, Limits};
 use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
@@ -80,7 +80,8 @@ impl<'a> Publisher<'a> {
         Self { motion, timeline, station, follows: None, tag: 0 }
     }
 
-    /// The same behind that vehicle, whose length is a car's; its law is the one that a unit is configured with.
+    /// The same behind that vehicle, whose length is a car's; its law is the one that a unit is configured with, at the time
+    /// gap of 1 s that scenarios have where they say no other.
     #[must_use]
     fn behind(self, ahead: &'a Motion, predecessor: StationHash) -> Self {
         let Config { length, lag, limits, law, .. } = Config::car(self.station);
@@ -89,7 +90,7 @@ impl<'a> Publisher<'a> {
             standstill: law.standstill,
             predecessor: Predecessor::Station(predecessor),
             target_speed: law.target_speed,
-            time_gap: law.time_gap,
+            time_gap: Seconds::from_millis(1_000),
             gain: law.gain,
             damping: law.damping,
             lag,

@@ -4,7 +4,8 @@
 //! `G(s) = k (1 + γ s)/(T s³ + s² + k (t_g + γ) s + k)`, and its own loop is
 //! `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
 
-/// The shipped time gap `t_g`, in seconds. What holds for it holds for every larger one.
+/// The time gap `t_g` that the gains are made for, in seconds. What holds for it holds for every larger one, and the
+/// shipped one is larger.
 pub const TIME_GAP_S: f64 = 1.0;
 /// The laziest actuators, those of a bus, in seconds.
 pub const LAZIEST_S: f64 = 0.5;
