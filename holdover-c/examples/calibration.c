@@ -25,7 +25,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
     },
     .correction = 1,
     .law = {
-        .time_gap_ms = 1000,
+        .time_gap_ms = 1600,
         .standstill_mm = 2000,
         .gain_table = 1,
         .gain_milli = 500,

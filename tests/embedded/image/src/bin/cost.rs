@@ -8,7 +8,7 @@ use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
 use holdover::estimator::{Aim, Driver, State, Step};
 use holdover::time::{Duration, Instant};
-use holdover::units::{Position, Speed};
+use holdover::units::{Position, Seconds, Speed};
 use holdover::{Config, OnboardUnit};
 use holdover_image::counter::Counter;
 use holdover_image::float::{double, single};
@@ -177,7 +177,7 @@ fn compare(counter: &Counter) {
     let aim = Aim::Follow {
         gain: law.gain,
         damping: law.damping,
-        time_gap: law.time_gap,
+        time_gap: Seconds::from_millis(1_000), // as in the other two
         standstill: law.standstill,
         target_speed: law.target_speed,
     };
