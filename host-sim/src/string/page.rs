@@ -41,11 +41,13 @@ fn table(page: &mut Page, rows: &[Row]) {
             Cell::number(row.loss.to_string()),
             Cell::judged(ratio(row.holdover.as_ref()), met),
             Cell::text(place.unwrap_or_default()),
+            Cell::number(row.runs_above.to_string()),
             Cell::number(ratio(row.as_it_stands.as_ref())),
             Cell::number(ratio(row.age_times_speed.as_ref())),
         ]
     };
-    let header = ["Time gap, s", "Delay, s", "Loss", "Holdover", "Where", "As it stands", "Age times speed"];
+    let header =
+        ["Time gap, s", "Delay, s", "Loss", "Holdover", "Where", "Runs above", "As it stands", "Age times speed"];
     let caption = "Largest ratio of a vehicle’s speed amplitude to its predecessor’s, with holdover; and without it, by the \
                    newest message as it stands, and moved on by its age times its speed.";
     page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());

@@ -36,6 +36,8 @@ pub struct Row {
     pub age_times_speed: Option<Worst>,
     /// Of each disturbance the largest ratio with holdover.
     pub by_disturbance: Vec<Option<Worst>>,
+    /// Runs in which the ratio with holdover is above the limit.
+    pub runs_above: usize,
     /// Collisions with holdover.
     pub collisions: usize,
     /// Followers whose units did not always drive by their law while it was measured, of all runs.
@@ -94,9 +96,14 @@ fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome], seeds
         as_it_stands: worst(|outcome| &outcome.as_it_stands),
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
         by_disturbance: outcomes.chunks(seeds).map(|of_one| largest(of_one, |outcome| &outcome.holdover)).collect(),
+        runs_above: outcomes.iter().filter(|outcome| is_above(&outcome.holdover)).count(),
         collisions: outcomes.iter().map(|outcome| outcome.collisions).sum(),
         not_following: outcomes.iter().map(|outcome| outcome.not_following).sum(),
     }
+}
+
+fn is_above(worst: &Option<Worst>) -> bool {
+    worst.as_ref().is_some_and(|worst| worst.ratio > LIMIT)
 }
 
 fn outcome(
@@ -203,6 +210,9 @@ mod tests {
         let row = row((1.0, 0.1, 0.2), &outcomes, 2);
         let ratios: Vec<f64> = row.by_disturbance.iter().flatten().map(|worst| worst.ratio).collect();
         assert_eq!(ratios, [1.1, 0.7]);
-        assert_eq!((row.holdover.unwrap().ratio, row.age_times_speed, row.collisions), (1.1, None, 4));
+        assert_eq!(
+            (row.holdover.unwrap().ratio, row.age_times_speed, row.runs_above, row.collisions),
+            (1.1, None, 1, 4)
+        );
     }
 }
