@@ -6,6 +6,7 @@ use holdover::health::Refusal;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
+use rig::plant;
 
 /// The earlier one is station 2, on leg 1; the later one station 1, on leg 0, and `behind` metres further from the crossing.
 fn two(behind: f64, envelope: bool) -> Junction {
@@ -167,6 +168,56 @@ fn with_the_envelope_who_is_heard_to_leave_is_not_waited_for() {
     let mut junction = settled(two(6.0, true));
     junction.run(40.0, |_| {});
     assert!(junction.drivers[0].body.position > 300.0, "{}", junction.drivers[0].body.position);
+}
+
+#[test]
+fn with_the_envelope_a_silent_one_on_the_same_leg_is_not_run_into_where_it_is_estimated_beyond_one_that_is_heard() {
+    // The front one is slow, the middle one knows nothing of it and says so; then it is silent and brakes to a stand.
+    let [ego, middle, front] = [(1, 20.0, 11.0), (2, 50.0, 11.0), (3, 90.0, 2.0)].map(|(station, at, speed)| {
+        let mut driver = Driver::new(station, 0, at, speed, station == 1);
+        driver.hears = station == 1;
+        driver
+    });
+    let mut junction = Junction::new(vec![ego, middle, front]);
+    junction.run(1.0, |_| {});
+    junction.drivers[1].speaks = false;
+    let plant::Plant { mut position, mut speed, .. } = junction.drivers[1].body;
+    let (mut gap, mut follows_front): (f64, bool) = (f64::MAX, false);
+    junction.run(12.0, |junction| {
+        speed = (speed - 0.07).max(0.0);
+        position += speed * 0.01;
+        let lag = junction.drivers[1].body.lag;
+        junction.drivers[1].body = plant::Plant { position, speed, acceleration: 0.0, lag };
+        gap = gap.min(position - 4.8 - junction.drivers[0].body.position);
+        follows_front |= junction.drivers[0].follows() == Some(3);
+    });
+    assert!(follows_front, "the estimate of the middle one has passed the front one");
+    assert!(gap > 0.0, "{gap}");
+}
+
+#[test]
+fn who_has_moved_on_to_another_intersection_is_not_followed_for_a_tick_longer() {
+    for until_s in [2.0, 2.03, 2.07] {
+        let mut junction = settled(two(15.0, false));
+        junction.run(until_s, |_| {});
+        assert_eq!(junction.drivers[0].follows(), Some(2));
+        junction.drivers[1].speaks = false;
+        let now = junction.now;
+        let newest = *junction.drivers[0].rig.unit.peers().get(1).unwrap().newest().unwrap();
+        let route = Route {
+            tag: 0,
+            intersection: 6,
+            leg: 1,
+            distance: rig::metres(300.0),
+            stamp: newest.stamp,
+            arrival: 1,
+            predecessor: Predecessor::None,
+        };
+        let slot = holdover::wire::Slot(1);
+        junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Route(route))).unwrap();
+        junction.run(0.01, |_| {});
+        assert_eq!(junction.drivers[0].follows(), None, "{until_s}");
+    }
 }
 
 #[test]

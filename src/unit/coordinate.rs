@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::OnboardUnit;
 use crate::coordination::{
-    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind,
+    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
 };
 use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
@@ -130,8 +130,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let index = usize::from(slot.0);
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
         let Some(axis) = self.coordination.axis_mut(index) else { return };
+        let moves_on = axis.standing().is_some_and(|held| held.crossing != standing.crossing);
         let moved = axis.place(stamp, point, distance, standing);
         self.move_axis(index, moved);
+        // On its way against the ego's it is now far behind: until a review the ego would follow it there.
+        if moves_on {
+            self.coordination.review_at_once();
+        }
     }
 
     fn leave(&mut self, slot: Slot) {
@@ -189,13 +194,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
-        // Who was far ahead when it was heard last has got out of reach: nobody is ahead then as far as it matters.
-        let heeded = front.ahead(HEEDED).ahead(state.speed.over(HEEDED_TIME)).ahead(state.speed.over(HEEDED_TIME));
-        let is_heeded = |index: &usize| {
-            let track = self.peers.get(*index);
-            let silence = track.and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
-            silence <= self.config.link.holdover || self.rear(*index, now).is_some_and(|(_, rear)| rear <= heeded)
-        };
+        let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
@@ -204,6 +203,30 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
+        self.coordination.note_leading(self.leading(now, front));
+    }
+
+    /// Whether a peer matters to the ego with its front bumper there: who was far ahead when it was heard last has got out of
+    /// reach, and nobody is ahead then as far as it matters.
+    pub(super) fn is_heeded(&self, index: usize, now: Instant, front: Position, speed: Speed) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
+        let heeded = front.ahead(HEEDED).ahead(speed.over(HEEDED_TIME)).ahead(speed.over(HEEDED_TIME));
+        silence <= self.config.link.holdover || self.rear(index, now).is_some_and(|(_, rear)| rear <= heeded)
+    }
+
+    /// Who is ahead of the ego's front bumper on its own leg by what is certain of it; who may be on either side is where it was.
+    fn leading(&self, now: Instant, front: Position) -> Slots {
+        let mut leading = self.coordination.choice().leading;
+        for index in 0..PEERS {
+            let standing = self.coordination.standing(index);
+            let bound = standing.filter(|standing| self.coordination.is_on_lane(standing)).and(self.bound(index, now));
+            let is_ahead = bound.is_some_and(|bound| {
+                let may_be_behind = bound.lowest_position() <= front;
+                !may_be_behind || bound.highest_position() > front && leading.contains(index)
+            });
+            leading.set(index, is_ahead);
+        }
+        leading
     }
 
     /// Of the one just ahead in the order and the one just ahead on the leg, whom the ego follows with its front bumper there, at
