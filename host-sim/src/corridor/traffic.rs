@@ -20,6 +20,7 @@ use super::alone;
 use super::conditions::{Conditions, WhenLost, config};
 use super::description::{Corridor, Radio};
 use super::globe::Shift;
+use super::map::number;
 use super::network::Network;
 use super::road::Ground;
 use super::tally::Tally;
@@ -324,10 +325,8 @@ impl<'a> Traffic<'a> {
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane
-            .stops
-            .iter()
-            .map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
+        let crossings =
+            lane.stops.iter().map(|stop| (number(stop.intersection), number(stop.leg), stop.at_m - lane.entry_m));
         vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
             |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
         )?;
