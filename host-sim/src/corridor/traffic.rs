@@ -221,6 +221,9 @@ impl<'a> Traffic<'a> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone();
         }
+        if self.conditions.envelope.engaged {
+            self.run_out();
+        }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
         self.tally.on_way += sightings.len() as u64;
@@ -344,6 +347,19 @@ impl<'a> Traffic<'a> {
             if let Some(traveller) = self.travellers.get_mut(&own.trip) {
                 traveller.vehicle.override_with(wanted);
             }
+        }
+    }
+
+    /// Who has left drives on by sight where its envelope would hold it. The one ahead of it vanishes without a word, and for
+    /// all that is certain it stands there: each would wait for that, and all behind it, back onto the way.
+    fn run_out(&mut self) {
+        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
+        for traveller in
+            self.travellers.values_mut().filter(|traveller| traveller.has_left && traveller.vehicle.limited)
+        {
+            let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic);
+            traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
         }
     }
 
