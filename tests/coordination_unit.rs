@@ -281,3 +281,41 @@ fn another_station_in_a_live_slot_does_not_move_the_axis() {
     assert_eq!(verdict, Err(Refusal::StationConflict));
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
 }
+
+#[test]
+fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_was_in_another() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(2.0, |_| {});
+    let slot = holdover::wire::Slot(2);
+    let says = |junction: &mut Junction, station: u8, metres: f64| {
+        let now = junction.now;
+        let rig = &mut junction.drivers[0].rig;
+        let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
+        let route = Route {
+            tag: motion.tag,
+            intersection: 5,
+            leg: 1,
+            distance: rig::metres(metres),
+            stamp: motion.stamp,
+            arrival: 1,
+            predecessor: Predecessor::None,
+        };
+        rig.put(now, &Message::Peer(slot, Said::Route(route))).expect("a route is taken note of");
+        rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
+    };
+    for metres in [90.0, 89.5, 89.0] {
+        let _ = says(&mut junction, 77, metres);
+        junction.run(0.1, |_| {});
+    }
+    junction.run(2.5, |_| {});
+    let held = |junction: &Junction| {
+        let unit = &junction.drivers[0].rig.unit;
+        let station = unit.peers().get(2).and_then(|track| track.station());
+        (station, unit.coordination().standing(2).copied())
+    };
+    let before = held(&junction);
+    assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
+    // The one in slot 1 speaks in slot 2.
+    assert_eq!(says(&mut junction, 2, 20.0), Err(Refusal::StationConflict));
+    assert_eq!(held(&junction), before);
+}

@@ -81,9 +81,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if track.station().is_some_and(|station| station != motion.station) {
             self.coordination.vacate(index);
         }
+        let before = self.coordination.standing(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
         let (translated, moved) = axis.translate(motion);
         self.move_axis(index, moved);
+        self.note_moving_on(index, before);
         Ok(translated)
     }
 
@@ -129,12 +131,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn take_standing(&mut self, slot: Slot, stamp: Stamp, crossing: &Crossing, distance: Distance, standing: Standing) {
         let index = usize::from(slot.0);
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
+        let before = self.coordination.standing(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return };
-        let moves_on = axis.standing().is_some_and(|held| held.crossing != standing.crossing);
         let moved = axis.place(stamp, point, distance, standing);
         self.move_axis(index, moved);
-        // On its way against the ego's it is now far behind: until a review the ego would follow it there.
-        if moves_on {
+        self.note_moving_on(index, before);
+    }
+
+    /// A peer that moves on to another intersection, on its way against the ego's, is far behind at once: until the next review
+    /// the ego would follow it there.
+    fn note_moving_on(&mut self, index: usize, before: Option<Standing>) {
+        let now = self.coordination.standing(index);
+        if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
             self.coordination.review_at_once();
         }
     }
