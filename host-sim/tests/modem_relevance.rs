@@ -181,3 +181,20 @@ fn who_is_leaving_the_intersection_keeps_its_slot() {
     let still_heard = |station: &u8| bus.hear(0.2, &message(*station, Some(route(4, 0, 18 - 4 * i32::from(*station)))));
     assert_eq!((1..PEERS as u8).filter(still_heard).collect::<Vec<_>>(), [1, 2, 3, 4, 6, 7]);
 }
+
+#[test]
+fn who_fell_silent_before_the_intersection_keeps_its_slot_wherever_it_may_be_by_now() {
+    let mut bus = Bus::new();
+    let mut silent = message(1, Some(route(4, 0, 40)));
+    silent.motion.speed = Speed::from_mm_per_s(12_000);
+    assert!(bus.hear(0.0, &silent));
+    // After 8 s it would be 56 m beyond; the others arrive at the same intersection.
+    for round in 0..3 {
+        for station in 10..30 {
+            bus.hear(6.0 + f64::from(round), &message(station, Some(route(4, 0, 60 + i32::from(station)))));
+        }
+    }
+    let mut frames = Vec::new();
+    bus.relay.hear(8.1, &silent, &mut frames);
+    assert!(!frames.is_empty());
+}

@@ -159,8 +159,9 @@ impl Course {
         let here = self.here()?;
         let (there, own_m) = self.way_to(other.intersection)?;
         let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
-        // On the unit's own leg nobody waits for that: who is beyond the crossing point matters as one that leads, or not at all.
-        let has_gone = way_m < -CLEAR_M;
+        // By what it said: the unit waits for one that is silent, wherever that may have gone meanwhile. On the unit's own leg
+        // nobody waits: who is beyond the crossing point matters as one that leads, or not at all.
+        let has_gone = other.distance.get().to_num::<f64>() < -CLEAR_M;
         let (behind, arriving) = (way_m > own_m, way_m >= 0.0 || is_on_lane);
         (!has_gone).then(|| Rank::Meets { after: there - here, behind, arriving, apart_m: (way_m - own_m).abs() })
     }
