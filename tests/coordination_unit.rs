@@ -164,6 +164,19 @@ fn with_the_envelope_nobody_enters_before_it_is_certain_that_the_area_is_left() 
 }
 
 #[test]
+fn with_the_envelope_nobody_enters_while_one_that_is_later_in_the_order_stands_in_the_area() {
+    let mut junction = settled(two(6.0, true));
+    junction.run(2.0, |_| {});
+    // The later one stands in the area, however it came there; the earlier one does not run into it.
+    let mut entered = false;
+    junction.run(30.0, |junction| {
+        junction.drivers[0].body = plant::Plant { position: CROSSING, speed: 0.0, acceleration: 0.0, lag: 0.3 };
+        entered |= junction.drivers[1].body.position > CROSSING - HALF;
+    });
+    assert!(!entered && junction.drivers[1].body.speed < 0.05, "{}", junction.drivers[1].body.position);
+}
+
+#[test]
 fn with_the_envelope_who_is_heard_to_leave_is_not_waited_for() {
     let mut junction = settled(two(6.0, true));
     junction.run(40.0, |_| {});

@@ -94,13 +94,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         leading.chain(choice.lane.map(usize::from)).filter_map(|index| self.stop_behind(index)).min()
     }
 
-    /// On an itinerary: before the conflict area for every one ahead in the order whose way crosses the ego's.
+    /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
+    /// in the area for certain: who gave way when it could not stop any more is there all the same.
     fn stop_at_crossing(&self, now: Instant, rearmost: Position) -> Option<Position> {
-        let ahead = self.coordination.choice().ahead;
-        (0..PEERS)
-            .filter(|index| ahead.contains(*index))
-            .filter_map(|index| self.stop_before_area(now, index, rearmost))
-            .min()
+        (0..PEERS).filter_map(|index| self.stop_before_area(now, index, rearmost)).min()
     }
 
     fn stop_before_area(&self, now: Instant, index: usize, rearmost: Position) -> Option<Position> {
@@ -112,6 +109,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return None;
         }
         let near_end = self.bound(index, now)?.lowest_position();
+        let is_inside = near_end >= area_begins && self.coordination.is_here(standing);
+        if !is_inside && !self.coordination.choice().ahead.contains(index) {
+            return None;
+        }
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
