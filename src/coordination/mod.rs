@@ -64,7 +64,7 @@ pub(crate) struct Present {
     pub heard: Instant,
     /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
     pub has_left: bool,
-    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there.
+    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there, or cannot keep out of it.
     pub is_far_behind: bool,
     /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
     pub lane: Option<Side>,

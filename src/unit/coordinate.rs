@@ -178,6 +178,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let arrival = Arrival::of_micros(gnss.as_micros());
         self.coordination.advance(front, self.config.length, now, arrival);
 
+        let is_committed = self.is_committed(front, state.speed);
         let mut present: Vec<Present, PEERS> = Vec::new();
         let mut lane: Option<(usize, Position)> = None;
         for index in 0..PEERS {
@@ -190,8 +191,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
                 let has_left = self.has_left(rear);
                 let side = if reading.position > front { Side::Ahead } else { Side::Behind };
-                let lane = self.coordination.is_on_lane(standing).then_some(side);
-                let is_far_behind = self.is_far_behind(&reading, front);
+                let takes_along = side == Side::Behind || !is_committed;
+                let lane = (self.coordination.is_on_lane(standing) && takes_along).then_some(side);
+                let is_far_behind = is_committed || self.is_far_behind(&reading, front);
                 let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
@@ -310,6 +312,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let half = crossing.intersection.half;
         let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
         front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.config.law.time_gap))
+    }
+
+    /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area: it gives way to
+    /// nobody any more, as it would stand in the area and wait for one who cannot get past it.
+    fn is_committed(&self, front: Position, speed: Speed) -> bool {
+        let Some(crossing) = self.coordination.crossing() else { return false };
+        let Some(point) = self.coordination.crossing_point(crossing) else { return false };
+        let (mm_per_s, braking) =
+            (i64::from(speed.to_mm_per_s()), i64::from(self.config.limits.braking.to_mm_per_s2()));
+        let stops_mm = quotient(mm_per_s.saturating_mul(mm_per_s), braking.saturating_mul(2).max(1));
+        let way = point.ahead_of(front).minus(crossing.intersection.half);
+        way <= Distance::from_mm(saturate_i32(stops_mm))
     }
 
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.
