@@ -6,6 +6,7 @@ use holdover::health::Refusal;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
+use rig::plant;
 
 /// The earlier one is station 2, on leg 1; the later one station 1, on leg 0, and `behind` metres further from the crossing.
 fn two(behind: f64, envelope: bool) -> Junction {
@@ -163,10 +164,73 @@ fn with_the_envelope_nobody_enters_before_it_is_certain_that_the_area_is_left() 
 }
 
 #[test]
+fn with_the_envelope_nobody_enters_while_one_that_is_later_in_the_order_stands_in_the_area() {
+    let mut junction = settled(two(6.0, true));
+    junction.run(2.0, |_| {});
+    // The later one stands in the area, however it came there; the earlier one does not run into it.
+    let mut entered = false;
+    junction.run(30.0, |junction| {
+        junction.drivers[0].body = plant::Plant { position: CROSSING, speed: 0.0, acceleration: 0.0, lag: 0.3 };
+        entered |= junction.drivers[1].body.position > CROSSING - HALF;
+    });
+    assert!(!entered && junction.drivers[1].body.speed < 0.05, "{}", junction.drivers[1].body.position);
+}
+
+#[test]
 fn with_the_envelope_who_is_heard_to_leave_is_not_waited_for() {
     let mut junction = settled(two(6.0, true));
     junction.run(40.0, |_| {});
     assert!(junction.drivers[0].body.position > 300.0, "{}", junction.drivers[0].body.position);
+}
+
+#[test]
+fn with_the_envelope_a_silent_one_on_the_same_leg_is_not_run_into_where_it_is_estimated_beyond_one_that_is_heard() {
+    // The front one is slow, the middle one knows nothing of it and says so; then it is silent and brakes to a stand.
+    let [ego, middle, front] = [(1, 20.0, 11.0), (2, 50.0, 11.0), (3, 90.0, 2.0)].map(|(station, at, speed)| {
+        let mut driver = Driver::new(station, 0, at, speed, station == 1);
+        driver.hears = station == 1;
+        driver
+    });
+    let mut junction = Junction::new(vec![ego, middle, front]);
+    junction.run(1.0, |_| {});
+    junction.drivers[1].speaks = false;
+    let plant::Plant { mut position, mut speed, .. } = junction.drivers[1].body;
+    let (mut gap, mut follows_front): (f64, bool) = (f64::MAX, false);
+    junction.run(12.0, |junction| {
+        speed = (speed - 0.07).max(0.0);
+        position += speed * 0.01;
+        let lag = junction.drivers[1].body.lag;
+        junction.drivers[1].body = plant::Plant { position, speed, acceleration: 0.0, lag };
+        gap = gap.min(position - 4.8 - junction.drivers[0].body.position);
+        follows_front |= junction.drivers[0].follows() == Some(3);
+    });
+    assert!(follows_front, "the estimate of the middle one has passed the front one");
+    assert!(gap > 0.0, "{gap}");
+}
+
+#[test]
+fn who_has_moved_on_to_another_intersection_is_not_followed_for_a_tick_longer() {
+    for until_s in [2.0, 2.03, 2.07] {
+        let mut junction = settled(two(15.0, false));
+        junction.run(until_s, |_| {});
+        assert_eq!(junction.drivers[0].follows(), Some(2));
+        junction.drivers[1].speaks = false;
+        let now = junction.now;
+        let newest = *junction.drivers[0].rig.unit.peers().get(1).unwrap().newest().unwrap();
+        let route = Route {
+            tag: 0,
+            intersection: 6,
+            leg: 1,
+            distance: rig::metres(300.0),
+            stamp: newest.stamp,
+            arrival: 1,
+            predecessor: Predecessor::None,
+        };
+        let slot = holdover::wire::Slot(1);
+        junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Route(route))).unwrap();
+        junction.run(0.01, |_| {});
+        assert_eq!(junction.drivers[0].follows(), None, "{until_s}");
+    }
 }
 
 #[test]
@@ -229,4 +293,42 @@ fn another_station_in_a_live_slot_does_not_move_the_axis() {
     let verdict = junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Motion(motion)));
     assert_eq!(verdict, Err(Refusal::StationConflict));
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
+}
+
+#[test]
+fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_was_in_another() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(2.0, |_| {});
+    let slot = holdover::wire::Slot(2);
+    let says = |junction: &mut Junction, station: u8, metres: f64| {
+        let now = junction.now;
+        let rig = &mut junction.drivers[0].rig;
+        let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
+        let route = Route {
+            tag: motion.tag,
+            intersection: 5,
+            leg: 1,
+            distance: rig::metres(metres),
+            stamp: motion.stamp,
+            arrival: 1,
+            predecessor: Predecessor::None,
+        };
+        rig.put(now, &Message::Peer(slot, Said::Route(route))).expect("a route is taken note of");
+        rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
+    };
+    for metres in [90.0, 89.5, 89.0] {
+        let _ = says(&mut junction, 77, metres);
+        junction.run(0.1, |_| {});
+    }
+    junction.run(2.5, |_| {});
+    let held = |junction: &Junction| {
+        let unit = &junction.drivers[0].rig.unit;
+        let station = unit.peers().get(2).and_then(|track| track.station());
+        (station, unit.coordination().standing(2).copied())
+    };
+    let before = held(&junction);
+    assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
+    // The one in slot 1 speaks in slot 2.
+    assert_eq!(says(&mut junction, 2, 20.0), Err(Refusal::StationConflict));
+    assert_eq!(held(&junction), before);
 }

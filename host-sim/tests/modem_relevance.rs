@@ -9,7 +9,7 @@ use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Sai
 use holdover_sim::modem::{Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
-const WAY: [(u8, f64); 3] = [(4, 180.0), (5, 380.0), (6, 580.0)];
+const WAY: [(u8, u8, f64); 3] = [(4, OWN_LEG, 180.0), (5, OWN_LEG, 380.0), (6, OWN_LEG, 580.0)];
 const OWN_LEG: u8 = 1;
 
 fn route(intersection: u8, leg: u8, metres: i32) -> Route {
@@ -133,4 +133,68 @@ fn a_station_that_was_silent_while_it_left_is_heard_to_have_left() {
     // It matters again, and then no more.
     assert!(bus.hear(9.0, &message(3, Some(route(5, 0, 150)))));
     assert!(bus.hear(9.1, &message(3, Some(route(9, 0, 150)))));
+}
+
+#[test]
+fn the_two_just_ahead_on_the_own_leg_are_heard_wherever_they_are_and_however_long_they_are_silent() {
+    let mut bus = Bus::new();
+    // Every slot but the reserve goes to stations that arrive at the next intersection before the unit.
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 90 - i32::from(station))))));
+    }
+    // Beyond the next intersection, on the leg on which the unit comes to the one after it.
+    assert!(bus.hear(0.1, &message(50, Some(route(5, OWN_LEG, 170)))));
+    assert!(bus.hear(SLOT_REUSE_S + 0.2, &message(51, Some(route(5, OWN_LEG, 160)))));
+    assert!(!bus.hear(2.0 * SLOT_REUSE_S + 0.3, &message(52, Some(route(5, OWN_LEG, 150)))));
+    for station in 60..70 {
+        bus.hear(2.0 * SLOT_REUSE_S + 0.4, &message(station, Some(route(4, 0, 95))));
+    }
+    assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.5, &message(50, Some(route(5, OWN_LEG, 150)))));
+}
+
+#[test]
+fn who_was_put_out_of_its_slot_is_heard_to_have_left() {
+    let mut bus = Bus::new();
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(5, 0, 10 * i32::from(station))))));
+    }
+    // The farthest one, of 190 m to go there, makes room.
+    assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 80)))));
+    let out: Vec<u8> = (1..PEERS as u8)
+        .filter(|station| !bus.hear(0.2, &message(*station, Some(route(5, 0, 10 * i32::from(*station))))))
+        .collect();
+    assert_eq!(out.len(), 1);
+    let heard: Vec<bool> = (0..6)
+        .map(|tenths| bus.hear(4.0 + 0.1 * f64::from(tenths), &message(out[0], Some(route(5, 0, -41)))))
+        .collect();
+    assert_eq!(heard, [true, true, true, true, false, false]);
+}
+
+#[test]
+fn who_is_leaving_the_intersection_keeps_its_slot() {
+    let mut bus = Bus::new();
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 20 - 4 * i32::from(station))))));
+    }
+    // Much nearer to the unit, which is 100 m before it. Of those who have not yet crossed, the farthest makes room.
+    assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 90)))));
+    let still_heard = |station: &u8| bus.hear(0.2, &message(*station, Some(route(4, 0, 18 - 4 * i32::from(*station)))));
+    assert_eq!((1..PEERS as u8).filter(still_heard).collect::<Vec<_>>(), [1, 2, 3, 4, 6, 7]);
+}
+
+#[test]
+fn who_fell_silent_before_the_intersection_keeps_its_slot_wherever_it_may_be_by_now() {
+    let mut bus = Bus::new();
+    let mut silent = message(1, Some(route(4, 0, 40)));
+    silent.motion.speed = Speed::from_mm_per_s(12_000);
+    assert!(bus.hear(0.0, &silent));
+    // After 8 s it would be 56 m beyond; the others arrive at the same intersection.
+    for round in 0..3 {
+        for station in 10..30 {
+            bus.hear(6.0 + f64::from(round), &message(station, Some(route(4, 0, 60 + i32::from(station)))));
+        }
+    }
+    let mut frames = Vec::new();
+    bus.relay.hear(8.1, &silent, &mut frames);
+    assert!(!frames.is_empty());
 }

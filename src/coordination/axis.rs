@@ -29,12 +29,13 @@ pub struct Standing {
     pub heard: Instant,
 }
 
-/// What ties the two axes: at the stamp the peer was at this place of the ego's axis.
+/// What ties the two axes: at the stamp the peer was at this place of the ego's axis, and stood there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Tie {
     stamp: Stamp,
     place: WirePosition,
+    standing: Standing,
 }
 
 /// A peer's axis.
@@ -64,7 +65,8 @@ impl Axis {
     }
 
     /// Takes in a place: at `stamp` the peer was `distance` before the crossing point, which lies at `crossing` on the ego's
-    /// axis. Gives how far the peer's axis moved by that, unless it is new.
+    /// axis. Gives how far the peer's axis moved by that, unless it is new. All of it holds from the peer's motion of the same
+    /// stamp on: only that says who speaks, and before it the positions that are held are not of this place.
     pub fn place(
         &mut self,
         stamp: Stamp,
@@ -72,8 +74,8 @@ impl Axis {
         distance: Distance,
         standing: Standing,
     ) -> Option<Distance> {
-        self.tie.set(Tie { stamp, place: WirePosition::from_position(crossing.ahead(distance.negated())) });
-        self.standing.set(standing);
+        let place = WirePosition::from_position(crossing.ahead(distance.negated()));
+        self.tie.set(Tie { stamp, place, standing });
         self.retie()
     }
 
@@ -99,6 +101,7 @@ impl Axis {
     fn retie(&mut self) -> Option<Distance> {
         let (_, stamp, position) = self.newest.get()?;
         let tie = self.tie.get().filter(|tie| tie.stamp == stamp)?;
+        self.standing.set(tie.standing);
         let offset = tie.place.mm_ahead_of(position);
         let Some(before) = self.offset.get() else {
             self.offset.set(offset);
@@ -166,6 +169,19 @@ mod tests {
         place(&mut axis, 6, 500_000, 80_000);
         assert_eq!(translated(&mut axis, &motion(3, 7, 1_000)), None);
         assert_eq!(axis.standing(), None);
+    }
+
+    #[test]
+    fn what_a_peer_says_of_its_place_holds_from_its_motion_of_the_same_stamp_on() {
+        let mut axis = Axis::UNKNOWN;
+        translated(&mut axis, &motion(3, 7, 1_000));
+        place(&mut axis, 7, 500_000, 80_000);
+        let crossing = |axis: &Axis| axis.standing().map(|standing| standing.crossing);
+        let next = Standing { crossing: 1, ..STANDING };
+        assert_eq!(axis.place(Stamp::from_raw(8), Position::from_mm(700_000), Distance::from_mm(280_000), next), None);
+        assert_eq!(crossing(&axis), Some(0));
+        assert_eq!(translated(&mut axis, &motion(3, 8, 2_000)), Some(420_000));
+        assert_eq!(crossing(&axis), Some(1));
     }
 
     #[test]

@@ -14,12 +14,14 @@
 //!   Beyond the last one it is in no order any more, but goes on saying where it is. Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
 
 pub mod axis;
+mod choice;
 mod gentleness;
 pub mod map;
 pub mod order;
 pub mod path;
 
 pub use axis::{Axis, Standing};
+pub use choice::{Choice, Slots};
 pub use gentleness::Gentleness;
 pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
 pub use order::{Arrival, Entry};
@@ -50,34 +52,6 @@ pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
 
-/// Whom the ego has to mind, as of the last review.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Choice {
-    /// The slot of whom the ego follows.
-    pub target: Option<u8>,
-    /// The slot of the one just ahead in the order.
-    pub order: Option<u8>,
-    /// The slot of the one just ahead on the same leg.
-    pub lane: Option<u8>,
-    /// How gently the ego brakes for the target.
-    pub gentleness: Gentleness,
-    /// The slots of all that are ahead in the order, a bit each; also of those that are only estimated to have left.
-    pub ahead: u16,
-}
-
-impl Choice {
-    /// Whether a slot is ahead in the order.
-    #[must_use]
-    pub fn is_ahead(&self, index: usize) -> bool {
-        self.ahead & bit(index) != 0
-    }
-}
-
-fn bit(index: usize) -> u16 {
-    u32::try_from(index).ok().and_then(|index| 1u16.checked_shl(index)).unwrap_or(0)
-}
-
 /// A station at the ego's next crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -90,7 +64,7 @@ pub(crate) struct Present {
     pub heard: Instant,
     /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
     pub has_left: bool,
-    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there.
+    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there, or cannot keep out of it.
     pub is_far_behind: bool,
     /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
     pub lane: Option<Side>,
@@ -144,7 +118,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             axes: [Axis::UNKNOWN; PEERS],
             overlooked: [Held::Nothing; PEERS],
             claim: Held::Nothing,
-            choice: Choice { target: None, order: None, lane: None, gentleness: Gentleness::NONE, ahead: 0 },
+            choice: Choice::NONE,
             reviewed: Held::Nothing,
         }
     }
@@ -168,7 +142,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.axes = [Axis::UNKNOWN; PEERS];
         self.overlooked = [Held::Nothing; PEERS];
         self.claim.clear();
-        self.choice = Choice::default();
+        self.choice = Choice::NONE;
         self.reviewed.clear();
     }
 
@@ -287,6 +261,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
         Some(self.reviewed.get()?.plus(REVIEW))
     }
 
+    /// What was found at the last review does not hold any more: the next one is due.
+    pub(crate) fn review_at_once(&mut self) {
+        self.reviewed.clear();
+    }
+
     /// Brings the ego on to the crossing that its front bumper at this position, and its length, make the next one.
     pub(crate) fn advance(&mut self, front: Position, length: Distance, now: Instant, arrival: Arrival) {
         if self.tie.get().is_none() {
@@ -342,10 +321,10 @@ impl<const PEERS: usize> Coordination<PEERS> {
             None => ego,
         };
         let mut last: Option<(usize, Entry)> = None;
-        self.choice.ahead = 0;
+        self.choice.ahead = Slots::NONE;
         let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
         for Present { index, entry, has_left, .. } in present.iter().filter(is_ahead) {
-            self.choice.ahead |= bit(*index);
+            self.choice.ahead.set(*index, true);
             if !has_left && last.is_none_or(|(_, last)| last.is_before(entry)) {
                 last = Some((*index, *entry));
             }
@@ -357,10 +336,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
-        let keep = |held: Option<u8>| held.filter(|slot| usize::from(*slot) != index);
-        let Choice { target, order, lane, gentleness, ahead } = self.choice;
-        let (target, order, lane) = (keep(target), keep(order), keep(lane));
-        self.choice = Choice { target, order, lane, gentleness, ahead: ahead & !bit(index) };
+        self.choice.vacate(index);
         if let Some(overlooked) = self.overlooked.get_mut(index) {
             overlooked.clear();
         }
@@ -370,6 +346,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
     pub(crate) fn choose(&mut self, target: Option<usize>, gentleness: Gentleness, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
         (self.choice.target, self.choice.gentleness, self.choice.lane) = (slot(target), gentleness, slot(lane));
+    }
+
+    /// Takes note of who is ahead on the same leg.
+    pub(crate) fn note_leading(&mut self, leading: Slots) {
+        self.choice.leading = leading;
     }
 
     /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands

@@ -76,7 +76,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let heard = match self.coordination.itinerary() {
             None => target.and_then(|index| self.stop_behind(index)),
-            Some(_) => self.stop_at_crossing(now, rearmost),
+            Some(_) => [self.stop_on_lane(now, &ego), self.stop_at_crossing(now, rearmost)].into_iter().flatten().min(),
         };
         let stop_before = [heard, self.stop_behind_seen(now)].into_iter().flatten().min();
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
@@ -84,16 +84,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         (envelope::encodable(limits, command), command != demand)
     }
 
-    /// On an itinerary: behind the vehicle ahead on the same leg, and before the conflict area for every one ahead in the order
-    /// whose way crosses the ego's.
-    fn stop_at_crossing(&self, now: Instant, rearmost: Position) -> Option<Position> {
+    /// On an itinerary: behind everyone ahead on the same leg. Who is estimated to be the nearest of them need not be: one that
+    /// is silent may have braked where it is estimated to have driven on, past another one that is heard.
+    fn stop_on_lane(&self, now: Instant, ego: &envelope::Ego) -> Option<Position> {
         let choice = self.coordination.choice();
-        let lane = choice.lane.and_then(|index| self.stop_behind(index.into()));
-        let crossing = (0..PEERS)
-            .filter(|index| choice.is_ahead(*index))
-            .filter_map(|index| self.stop_before_area(now, index, rearmost))
-            .min();
-        [lane, crossing].into_iter().flatten().min()
+        let leading = (0..PEERS)
+            .filter(|index| choice.leading.contains(*index))
+            .filter(|index| self.is_heeded(*index, now, ego.position, ego.speed));
+        leading.chain(choice.lane.map(usize::from)).filter_map(|index| self.stop_behind(index)).min()
+    }
+
+    /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
+    /// in the area for certain: who gave way when it could not stop any more is there all the same.
+    fn stop_at_crossing(&self, now: Instant, rearmost: Position) -> Option<Position> {
+        (0..PEERS).filter_map(|index| self.stop_before_area(now, index, rearmost)).min()
     }
 
     fn stop_before_area(&self, now: Instant, index: usize, rearmost: Position) -> Option<Position> {
@@ -105,6 +109,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return None;
         }
         let near_end = self.bound(index, now)?.lowest_position();
+        let is_inside = near_end >= area_begins && self.coordination.is_here(standing);
+        if !is_inside && !self.coordination.choice().ahead.contains(index) {
+            return None;
+        }
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }

@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::OnboardUnit;
 use crate::coordination::{
-    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Standing, standstill_behind,
+    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
 };
 use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
@@ -81,9 +81,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if track.station().is_some_and(|station| station != motion.station) {
             self.coordination.vacate(index);
         }
+        let before = self.coordination.standing(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
         let (translated, moved) = axis.translate(motion);
         self.move_axis(index, moved);
+        self.note_moving_on(index, before);
         Ok(translated)
     }
 
@@ -129,9 +131,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn take_standing(&mut self, slot: Slot, stamp: Stamp, crossing: &Crossing, distance: Distance, standing: Standing) {
         let index = usize::from(slot.0);
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
+        let before = self.coordination.standing(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return };
         let moved = axis.place(stamp, point, distance, standing);
         self.move_axis(index, moved);
+        self.note_moving_on(index, before);
+    }
+
+    /// A peer that moves on to another intersection, on its way against the ego's, is far behind at once: until the next review
+    /// the ego would follow it there.
+    fn note_moving_on(&mut self, index: usize, before: Option<Standing>) {
+        let now = self.coordination.standing(index);
+        if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
+            self.coordination.review_at_once();
+        }
     }
 
     fn leave(&mut self, slot: Slot) {
@@ -165,6 +178,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let arrival = Arrival::of_micros(gnss.as_micros());
         self.coordination.advance(front, self.config.length, now, arrival);
 
+        let is_committed = self.is_committed(front, state.speed);
         let mut present: Vec<Present, PEERS> = Vec::new();
         let mut lane: Option<(usize, Position)> = None;
         for index in 0..PEERS {
@@ -177,8 +191,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
                 let has_left = self.has_left(rear);
                 let side = if reading.position > front { Side::Ahead } else { Side::Behind };
-                let lane = self.coordination.is_on_lane(standing).then_some(side);
-                let is_far_behind = self.is_far_behind(&reading, front);
+                let takes_along = side == Side::Behind || !is_committed;
+                let lane = (self.coordination.is_on_lane(standing) && takes_along).then_some(side);
+                let is_far_behind = is_committed || self.is_far_behind(&reading, front);
                 let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
@@ -189,13 +204,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
-        // Who was far ahead when it was heard last has got out of reach: nobody is ahead then as far as it matters.
-        let heeded = front.ahead(HEEDED).ahead(state.speed.over(HEEDED_TIME)).ahead(state.speed.over(HEEDED_TIME));
-        let is_heeded = |index: &usize| {
-            let track = self.peers.get(*index);
-            let silence = track.and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
-            silence <= self.config.link.holdover || self.rear(*index, now).is_some_and(|(_, rear)| rear <= heeded)
-        };
+        let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
@@ -204,6 +213,30 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
+        self.coordination.note_leading(self.leading(now, front));
+    }
+
+    /// Whether a peer matters to the ego with its front bumper there: who was far ahead when it was heard last has got out of
+    /// reach, and nobody is ahead then as far as it matters.
+    pub(super) fn is_heeded(&self, index: usize, now: Instant, front: Position, speed: Speed) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
+        let heeded = front.ahead(HEEDED).ahead(speed.over(HEEDED_TIME)).ahead(speed.over(HEEDED_TIME));
+        silence <= self.config.link.holdover || self.rear(index, now).is_some_and(|(_, rear)| rear <= heeded)
+    }
+
+    /// Who is ahead of the ego's front bumper on its own leg by what is certain of it; who may be on either side is where it was.
+    fn leading(&self, now: Instant, front: Position) -> Slots {
+        let mut leading = self.coordination.choice().leading;
+        for index in 0..PEERS {
+            let standing = self.coordination.standing(index);
+            let bound = standing.filter(|standing| self.coordination.is_on_lane(standing)).and(self.bound(index, now));
+            let is_ahead = bound.is_some_and(|bound| {
+                let may_be_behind = bound.lowest_position() <= front;
+                !may_be_behind || bound.highest_position() > front && leading.contains(index)
+            });
+            leading.set(index, is_ahead);
+        }
+        leading
     }
 
     /// Of the one just ahead in the order and the one just ahead on the leg, whom the ego follows with its front bumper there, at
@@ -279,6 +312,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let half = crossing.intersection.half;
         let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
         front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.config.law.time_gap))
+    }
+
+    /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area: it gives way to
+    /// nobody any more, as it would stand in the area and wait for one who cannot get past it.
+    fn is_committed(&self, front: Position, speed: Speed) -> bool {
+        let Some(crossing) = self.coordination.crossing() else { return false };
+        let Some(point) = self.coordination.crossing_point(crossing) else { return false };
+        let (mm_per_s, braking) =
+            (i64::from(speed.to_mm_per_s()), i64::from(self.config.limits.braking.to_mm_per_s2()));
+        let stops_mm = quotient(mm_per_s.saturating_mul(mm_per_s), braking.saturating_mul(2).max(1));
+        let way = point.ahead_of(front).minus(crossing.intersection.half);
+        way <= Distance::from_mm(saturate_i32(stops_mm))
     }
 
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.

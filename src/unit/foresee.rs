@@ -82,6 +82,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn is_ahead(&self, index: usize, entry: &Entry) -> bool {
         let arrival = self.coordination.registration().map(|registration| registration.arrival);
         let own = Entry { station: self.config.station, arrival, claim: self.coordination.claim() };
-        self.coordination.choice().is_ahead(index) && entry.is_before(&own)
+        self.coordination.choice().ahead.contains(index) && entry.is_before(&own)
     }
 }

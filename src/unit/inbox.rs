@@ -7,7 +7,7 @@ use crate::peers::plausibility::doubt;
 use crate::peers::{Admission, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::wire::motion::Motion;
-use crate::wire::{Message, Said, Slot};
+use crate::wire::{Message, Said, Slot, StationHash};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a whole message.
@@ -53,20 +53,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let index = usize::from(slot.0);
         match said {
             Said::Motion(motion) => {
+                let station = self.peers.get_mut(slot)?.station();
+                let left =
+                    if station == Some(motion.station) { None } else { self.left_slot(index, motion.station, at)? };
                 let Some(motion) = self.translate(at, slot, motion)? else { return Ok(()) };
                 let instant =
                     self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
                 let ego = self.ego.as_ref().map(|ego| ego.position);
                 let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
-                let station = track.station();
                 let near = ego.or(track.newest().map(|sample| sample.position));
                 let sample = Sample::of(&motion, instant, at, near);
                 let doubt = doubt(&sample, is_synchronised, &self.config.link);
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
                 }
-                let left = if station == Some(sample.station) { None } else { self.left_slot(index, &sample)? };
                 let track = self.peers.get_mut(slot)?;
                 let admission = track.admit(sample, &doubt, &self.config.link);
                 // Even a sample that is refused may end the track of the station before.
@@ -115,10 +116,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// [`Refusal::StationConflict`]: it was heard there within `slot_reuse`. Or else whoever takes its name could end what is
     /// certain of it, and with that the check of whether what is said of it can be.
-    fn left_slot(&self, index: usize, sample: &Sample) -> Result<Option<usize>, Refusal> {
-        let left = self.peers.index_of(sample.station).filter(|left| *left != index);
+    fn left_slot(&self, index: usize, station: StationHash, at: Instant) -> Result<Option<usize>, Refusal> {
+        let left = self.peers.index_of(station).filter(|left| *left != index);
         let track = left.and_then(|left| self.peers.get(left));
-        let silence = track.and_then(|track| track.link().silence(sample.received));
+        let silence = track.and_then(|track| track.link().silence(at));
         let is_heard = silence.is_some_and(|silence| silence < self.config.link.slot_reuse);
         if is_heard { Err(Refusal::StationConflict) } else { Ok(left) }
     }

@@ -7,6 +7,7 @@
 use super::description::Traffic;
 use super::network::Network;
 use super::watch::Sighting;
+use crate::plant::Kind;
 
 /// Largest acceleration of the model.
 const ACCELERATION_MPS2: f64 = 1.5;
@@ -39,6 +40,14 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
         presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
     }
     (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
+}
+
+/// The same within what a vehicle has published that it can do, by which others know what is certain of it.
+#[must_use]
+pub fn published(wanted_mps2: f64, kind: Kind) -> f64 {
+    let [braking, acceleration] =
+        [kind.limits().braking, kind.limits().acceleration].map(|limit| limit.get().to_num::<f64>());
+    wanted_mps2.clamp(-braking, acceleration)
 }
 
 /// The way to the stop line of the next intersection, if it can still stop there.

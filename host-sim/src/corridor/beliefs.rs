@@ -125,11 +125,9 @@ impl<'a> Beliefs<'a> {
             return Some(target.way_m);
         }
         let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
-        // The two directions of a street share several intersections: it is about the one that the ego comes to next.
-        let here = own_stops.iter().find(|stop| {
-            let half_m = self.network.junctions[stop.intersection].half_m;
-            own.way_m - own.length_m < stop.at_m + half_m
-        })?;
+        // The two directions of a street share several intersections, and so several virtual lanes: it is about that of the
+        // one that the ego's unit takes for its next.
+        let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
         let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
         Some(here.at_m - there.at_m + target.way_m)
     }
@@ -177,5 +175,67 @@ impl Watch for Beliefs<'_> {
 
     fn left(&mut self, _: f64, trip: usize) {
         self.associations.remove(&trip);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use holdover::controller::Mode;
+
+    use super::super::read::corridor;
+    use super::*;
+    use crate::world::{Bounds, TargetBelief};
+
+    fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
+        Sighting {
+            trip,
+            road,
+            way_m,
+            length_m: 4.8,
+            speed_mps: 10.0,
+            odometer_m: 500.0,
+            next: None,
+            mode: Mode::Cooperative,
+            followed: None,
+            belief: None,
+            limited: false,
+            dark: false,
+        }
+    }
+
+    /// Ticks at which the bound did not hold the truth, of a unit on the one direction of a street that takes its stop of that
+    /// number for the next, while its rear has just left the third; it follows one that comes the other way and is 10 m
+    /// before the third, and is right about that.
+    fn violations_with_next(stop: usize) -> u64 {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let network = Network::of(&corridor);
+        let (own_lane, lane) = (&network.lanes[0], &network.lanes[1]);
+        let left = own_lane.stops[2];
+        let met = lane.stops.iter().find(|stop| stop.intersection == left.intersection).unwrap();
+        let position_m = 500.0 + left.at_m - 10.0;
+        let bound = Bounds {
+            lowest_position_m: position_m - 0.1,
+            highest_position_m: position_m + 0.1,
+            lowest_speed_mps: 9.9,
+            highest_speed_mps: 10.1,
+        };
+        let own = Sighting {
+            next: Some(own_lane.stops[stop].intersection),
+            followed: Some(station(1)),
+            belief: Some(TargetBelief { position_m, speed_mps: 10.0, age_s: 0.05, bound: Some(bound) }),
+            ..sighting(0, 0, left.at_m + network.junctions[left.intersection].half_m + 4.9)
+        };
+        let mut beliefs = Beliefs::new(&network, None);
+        beliefs.tick(1.0, &[own, sighting(1, 1, met.at_m - 10.0)]);
+        beliefs.violations
+    }
+
+    #[test]
+    fn between_two_reviews_the_virtual_lane_is_that_of_the_intersection_just_left() {
+        assert_eq!(violations_with_next(2), 0);
+        assert_eq!(violations_with_next(3), 1);
     }
 }

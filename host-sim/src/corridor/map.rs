@@ -41,6 +41,6 @@ fn intersection(network: &Network, id: u8, junction: &Junction) -> &'static Inte
 }
 
 /// Intersections and their legs are few.
-fn number(index: usize) -> u8 {
+pub(super) fn number(index: usize) -> u8 {
     u8::try_from(index).unwrap_or(u8::MAX)
 }

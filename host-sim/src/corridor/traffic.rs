@@ -20,6 +20,7 @@ use super::alone;
 use super::conditions::{Conditions, WhenLost, config};
 use super::description::{Corridor, Radio};
 use super::globe::Shift;
+use super::map::number;
 use super::network::Network;
 use super::road::Ground;
 use super::tally::Tally;
@@ -220,6 +221,9 @@ impl<'a> Traffic<'a> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone();
         }
+        if self.conditions.envelope.engaged {
+            self.run_out();
+        }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
         self.tally.on_way += sightings.len() as u64;
@@ -256,6 +260,7 @@ impl<'a> Traffic<'a> {
             length_m: vehicle.length_m,
             speed_mps: vehicle.plant.speed_mps,
             odometer_m: traveller.ground.odometer_m,
+            next: vehicle.unit.coordination().crossing().map(|crossing| usize::from(crossing.intersection.id)),
             mode: vehicle.unit.mode(),
             followed: followed(vehicle),
             belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
@@ -323,10 +328,8 @@ impl<'a> Traffic<'a> {
             Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
         );
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane
-            .stops
-            .iter()
-            .map(|stop| (u8::try_from(stop.intersection).unwrap_or(u8::MAX), stop.at_m - lane.entry_m));
+        let crossings =
+            lane.stops.iter().map(|stop| (number(stop.intersection), number(stop.leg), stop.at_m - lane.entry_m));
         vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
             |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
         )?;
@@ -344,6 +347,19 @@ impl<'a> Traffic<'a> {
             if let Some(traveller) = self.travellers.get_mut(&own.trip) {
                 traveller.vehicle.override_with(wanted);
             }
+        }
+    }
+
+    /// Who has left drives on by sight where its envelope would hold it. The one ahead of it vanishes without a word, and for
+    /// all that is certain it stands there: each would wait for that, and all behind it, back onto the way.
+    fn run_out(&mut self) {
+        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
+        for traveller in
+            self.travellers.values_mut().filter(|traveller| traveller.has_left && traveller.vehicle.limited)
+        {
+            let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic);
+            traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
         }
     }
 

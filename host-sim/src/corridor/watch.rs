@@ -20,6 +20,9 @@ pub struct Sighting {
     pub speed_mps: f64,
     /// What its odometer shows where the road begins.
     pub odometer_m: f64,
+    /// The intersection that its unit takes for the next one: its virtual lane is that one's. Between two reviews it may be
+    /// one that the vehicle has just left.
+    pub next: Option<usize>,
     /// Its unit's mode.
     pub mode: Mode,
     /// Whom its unit follows.

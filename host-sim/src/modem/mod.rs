@@ -7,7 +7,8 @@
 //! less relevant one; whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a
 //! silence. A slot that changes hands rests until nothing has been said in it for [`SLOT_REUSE_S`], because before that the
 //! unit takes the new station for a mistake. A station that cannot matter is not relayed even if there is room;
-//! but one in a slot that ceases to matter is until the unit has heard that.
+//! but one in a slot that ceases to matter is until the unit has heard that. So is one that was put out of its slot, while nobody
+//! else has spoken there: to the unit it is still where it was, and may be waited for.
 //!
 //! *Intents* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
 //! every [`INTENT_EVERY_S`], so that eight peers fit the bus.
@@ -20,7 +21,7 @@ use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, St
 
 mod relevance;
 
-pub use relevance::{Ahead, Course, Rank};
+pub use relevance::{Ahead, Course, LEADERS, Rank};
 
 /// Slots of the unit.
 pub const PEERS: usize = 8;
@@ -113,6 +114,8 @@ struct Placed {
 pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
+    /// Who was in a free slot last: to the unit it still is.
+    left: Vec<Option<Tenant>>,
     /// From when on a free slot may be used.
     rested_s: Vec<f64>,
     places: Vec<Placed>,
@@ -125,7 +128,8 @@ impl Relay {
     #[must_use]
     pub fn new(base: BaseId) -> Self {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
-        Self { sender: Sender::new(base), slots, rested_s, places, course: Course::default(), turned_away: 0 }
+        let left = vec![None; PEERS];
+        Self { sender: Sender::new(base), slots, left, rested_s, places, course: Course::default(), turned_away: 0 }
     }
 
     /// Lets it know the unit's way.
@@ -174,6 +178,7 @@ impl Relay {
             said.push(Said::Intent(intent));
         }
         said.extend(message.horizon.map(Said::Horizon));
+        self.dismiss(slot, at_s);
         for said in said {
             #[allow(clippy::cast_possible_truncation)] // at most 16 slots
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
@@ -184,7 +189,16 @@ impl Relay {
     /// Whether a station that matters no more is in a slot and has not said so: who was silent while it left would otherwise be
     /// waited for, because the unit last heard of it on its way.
     fn has_to_say_so(&self, station: StationHash) -> bool {
-        self.slots.iter().flatten().any(|tenant| tenant.station == station && tenant.gone < NEWS)
+        let known = self.slots.iter().chain(&self.left).flatten();
+        known.into_iter().any(|tenant| tenant.station == station && tenant.gone < NEWS)
+    }
+
+    /// Frees the slot of a station that matters no more, once it has said so.
+    fn dismiss(&mut self, slot: usize, at_s: f64) {
+        if self.slots[slot].is_some_and(|tenant| tenant.gone >= NEWS) {
+            self.left[slot] = self.slots[slot].take();
+            self.rested_s[slot] = at_s + SLOT_REUSE_S;
+        }
     }
 
     /// Takes note of where a station says it is; what is older than a silence that a slot outlives is forgotten.
@@ -201,8 +215,12 @@ impl Relay {
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
-        if self.course.is_on_route() && !self.makes_room(rank, at_s) {
+        if self.course.is_on_route() && rank != Rank::Irrelevant && !self.makes_room(rank, at_s) {
             return None;
+        }
+        if let Some(slot) = self.left.iter().position(held) {
+            self.slots[slot] = self.left[slot].take().map(|tenant| Tenant { from_s: at_s, ..tenant });
+            return Some(slot);
         }
         let mut free = self.slots.iter().enumerate().filter(|(_, tenant)| tenant.is_none());
         let (slot, from_s) = match (free.next(), free.next()) {
@@ -214,6 +232,7 @@ impl Relay {
             }
             (None, _) => self.least_relevant(rank, at_s)?,
         };
+        self.left[slot] = None;
         self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, gone: 0, intent: None });
         Some(slot)
     }
@@ -225,7 +244,7 @@ impl Relay {
             return true;
         }
         let Some((slot, rested_s)) = self.least_relevant(rank, at_s) else { return false };
-        self.slots[slot] = None;
+        self.left[slot] = self.slots[slot].take();
         self.rested_s[slot] = rested_s;
         true
     }
@@ -253,7 +272,16 @@ impl Relay {
         let placed = self.places.iter().find(|placed| placed.station == station);
         let way_m =
             |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
-        self.course.rank(station, placed.map(|placed| (placed.route, way_m(placed))), self.steps_to(station))
+        let route = placed.map(|placed| (placed.route, way_m(placed)));
+        self.course.rank(station, route, self.steps_to(station), placed.is_some_and(|placed| self.leads(placed)))
+    }
+
+    /// Whether a station is one of the nearest ahead on the unit's own leg, by what each said last: who is silent has not
+    /// passed anybody.
+    fn leads(&self, placed: &Placed) -> bool {
+        let Some(ahead_m) = self.course.ahead_on_leg(&placed.route) else { return false };
+        let nearer = self.places.iter().filter_map(|other| self.course.ahead_on_leg(&other.route));
+        nearer.filter(|other_m| *other_m < ahead_m).count() < LEADERS
     }
 
     /// How many steps up the chain of those who follow one another, from whom the unit follows, a station is.

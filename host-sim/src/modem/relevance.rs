@@ -1,15 +1,17 @@
 //! How much a station matters to the unit: what the unit says of itself and what the station says enter, a rank leaves.
 //!
-//! First comes whom the unit says it follows. On a route, next are the stations that name an intersection which the unit has
-//! still to cross: the one that it comes to first before the next one, there those ahead before those behind, and of these
-//! the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
+//! First comes whom the unit says it follows. On a route, next are the two nearest ahead on the unit's own leg by what they
+//! said last, wherever they are: it must not run into them, and if one of them is silent the other need not be the nearest. Then
+//! come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
+//! next one, there those ahead before those behind, of those ahead first who are leaving it, because the unit may be waiting for
+//! that, and otherwise the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
 //! them; then everyone else. For a unit on a route, a station that names no intersection of the way that is left, or that
-//! has long crossed by another leg, does not matter at all: the unit could not tell where on its lane it is.
+//! has long crossed and does not lead, does not matter at all: the unit could not tell where on its lane it is.
 
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
 
-/// A station that has crossed by another leg matters until it is so far beyond, in metres: a bus has then left any
+/// A station that has crossed matters until it is so far beyond, in metres: a bus has then left any
 /// conflict area.
 const CLEAR_M: f64 = 40.0;
 
@@ -18,12 +20,16 @@ const CLEAR_M: f64 = 40.0;
 pub enum Rank {
     /// The unit follows it.
     Followed,
+    /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
+    Leads,
     /// It comes to an intersection that the unit comes to.
     Meets {
         /// How many intersections the unit crosses before that one.
         after: usize,
         /// It is farther from the crossing point than the unit.
         behind: bool,
+        /// It has not reached the crossing point, or comes by the unit's own leg.
+        arriving: bool,
         /// By how many metres they differ.
         apart_m: f64,
     },
@@ -35,31 +41,33 @@ pub enum Rank {
     Irrelevant,
 }
 
+/// So many of those ahead on the unit's own leg matter before all but the one followed.
+pub const LEADERS: usize = 2;
+
 /// A station takes another one's slot only if it is nearer by so many metres, lest two take turns.
 const NEARER_M: f64 = 20.0;
 
 impl Rank {
-    /// Whether a station of this rank takes the slot of one of that rank.
+    /// Whether a station of this rank takes the slot of one of that rank. One that is leaving is soon gone anyway.
     #[must_use]
     pub fn displaces(self, other: Self) -> bool {
         match (self, other) {
-            (Self::Meets { after, behind, apart_m }, Self::Meets { after: later, behind: back, apart_m: far_m })
-                if (after, behind) == (later, back) =>
-            {
-                apart_m + NEARER_M < far_m
-            }
+            (
+                Self::Meets { after, behind, apart_m, .. },
+                Self::Meets { after: later, behind: back, arriving, apart_m: far_m },
+            ) if (after, behind) == (later, back) => arriving && apart_m + NEARER_M < far_m,
             _ => self < other,
         }
     }
 }
 
-/// An intersection ahead: its number in messages and the way to it from where the unit sets out, in metres.
-pub type Ahead = (u8, f64);
+/// An intersection ahead: its number in messages, the unit's leg there, and the way to it from where the unit sets out, in metres.
+pub type Ahead = (u8, u8, f64);
 
 /// What the unit says of itself.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    /// The intersections of the unit's way, each with the way to it.
+    /// The intersections of the unit's way.
     crossings: Vec<Ahead>,
     route: Option<Route>,
     /// Whom the driver told it to follow.
@@ -107,11 +115,15 @@ impl Course {
         self.followed
     }
 
-    /// The rank of a station that is now on that route, if it says so, and that many steps up the chain, if it is there.
+    /// The rank of a station that is now on that route, if it says so, and that many steps up the chain, if it is there; and
+    /// whether it leads.
     #[must_use]
-    pub fn rank(&self, station: StationHash, route: Option<(Route, f64)>, steps: Option<usize>) -> Rank {
+    pub fn rank(&self, station: StationHash, route: Option<(Route, f64)>, steps: Option<usize>, leads: bool) -> Rank {
         if self.followed == Some(station) {
             return Rank::Followed;
+        }
+        if leads {
+            return Rank::Leads;
         }
         let chain = steps.map_or(Rank::Other, Rank::OnChain);
         if self.crossings.is_empty() {
@@ -121,15 +133,39 @@ impl Course {
         meets.unwrap_or(if chain == Rank::Other { Rank::Irrelevant } else { chain })
     }
 
+    /// How far ahead on the unit's own leg a station was when it said that.
+    #[must_use]
+    pub fn ahead_on_leg(&self, other: &Route) -> Option<f64> {
+        let (there, own_m) = self.way_to(other.intersection)?;
+        let ahead_m = own_m - other.distance.get().to_num::<f64>();
+        (self.crossings[there].1 == other.leg && ahead_m > 0.0).then_some(ahead_m)
+    }
+
+    /// The place on the unit's way, and the way there, of an intersection that it has still to cross.
+    fn way_to(&self, intersection: u8) -> Option<(usize, f64)> {
+        let here = self.here()?;
+        let here_m = self.route.map_or(self.crossings[0].2, |own| own.distance.get().to_num());
+        let there = self.place(intersection).filter(|there| *there >= here)?;
+        Some((there, here_m + self.crossings[there].2 - self.crossings[here].2))
+    }
+
+    fn place(&self, id: u8) -> Option<usize> {
+        self.crossings.iter().position(|(named, ..)| *named == id)
+    }
+
+    /// The intersection that the unit comes to next. Before it says where it is, it is where it set out.
+    fn here(&self) -> Option<usize> {
+        if self.crossings.is_empty() { None } else { self.route.map_or(Some(0), |own| self.place(own.intersection)) }
+    }
+
     fn meets(&self, other: &Route, way_m: f64) -> Option<Rank> {
-        let place = |id: u8| self.crossings.iter().position(|(named, _)| *named == id);
-        // Before the unit says where it is, it is where it set out.
-        let here = self.route.map_or(Some(0), |own| place(own.intersection))?;
-        let here_m = self.route.map_or(self.crossings[0].1, |own| own.distance.get().to_num());
-        let there = place(other.intersection).filter(|there| *there >= here)?;
-        let own_m = here_m + self.crossings[there].1 - self.crossings[here].1;
+        let here = self.here()?;
+        let (there, own_m) = self.way_to(other.intersection)?;
         let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
-        let has_gone = way_m < -CLEAR_M && !is_on_lane;
-        (!has_gone).then(|| Rank::Meets { after: there - here, behind: way_m > own_m, apart_m: (way_m - own_m).abs() })
+        // By what it said: the unit waits for one that is silent, wherever that may have gone meanwhile. On the unit's own leg
+        // nobody waits: who is beyond the crossing point matters as one that leads, or not at all.
+        let has_gone = other.distance.get().to_num::<f64>() < -CLEAR_M;
+        let (behind, arriving) = (way_m > own_m, way_m >= 0.0 || is_on_lane);
+        (!has_gone).then(|| Rank::Meets { after: there - here, behind, arriving, apart_m: (way_m - own_m).abs() })
     }
 }

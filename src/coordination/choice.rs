@@ -1,0 +1,87 @@
+//! Whom the ego has to mind: what a review finds enters; whom the ego follows, and whose way it must not get into, leaves.
+
+use super::Gentleness;
+
+/// Whom the ego has to mind, as of the last review.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Choice {
+    /// The slot of whom the ego follows.
+    pub target: Option<u8>,
+    /// The slot of the one just ahead in the order.
+    pub order: Option<u8>,
+    /// The slot of the one that is estimated to be just ahead on the same leg.
+    pub lane: Option<u8>,
+    /// How gently the ego brakes for the target.
+    pub gentleness: Gentleness,
+    /// All that are ahead in the order; also those that are only estimated to have left.
+    pub ahead: Slots,
+    /// All that are ahead on the same leg. Nobody passes there: who was ahead for certain is, whatever is believed of him since.
+    pub leading: Slots,
+}
+
+impl Choice {
+    /// Nobody: all zero.
+    pub(crate) const NONE: Self = Self {
+        target: None,
+        order: None,
+        lane: None,
+        gentleness: Gentleness::NONE,
+        ahead: Slots::NONE,
+        leading: Slots::NONE,
+    };
+
+    /// Another station has this slot now.
+    pub(crate) fn vacate(&mut self, index: usize) {
+        for held in [&mut self.target, &mut self.order, &mut self.lane] {
+            *held = held.filter(|slot| usize::from(*slot) != index);
+        }
+        self.ahead.set(index, false);
+        self.leading.set(index, false);
+    }
+}
+
+/// Some of the first 16 slots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Slots(u16);
+
+impl Slots {
+    /// None of them.
+    pub(crate) const NONE: Self = Self(0);
+
+    /// Whether a slot is one of them.
+    #[must_use]
+    pub fn contains(self, index: usize) -> bool {
+        self.0 & bit(index) != 0
+    }
+
+    /// Takes a slot in or out.
+    pub(crate) fn set(&mut self, index: usize, is_in: bool) {
+        self.0 = if is_in { self.0 | bit(index) } else { self.0 & !bit(index) };
+    }
+}
+
+fn bit(index: usize) -> u16 {
+    u32::try_from(index).ok().and_then(|index| 1u16.checked_shl(index)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slot_that_another_station_has_now_is_nobody_s() {
+        let mut slots = Slots::NONE;
+        [0, 3, 15, 16].into_iter().for_each(|index| slots.set(index, true));
+        assert_eq!([0, 1, 3, 15, 16].map(|index| slots.contains(index)), [true, false, true, true, false]);
+        let held =
+            Choice { target: Some(3), order: Some(3), lane: Some(0), ahead: slots, leading: slots, ..Choice::NONE };
+        let mut left = held;
+        left.vacate(3);
+        assert_eq!((left.target, left.order, left.lane), (None, None, Some(0)));
+        assert!(!left.ahead.contains(3) && !left.leading.contains(3) && left.ahead.contains(0));
+        left.vacate(1);
+        assert!(left.ahead.contains(0) && left.leading.contains(15));
+    }
+}
