@@ -27,6 +27,8 @@ pub struct Standing {
     pub claim: Predecessor,
     /// When it said so.
     pub heard: Instant,
+    /// When it said for the first time that it comes to this intersection.
+    pub since: Instant,
 }
 
 /// What ties the two axes: at the stamp the peer was at this place of the ego's axis.
@@ -43,6 +45,8 @@ struct Tie {
 pub struct Axis {
     newest: Held<(StationHash, Stamp, WirePosition)>,
     tie: Held<Tie>,
+    /// What was said last of its place, until a motion tells of whom.
+    said: Held<Standing>,
     standing: Held<Standing>,
     /// What is added to its positions, in millimetres modulo 2²⁵.
     offset: Held<i32>,
@@ -54,8 +58,13 @@ const SAME_TIE_MM: i32 = 25;
 
 impl Axis {
     /// Not known.
-    pub const UNKNOWN: Self =
-        Self { newest: Held::Nothing, tie: Held::Nothing, standing: Held::Nothing, offset: Held::Nothing };
+    pub const UNKNOWN: Self = Self {
+        newest: Held::Nothing,
+        tie: Held::Nothing,
+        said: Held::Nothing,
+        standing: Held::Nothing,
+        offset: Held::Nothing,
+    };
 
     /// What the peer says, once its axis is known.
     #[must_use]
@@ -73,21 +82,47 @@ impl Axis {
         standing: Standing,
     ) -> Option<Distance> {
         self.tie.set(Tie { stamp, place: WirePosition::from_position(crossing.ahead(distance.negated())) });
-        self.standing.set(standing);
+        self.said.set(standing);
+        if self.is_tied() {
+            self.believe();
+        }
         self.retie()
     }
 
     /// Takes note that the peer is at no intersection of the ego's way.
     pub fn leave(&mut self) {
-        (self.tie, self.standing, self.offset) = (Held::Nothing, Held::Nothing, Held::Nothing);
+        *self = Self { newest: self.newest, ..Self::UNKNOWN };
+    }
+
+    /// Takes note that another station was refused in the slot: what was said in it since this one's last motion is not of this one.
+    pub fn dispute(&mut self) {
+        if self.said.as_ref().is_some() {
+            (self.tie, self.said) = (Held::Nothing, Held::Nothing);
+        }
+    }
+
+    /// What was said last is said of the station whose motion is the newest.
+    fn believe(&mut self) {
+        let Some(said) = core::mem::take(&mut self.said).get() else { return };
+        let held = self.standing.as_ref().filter(|held| held.crossing == said.crossing);
+        let since = held.map_or(said.since, |held| held.since);
+        self.standing.set(Standing { since, ..said });
+    }
+
+    /// Whether the last place is one of the newest motion.
+    fn is_tied(&self) -> bool {
+        let stamp = self.newest.get().map(|(_, stamp, _)| stamp);
+        stamp.is_some_and(|stamp| self.tie.as_ref().is_some_and(|tie| tie.stamp == stamp))
     }
 
     /// Takes in a motion: the same on the ego's axis, if that is known, and how far the axis moved.
     pub fn translate(&mut self, motion: &Motion) -> (Option<Motion>, Option<Distance>) {
         if self.newest.get().is_some_and(|(station, ..)| station != motion.station) {
-            self.offset.clear();
+            // What was said last in the slot is said of the station that has it from now on.
+            *self = Self { tie: self.tie, said: self.said, ..Self::UNKNOWN };
         }
         self.newest.set((motion.station, motion.stamp, motion.position));
+        self.believe();
         let moved = self.retie();
         let translated = self.offset.get().map(|offset| {
             let position = WirePosition::from_mm(i64::from(motion.position.mm()).saturating_add(offset.into()));
@@ -132,8 +167,14 @@ mod tests {
         }
     }
 
-    const STANDING: Standing =
-        Standing { crossing: 0, leg: 1, arrival: None, claim: Predecessor::None, heard: Instant::ZERO };
+    const STANDING: Standing = Standing {
+        crossing: 0,
+        leg: 1,
+        arrival: None,
+        claim: Predecessor::None,
+        heard: Instant::ZERO,
+        since: Instant::ZERO,
+    };
 
     fn place(axis: &mut Axis, stamp: u32, crossing_mm: i64, before_mm: i32) -> Option<i32> {
         let (stamp, distance) = (Stamp::from_raw(stamp), Distance::from_mm(before_mm));

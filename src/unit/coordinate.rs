@@ -65,26 +65,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// A peer's motion on the ego's axis; `None` while its axis is not known.
-    ///
-    /// # Errors
-    /// [`Refusal::StationConflict`]: what another station says in the slot does not touch the axis.
-    pub(super) fn translate(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<Option<Motion>, Refusal> {
-        let track = self.peers.get_mut(slot)?;
+    pub(super) fn translate(&mut self, index: usize, motion: &Motion) -> Option<Motion> {
         if self.coordination.itinerary().is_none() {
-            return Ok(Some(*motion));
+            return Some(*motion);
         }
-        let is_alive = track.link().silence(at).is_some_and(|silence| silence < self.config.link.slot_reuse);
-        if is_alive && track.station().is_some_and(|station| station != motion.station) {
-            return Err(Refusal::StationConflict);
-        }
-        let index = usize::from(slot.0);
-        if track.station().is_some_and(|station| station != motion.station) {
-            self.coordination.vacate(index);
-        }
-        let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
-        let (translated, moved) = axis.translate(motion);
+        let (translated, moved) = self.coordination.axis_mut(index)?.translate(motion);
         self.move_axis(index, moved);
-        Ok(translated)
+        translated
     }
 
     /// Takes in what a peer says of its way to a crossing point.
@@ -93,7 +80,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return self.leave(slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
-        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at };
+        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
         self.take_standing(slot, route.stamp, crossing, route.distance, standing);
     }
 
@@ -105,7 +92,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return;
         }
         let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(slot) };
-        let standing = Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at };
+        let standing =
+            Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
         self.take_standing(slot, geo.stamp, crossing, distance, standing);
     }
 
@@ -179,7 +167,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let side = if reading.position > front { Side::Ahead } else { Side::Behind };
                 let lane = self.coordination.is_on_lane(standing).then_some(side);
                 let is_far_behind = self.is_far_behind(&reading, front);
-                let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
+                let is_followed = self.coordination.choice().target.map(usize::from) == Some(index);
+                let is_announced = is_followed
+                    || self.coordination.is_announced(standing, now, self.coordination.next(), front, state.speed);
+                let heard = standing.heard;
+                let _ = present.push(Present { index, entry, heard, has_left, is_far_behind, is_announced, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
             if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
@@ -189,13 +181,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
-        // Who was far ahead when it was heard last has got out of reach: nobody is ahead then as far as it matters.
-        let heeded = front.ahead(HEEDED).ahead(state.speed.over(HEEDED_TIME)).ahead(state.speed.over(HEEDED_TIME));
-        let is_heeded = |index: &usize| {
-            let track = self.peers.get(*index);
-            let silence = track.and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
-            silence <= self.config.link.holdover || self.rear(*index, now).is_some_and(|(_, rear)| rear <= heeded)
-        };
+        let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
@@ -204,6 +190,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
+    }
+
+    /// Whether the ego, with its front bumper there and at this speed, minds a peer at all. Who was far ahead when it was heard last
+    /// has got out of reach: nobody is ahead then as far as it matters.
+    pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
+        let heeded = front.ahead(HEEDED).ahead(speed.over(HEEDED_TIME)).ahead(speed.over(HEEDED_TIME));
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at)).unwrap_or(Duration::MAX);
+        silence <= self.config.link.holdover || self.rear(index, at).is_some_and(|(_, rear)| rear <= heeded)
     }
 
     /// Of the one just ahead in the order and the one just ahead on the leg, whom the ego follows with its front bumper there, at
