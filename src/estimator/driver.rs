@@ -113,9 +113,9 @@ impl Driver {
     }
 }
 
-/// The speed with which a follower catches up: a twentieth more than it wants on a free road.
+/// The speed with which a follower catches up: a fifth more than it wants on a free road.
 fn catch_up(target_speed: Speed) -> Speed {
-    target_speed.plus(Speed::from_bits(target_speed.to_bits() / 20))
+    target_speed.plus(Speed::from_bits(target_speed.to_bits() / 5))
 }
 
 const fn micros(lag: FineSeconds) -> Duration {

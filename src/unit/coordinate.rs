@@ -186,6 +186,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);
+        let followed = self.coordination.choice().target.map(usize::from);
+        let target = target.filter(|target| self.is_in_the_way(*target, now, next, front, followed));
         let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
@@ -226,6 +228,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.asks(first, at, next).max(least.to_bits())
         };
         Some(if asks_first <= self.asks(ahead, at, next) { first } else { ahead })
+    }
+
+    /// Whether a vehicle ahead is so near that the ego, with its front bumper there and that crossing next, follows it. At the speed
+    /// `v_∞` that the ego wants on a free road, eq. 5 asks for braking from `q_j - r = (t_g + γ) v_∞` on. Behind whom is farther
+    /// ahead the ego drives as on a free road; to follow would only make it hurry. Who is followed may get [`APART`] farther
+    /// ahead than that before it is not any more.
+    pub(super) fn is_in_the_way(
+        &self,
+        index: usize,
+        at: Instant,
+        next: usize,
+        front: Position,
+        followed: Option<usize>,
+    ) -> bool {
+        let (law, wish) = (&self.config.law, self.wish.as_ref());
+        let wanted = wish.map_or(law.target_speed, |wish| wish.target_speed);
+        let time_gap = wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap);
+        let free = front.ahead(wanted.over(time_gap)).ahead(wanted.over(law.damping));
+        let apart = if followed == Some(index) { APART } else { Distance::ZERO };
+        self.asks(index, at, next) < free.ahead(apart).to_bits()
     }
 
     /// `q_j` of a vehicle ahead with that crossing next, in words of a position.
@@ -285,6 +307,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 /// followed. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on, which is less for
 /// any gains that are shipped.
 const HEEDED: Distance = Distance::from_mm(20_000);
+/// What lets the ego go on following who gets away from it, so that it does not take turns.
+const APART: Distance = Distance::from_mm(3_000);
 /// Half of the time, because the whole of it is beyond the format's 4 s.
 const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 

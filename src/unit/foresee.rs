@@ -79,7 +79,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_heeded = |index: &usize| self.is_heeded(*index, at, front, own.speed);
         let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
         let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));
-        self.more_careful(order, lane, at, crossing, front, own.speed)
+        let target = self.more_careful(order, lane, at, crossing, front, own.speed)?;
+        self.is_in_the_way(target, at, crossing, front, followed).then_some(target)
     }
 
     /// Whether a station was ahead at the last review, and still is by what it has said since.
