@@ -3,6 +3,7 @@
 mod rig;
 
 use holdover::time::Duration;
+use holdover::wire::{Predecessor, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 use rig::{instant, m_of};
 
@@ -57,8 +58,27 @@ fn the_own_horizon_knows_that_the_one_ahead_will_have_left_and_is_not_followed_a
 }
 
 #[test]
+fn whom_it_makes_way_for_is_followed_only_when_the_others_have_long_been_told() {
+    let mut junction = two(20.0, 1.0);
+    let mut hardest: f64 = 0.0;
+    junction.run(3.0, |junction| hardest = hardest.min(junction.drivers[1].command()));
+    let at: Vec<f64> = (1..=3).map(|seconds| foreseen(&junction, 1, f64::from(seconds))).collect();
+    junction.run(1.3, |junction| hardest = hardest.min(junction.drivers[1].command()));
+    assert!(junction.drivers[1].follows().is_none() && hardest > -0.05, "{hardest}");
+    let claim = junction.drivers[1].rig.unit.coordination().claim();
+    assert_eq!(claim, Predecessor::Station(StationHash(2)), "but it knows its place in the order");
+    junction.run(0.7, |_| {});
+    assert_eq!(junction.drivers[1].follows(), Some(2));
+    junction.run(1.0, |_| {});
+    let truth = junction.drivers[1].body.position;
+    assert!((at[2] - truth).abs() < 0.1, "{} instead of {truth}", at[2]);
+    // What it would be if it drove on.
+    assert!(truth < 19.0 + 6.0 * 11.0 - 0.2, "{truth}");
+}
+
+#[test]
 fn far_from_the_crossing_it_makes_way_gently_and_is_out_of_the_way_all_the_same() {
-    let mut junction = two(40.0, 1.0);
+    let mut junction = two(5.0, 1.0);
     let (mut hardest, mut far_hardest, mut both): (f64, f64, bool) = (0.0, 0.0, false);
     junction.run(20.0, |junction| {
         let command = junction.drivers[1].command();

@@ -17,9 +17,10 @@ use holdover::{Config, ConfigError, OnboardUnit};
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
 use crate::corridor::road::Ground;
-use crate::modem::{Course, PEERS, Relay, Transmitter, V2xMessage};
+use crate::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, V2xMessage};
 use crate::plant::Plant;
 use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
+use crate::world::Arrived;
 use actuators::Actuators;
 
 pub mod actuators;
@@ -36,7 +37,7 @@ pub use time::{EPOCH_US, gnss, micros};
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
-pub const STEPS: usize = 602;
+pub const STEPS: usize = 712;
 /// The simulated unit: the same core as on the ECU, with the same capacities.
 pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
@@ -165,6 +166,7 @@ impl Vehicle {
     /// Takes its unit off the bus and hands out the place, for a unit outside. On this bus stations are called by `alias`.
     pub fn give_seat(&mut self, alias: Alias) -> MemoryNode {
         self.alias = alias;
+        self.relay.limit(ECU_PEERS);
         self.ecu.take().unwrap_or_else(|| self.bus.node())
     }
 
@@ -237,17 +239,26 @@ impl Vehicle {
     }
 
     /// The time before it appears, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. It ends before
-    /// the tick at `until_s`, with the vehicle where it was.
+    /// speak, the driver drives at constant speed and has not engaged it yet, and it only hears what arrives of the others. It ends
+    /// before the tick at `until_s`, with the vehicle where it was.
     ///
     /// # Errors
     /// The bus's.
-    pub fn warm_up(&mut self, until_s: f64, period_s: f64, ticks: u32) -> io::Result<()> {
+    pub fn warm_up(
+        &mut self,
+        until_s: f64,
+        period_s: f64,
+        ticks: u32,
+        mut arrived: impl FnMut(f64) -> Option<Arrived>,
+    ) -> io::Result<()> {
         let (start_m, engages) = (self.plant.position_m, self.engaged);
         self.engaged = false;
         for tick in (1..=ticks).rev() {
             let before_s = f64::from(tick) * period_s;
             self.plant.position_m = start_m - self.plant.speed_mps * before_s;
+            while let Some(Arrived { at_s, message, .. }) = arrived(until_s - before_s) {
+                self.hear(at_s, &message)?;
+            }
             self.speak(until_s - before_s, period_s, None)?;
             self.tick(until_s - before_s)?;
         }

@@ -7,6 +7,7 @@
 //! real buses; a microsecond goes by before it is on the bus there.
 
 use std::io;
+use std::rc::Rc;
 
 use holdover::config::Envelope;
 use holdover::health::Refusal;
@@ -268,7 +269,7 @@ impl<'a> World<'a> {
         }
         for (from, message) in broadcasts {
             let others = (0..self.vehicles.len()).filter(|to| *to != from);
-            self.air.broadcast(at_s, from, others, message);
+            self.air.broadcast(at_s, from, others, &Rc::new(message));
         }
         Ok(())
     }

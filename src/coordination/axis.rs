@@ -27,6 +27,8 @@ pub struct Standing {
     pub claim: Predecessor,
     /// When it said so.
     pub heard: Instant,
+    /// When it said for the first time that it comes to this intersection.
+    pub since: Instant,
 }
 
 /// What ties the two axes: at the stamp the peer was at this place of the ego's axis, and stood there.
@@ -84,6 +86,15 @@ impl Axis {
         (self.tie, self.standing, self.offset) = (Held::Nothing, Held::Nothing, Held::Nothing);
     }
 
+    /// Takes note that another station was refused in the slot: the place that was said since this one's last motion is not this
+    /// one's.
+    pub fn dispute(&mut self) {
+        let stamp = self.newest.get().map(|(_, stamp, _)| stamp);
+        if self.tie.as_ref().is_some_and(|tie| Some(tie.stamp) != stamp) {
+            self.tie.clear();
+        }
+    }
+
     /// Takes in a motion: the same on the ego's axis, if that is known, and how far the axis moved.
     pub fn translate(&mut self, motion: &Motion) -> (Option<Motion>, Option<Distance>) {
         if self.newest.get().is_some_and(|(station, ..)| station != motion.station) {
@@ -101,7 +112,9 @@ impl Axis {
     fn retie(&mut self) -> Option<Distance> {
         let (_, stamp, position) = self.newest.get()?;
         let tie = self.tie.get().filter(|tie| tie.stamp == stamp)?;
-        self.standing.set(tie.standing);
+        let held = self.standing().filter(|held| held.crossing == tie.standing.crossing);
+        let since = held.map_or(tie.standing.since, |held| held.since);
+        self.standing.set(Standing { since, ..tie.standing });
         let offset = tie.place.mm_ahead_of(position);
         let Some(before) = self.offset.get() else {
             self.offset.set(offset);
@@ -135,8 +148,14 @@ mod tests {
         }
     }
 
-    const STANDING: Standing =
-        Standing { crossing: 0, leg: 1, arrival: None, claim: Predecessor::None, heard: Instant::ZERO };
+    const STANDING: Standing = Standing {
+        crossing: 0,
+        leg: 1,
+        arrival: None,
+        claim: Predecessor::None,
+        heard: Instant::ZERO,
+        since: Instant::ZERO,
+    };
 
     fn place(axis: &mut Axis, stamp: u32, crossing_mm: i64, before_mm: i32) -> Option<i32> {
         let (stamp, distance) = (Stamp::from_raw(stamp), Distance::from_mm(before_mm));

@@ -47,6 +47,11 @@ pub(crate) const REVIEW: Duration = Duration::from_millis(100);
 /// only on its way, or lost once or twice, costs nothing.
 pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 
+/// The ego follows one that comes by a crossing leg only so long after it has heard of it, if it still can stop gently then, and
+/// its own horizon says so from the beginning: as long as the longest silence that nobody is to be surprised by, and until
+/// the next message is heard.
+pub(crate) const ANNOUNCED: Duration = Duration::from_millis(4_500);
+
 /// Fixes that differ from the tie by more than this are another place; others are averaged over 16, which takes the rounding
 /// of a position on the globe (11 mm) out.
 const RELOCATED: Distance = Distance::from_mm(5_000);
@@ -66,6 +71,8 @@ pub(crate) struct Present {
     pub has_left: bool,
     /// Whether the ego is so far ahead that it is out of the conflict area before this one is there, or cannot keep out of it.
     pub is_far_behind: bool,
+    /// Whether the ego may follow it.
+    pub is_announced: bool,
     /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
     pub lane: Option<Side>,
 }
@@ -320,17 +327,20 @@ impl<const PEERS: usize> Coordination<PEERS> {
             }
             None => ego,
         };
-        let mut last: Option<(usize, Entry)> = None;
+        let (mut last, mut followed) = (None::<Entry>, None::<(usize, Entry)>);
         self.choice.ahead = Slots::NONE;
         let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
-        for Present { index, entry, has_left, .. } in present.iter().filter(is_ahead) {
+        for Present { index, entry, has_left, is_announced, .. } in present.iter().filter(is_ahead) {
             self.choice.ahead.set(*index, true);
-            if !has_left && last.is_none_or(|(_, last)| last.is_before(entry)) {
-                last = Some((*index, *entry));
+            if !has_left && last.is_none_or(|last| last.is_before(entry)) {
+                last = Some(*entry);
+            }
+            if !has_left && *is_announced && followed.is_none_or(|(_, last)| last.is_before(entry)) {
+                followed = Some((*index, *entry));
             }
         }
-        self.choice.order = last.and_then(|(index, _)| u8::try_from(index).ok());
-        self.claim = last.map(|(_, entry)| entry.station).into();
+        self.choice.order = followed.and_then(|(index, _)| u8::try_from(index).ok());
+        self.claim = last.map(|entry| entry.station).into();
         given_way.is_some()
     }
 
@@ -362,6 +372,20 @@ impl<const PEERS: usize> Coordination<PEERS> {
         let Intersection { half, .. } = *crossing.intersection;
         let crosses = crossing.intersection.conflict(crossing.leg, standing.leg);
         if crosses { Gentleness::within(point.ahead_of(front).minus(half), speed) } else { Gentleness::NONE }
+    }
+
+    /// Whether the ego, with its front bumper there, at this speed and with that crossing next, follows one that stands there: who
+    /// comes by a crossing leg is followed when the others have been told for long enough, or else only where the ego could
+    /// not stop gently any more.
+    pub(crate) fn is_announced(
+        &self,
+        standing: &Standing,
+        at: Instant,
+        next: usize,
+        front: Position,
+        speed: Speed,
+    ) -> bool {
+        at.since(standing.since) >= ANNOUNCED || self.gentleness(standing, next, front, speed) == Gentleness::NONE
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.

@@ -109,6 +109,7 @@ impl Meeting {
                         heard,
                         has_left: false,
                         is_far_behind: false,
+                        is_announced: true,
                         lane: None,
                     })
                 })

@@ -33,6 +33,7 @@ pub struct Track<const SAMPLES: usize> {
     intent: Held<Intent>,
     knots: Option<(Instant, Knots)>,
     link: Link,
+    is_disputed: bool,
 }
 
 impl<const SAMPLES: usize> Track<SAMPLES> {
@@ -45,6 +46,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             intent: Held::Nothing,
             knots: None,
             link: Link::new(period),
+            is_disputed: false,
         }
     }
 
@@ -119,6 +121,18 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.link
     }
 
+    /// Whether another station spoke last in the slot, and was refused. Motions alone name their station: what else comes in the
+    /// slot is not this one's then.
+    #[must_use]
+    pub const fn is_disputed(&self) -> bool {
+        self.is_disputed
+    }
+
+    /// Takes note of a motion of another station that is refused.
+    pub fn dispute(&mut self) {
+        self.is_disputed = true;
+    }
+
     /// Takes a sample in, or refuses it by the first rule that it breaks:
     ///
     /// 1. older than `limits.stale`: [`Refusal::Stale`];
@@ -157,6 +171,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
         let admission = self.insert(sample)?;
         self.link.heard(sample.received, sample.at);
+        self.is_disputed = false;
         Ok(admission)
     }
 

@@ -65,28 +65,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// A peer's motion on the ego's axis; `None` while its axis is not known.
-    ///
-    /// # Errors
-    /// [`Refusal::StationConflict`]: what another station says in the slot does not touch the axis.
-    pub(super) fn translate(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<Option<Motion>, Refusal> {
-        let track = self.peers.get_mut(slot)?;
+    pub(super) fn translate(&mut self, index: usize, motion: &Motion) -> Option<Motion> {
         if self.coordination.itinerary().is_none() {
-            return Ok(Some(*motion));
-        }
-        let is_alive = track.link().silence(at).is_some_and(|silence| silence < self.config.link.slot_reuse);
-        if is_alive && track.station().is_some_and(|station| station != motion.station) {
-            return Err(Refusal::StationConflict);
-        }
-        let index = usize::from(slot.0);
-        if track.station().is_some_and(|station| station != motion.station) {
-            self.coordination.vacate(index);
+            return Some(*motion);
         }
         let before = self.coordination.standing(index).copied();
-        let Some(axis) = self.coordination.axis_mut(index) else { return Ok(None) };
-        let (translated, moved) = axis.translate(motion);
+        let (translated, moved) = self.coordination.axis_mut(index)?.translate(motion);
         self.move_axis(index, moved);
         self.note_moving_on(index, before);
-        Ok(translated)
+        translated
     }
 
     /// Takes in what a peer says of its way to a crossing point.
@@ -95,7 +82,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return self.leave(slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
-        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at };
+        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
         self.take_standing(slot, route.stamp, crossing, route.distance, standing);
     }
 
@@ -107,7 +94,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return;
         }
         let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(slot) };
-        let standing = Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at };
+        let standing =
+            Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
         self.take_standing(slot, geo.stamp, crossing, distance, standing);
     }
 
@@ -194,7 +182,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let takes_along = side == Side::Behind || !is_committed;
                 let lane = (self.coordination.is_on_lane(standing) && takes_along).then_some(side);
                 let is_far_behind = is_committed || self.is_far_behind(&reading, front);
-                let _ = present.push(Present { index, entry, heard: standing.heard, has_left, is_far_behind, lane }); // as many as slots
+                let is_followed = self.coordination.choice().target.map(usize::from) == Some(index);
+                let is_announced = is_followed
+                    || self.coordination.is_announced(standing, now, self.coordination.next(), front, state.speed);
+                let heard = standing.heard;
+                let _ = present.push(Present { index, entry, heard, has_left, is_far_behind, is_announced, lane }); // as many as slots
             }
             let is_ahead = reading.position > front && self.coordination.is_on_lane(standing);
             if is_ahead && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
@@ -209,6 +201,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
         let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);
+        let followed = self.coordination.choice().target.map(usize::from);
+        let target = target.filter(|target| self.is_in_the_way(*target, now, next, front, followed));
         let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
@@ -218,10 +212,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whether a peer matters to the ego with its front bumper there: who was far ahead when it was heard last has got out of
     /// reach, and nobody is ahead then as far as it matters.
-    pub(super) fn is_heeded(&self, index: usize, now: Instant, front: Position, speed: Speed) -> bool {
-        let silence = self.peers.get(index).and_then(|track| track.link().silence(now)).unwrap_or(Duration::MAX);
+    pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at)).unwrap_or(Duration::MAX);
         let heeded = front.ahead(HEEDED).ahead(speed.over(HEEDED_TIME)).ahead(speed.over(HEEDED_TIME));
-        silence <= self.config.link.holdover || self.rear(index, now).is_some_and(|(_, rear)| rear <= heeded)
+        silence <= self.config.link.holdover || self.rear(index, at).is_some_and(|(_, rear)| rear <= heeded)
     }
 
     /// Who is ahead of the ego's front bumper on its own leg by what is certain of it; who may be on either side is where it was.
@@ -265,6 +259,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.asks(first, at, next).max(least.to_bits())
         };
         Some(if asks_first <= self.asks(ahead, at, next) { first } else { ahead })
+    }
+
+    /// Whether a vehicle ahead is so near that the ego, with its front bumper there and that crossing next, follows it. At the speed
+    /// `v_∞` that the ego wants on a free road, eq. 5 asks for braking from `q_j - r = (t_g + γ) v_∞` on. Behind whom is farther
+    /// ahead the ego drives as on a free road; to follow would only make it hurry. Who is followed may get [`APART`] farther
+    /// ahead than that before it is not any more.
+    pub(super) fn is_in_the_way(
+        &self,
+        index: usize,
+        at: Instant,
+        next: usize,
+        front: Position,
+        followed: Option<usize>,
+    ) -> bool {
+        let (law, wish) = (&self.config.law, self.wish.as_ref());
+        let wanted = wish.map_or(law.target_speed, |wish| wish.target_speed);
+        let time_gap = wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap);
+        let free = front.ahead(wanted.over(time_gap)).ahead(wanted.over(law.damping));
+        let apart = if followed == Some(index) { APART } else { Distance::ZERO };
+        self.asks(index, at, next) < free.ahead(apart).to_bits()
     }
 
     /// `q_j` of a vehicle ahead with that crossing next, in words of a position.
@@ -336,6 +350,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 /// followed. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on, which is less for
 /// any gains that are shipped.
 const HEEDED: Distance = Distance::from_mm(20_000);
+/// What lets the ego go on following who gets away from it, so that it does not take turns.
+const APART: Distance = Distance::from_mm(3_000);
 /// Half of the time, because the whole of it is beyond the format's 4 s.
 const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 

@@ -26,7 +26,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
-            let target = self.outlook(review, &own, crossing);
+            let target = self.outlook(review, &own, crossing, manner.target);
             let is_new = target != manner.target;
             let may = self.gentleness(target, crossing, own.position, own.speed);
             if is_new || may < gentleness {
@@ -51,7 +51,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whom the ego will follow, with that state and that crossing next, by the order and the horizons as they are
     /// known now. Who registers in between is not known.
-    fn outlook(&self, at: Instant, own: &Reading, crossing: usize) -> Option<usize> {
+    fn outlook(&self, at: Instant, own: &Reading, crossing: usize, followed: Option<usize>) -> Option<usize> {
         let (front, end) = (own.position, self.coordination.end_of(crossing));
         let is_later = crossing != self.coordination.next();
         let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
@@ -68,14 +68,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let Some(station) = self.peers.get(index).and_then(Track::station).filter(|_| is_here) else { continue };
             let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
             let is_ahead = if is_later { !is_on_lane } else { self.is_ahead(index, &entry) };
-            if is_ahead && order.is_none_or(|(_, last)| last.is_before(&entry)) {
+            let is_announced =
+                followed == Some(index) || self.coordination.is_announced(standing, at, crossing, front, own.speed);
+            if is_ahead && is_announced && order.is_none_or(|(_, last)| last.is_before(&entry)) {
                 order = Some((index, entry));
             }
         }
         // Who is ahead on the same leg comes to a later crossing before the ego, and after all who are there now.
         let order = order.filter(|_| !(is_later && lane.is_some()));
+        let is_heeded = |index: &usize| self.is_heeded(*index, at, front, own.speed);
         let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
-        self.more_careful(order, lane, at, crossing, front, own.speed)
+        let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));
+        let target = self.more_careful(order, lane, at, crossing, front, own.speed)?;
+        self.is_in_the_way(target, at, crossing, front, followed).then_some(target)
     }
 
     /// Whether a station was ahead at the last review, and still is by what it has said since.

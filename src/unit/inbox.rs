@@ -51,14 +51,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Refusal> {
         let index = usize::from(slot.0);
+        if !matches!(said, Said::Motion(_)) && self.peers.get_mut(slot)?.is_disputed() {
+            return Err(Refusal::StationConflict);
+        }
         match said {
             Said::Motion(motion) => {
-                let station = self.peers.get_mut(slot)?.station();
-                let left =
-                    if station == Some(motion.station) { None } else { self.left_slot(index, motion.station, at)? };
-                let Some(motion) = self.translate(at, slot, motion)? else { return Ok(()) };
                 let instant =
                     self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(self.config.link.assumed_delay));
+                let left = self.settle(at, slot, motion.station, instant)?;
+                let Some(motion) = self.translate(index, motion) else { return Ok(()) };
                 let ego = self.ego.as_ref().map(|ego| ego.position);
                 let is_synchronised = self.is_synchronised(at);
                 let track = self.peers.get_mut(slot)?;
@@ -68,14 +69,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 if ego.is_some_and(|ego| sample.position.ahead_of(ego).magnitude() > crate::parameters::REACH) {
                     return Err(Refusal::TooFar);
                 }
-                let track = self.peers.get_mut(slot)?;
-                let admission = track.admit(sample, &doubt, &self.config.link);
-                // Even a sample that is refused may end the track of the station before.
-                if station != track.station() {
-                    self.estimator.forget(index);
+                let is_first = track.station().is_none();
+                let admission = track.admit(sample, &doubt, &self.config.link)?;
+                if is_first {
                     self.estimator.note_change(&self.peers);
                 }
-                let admission = admission?;
                 if let Some(left) = left {
                     self.vacate(left);
                 }
@@ -111,17 +109,52 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Ok(())
     }
 
-    /// A station speaks in one slot at a time. The one in which it was, if it now speaks in another.
+    /// A station speaks in one slot at a time, and a slot is one station's. If it was another one's, that one's time is over from
+    /// here on. The slot in which the station was, if it now speaks in another.
     ///
     /// # Errors
-    /// [`Refusal::StationConflict`]: it was heard there within `slot_reuse`. Or else whoever takes its name could end what is
-    /// certain of it, and with that the check of whether what is said of it can be.
-    fn left_slot(&self, index: usize, station: StationHash, at: Instant) -> Result<Option<usize>, Refusal> {
+    /// * [`Refusal::StationConflict`]: the other station was heard in the slot, or the station in another slot, within
+    ///   `slot_reuse`. Or else whoever takes its name could end what is certain of it, and with that the check of whether
+    ///   what is said of it can be;
+    /// * [`Refusal::Stale`] and [`Refusal::Future`]: what is said so late, or so early, does not end anything.
+    fn settle(
+        &mut self,
+        at: Instant,
+        slot: Slot,
+        station: StationHash,
+        said: Instant,
+    ) -> Result<Option<usize>, Refusal> {
+        let (index, link) = (usize::from(slot.0), &self.config.link);
+        let holder = self.peers.get_mut(slot)?.station();
+        if holder == Some(station) {
+            return Ok(None);
+        }
         let left = self.peers.index_of(station).filter(|left| *left != index);
-        let track = left.and_then(|left| self.peers.get(left));
-        let silence = track.and_then(|track| track.link().silence(at));
-        let is_heard = silence.is_some_and(|silence| silence < self.config.link.slot_reuse);
-        if is_heard { Err(Refusal::StationConflict) } else { Ok(left) }
+        let is_heard = |index: usize| {
+            let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+            silence.is_some_and(|silence| silence < link.slot_reuse)
+        };
+        let age = at.since(said);
+        let refusal = if holder.is_some() && is_heard(index) || left.is_some_and(is_heard) {
+            Some(Refusal::StationConflict)
+        } else if age > link.stale {
+            Some(Refusal::Stale)
+        } else if age < Duration::ZERO.minus(link.future) {
+            Some(Refusal::Future)
+        } else {
+            None
+        };
+        if let Some(refusal) = refusal {
+            self.peers.get_mut(slot)?.dispute();
+            if let Some(axis) = self.coordination.axis_mut(index) {
+                axis.dispute();
+            }
+            return Err(refusal);
+        }
+        if holder.is_some() {
+            self.vacate(index);
+        }
+        Ok(left)
     }
 
     /// What was known of a station in a slot that it has left is from before, and ends.

@@ -27,6 +27,9 @@ use crate::wire::{Frame, Message, Predecessor, Said};
 
 /// How many own motions go by from one intent to the next.
 const INTENT_EVERY: u8 = 5;
+/// How often an intent is sent at once when it changes: whoever hears the first message of an identifier trusts it from the second
+/// one on.
+const INTENT_AT_ONCE: u8 = 2;
 /// How many own motions go by from one route to the next; tags count modulo 4.
 const ROUTE_EVERY: u8 = 2;
 
@@ -39,6 +42,8 @@ pub(super) struct Outbox {
     page: u8,
     due: Option<Instant>,
     until_intent: u8,
+    /// How often the intent is still to be sent at once.
+    at_once: u8,
     intent: Held<Intent>,
 }
 
@@ -51,6 +56,7 @@ impl Outbox {
             page: 0,
             due: None,
             until_intent: 0,
+            at_once: 0,
             intent: Held::Nothing,
         }
     }
@@ -83,7 +89,11 @@ impl Outbox {
 
     /// Whether an intent is due: it is another one, or its turn has come.
     fn is_intent_due(&mut self, intent: Intent) -> bool {
-        let is_due = self.intent != Held::Value(intent) || self.until_intent == 0;
+        if self.intent != Held::Value(intent) {
+            self.at_once = INTENT_AT_ONCE;
+        }
+        let is_due = self.at_once > 0 || self.until_intent == 0;
+        self.at_once = self.at_once.saturating_sub(1);
         self.until_intent = if is_due { INTENT_EVERY } else { self.until_intent }.saturating_sub(1);
         self.intent.set(intent);
         is_due

@@ -14,7 +14,7 @@ use crate::scenario::{Overrides, Span, envelope};
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 10.0..=86_400.0, default: 600.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
 const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.01 };
-const HORIZON: Number = Number { key: "horizon_s", unit: "seconds", limits: 0.5..=6.0, default: 5.9 };
+const HORIZON: Number = Number { key: "horizon_s", unit: "seconds", limits: 0.5..=7.0, default: 7.0 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 1.0..=100.0, default: 10.0 };
 const EGO_AFTER: Number = Number { key: "ego_after_s", unit: "seconds", limits: 0.0..=86_400.0, default: 60.0 };
 const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 1.0..=50.0, default: 11.0 };
@@ -29,7 +29,7 @@ const BUSES: Number = Number { key: "buses", unit: "a share", limits: 0.0..=1.0,
 const DELAY_MEAN: Number = Number { key: "delay_mean_s", unit: "seconds", limits: 0.0..=10.0, default: 0.040 };
 const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 0.0..=10.0, default: 0.0259 };
 const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, default: 0.1 };
-const RANGE: Number = Number { key: "range_m", unit: "metres", limits: 50.0..=5000.0, default: 300.0 };
+const RANGE: Number = Number { key: "range_m", unit: "metres", limits: 50.0..=5000.0, default: 400.0 };
 const DARK: Number = Number { key: "dark_s", unit: "seconds", limits: 0.0..=60.0, default: 4.0 };
 const MASS: Number = Number { key: "mass_scale", unit: "a factor", limits: 0.5..=2.0, default: 1.0 };
 const GRADE: Number = Number { key: "grade", unit: "a share of the way", limits: -0.15..=0.15, default: 0.0 };

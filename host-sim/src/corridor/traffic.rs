@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
+use std::rc::Rc;
 
 use holdover::ConfigError;
 use holdover::controller::Mode;
@@ -39,6 +40,9 @@ use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, warm_up_
 
 /// How well every vehicle knows its own motion, as it publishes it.
 const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
+
+/// A vehicle has heard whoever is near for so long before it appears, in seconds: from somewhere it has come.
+const LISTENING_S: f64 = 1.0;
 
 /// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
 const ENTRY_BRAKING_MPS2: f64 = 2.0;
@@ -91,6 +95,8 @@ pub struct Traffic<'a> {
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
     air: Air,
+    /// What has been broadcast of late: when, by whom, and from where.
+    aired: VecDeque<(f64, usize, Point, Rc<V2xMessage>)>,
     remains: Remains,
     tally: Tally,
     logged: Option<usize>,
@@ -144,6 +150,7 @@ impl<'a> Traffic<'a> {
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
+            aired: VecDeque::new(),
             remains: Remains::default(),
             tally: Tally::default(),
             logged: None,
@@ -205,13 +212,13 @@ impl<'a> Traffic<'a> {
     fn tick(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let at_s = self.at_s();
         self.ticks += 1;
-        self.admit(at_s)?;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
                 self.tally.heard += u64::from(!traveller.has_left);
                 traveller.vehicle.hear(at_s, &message)?;
             }
         }
+        self.admit(at_s)?;
         let mut broadcasts = Vec::new();
         for (index, traveller) in &mut self.travellers {
             traveller.vehicle.speak(at_s, self.corridor.period_s, None)?;
@@ -247,7 +254,12 @@ impl<'a> Traffic<'a> {
             let Some(here) = places.get(&from) else { continue };
             let reaches =
                 |(to, there): &(&usize, &Point)| **to != from && Shift::between(*here, **there).length_m() <= range_m;
-            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), message);
+            let message = Rc::new(message);
+            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), &message);
+            self.aired.push_back((at_s, from, *here, message));
+        }
+        while self.aired.front().is_some_and(|(aired_s, ..)| aired_s + LISTENING_S < at_s) {
+            self.aired.pop_front();
         }
     }
 
@@ -302,7 +314,16 @@ impl<'a> Traffic<'a> {
         gap_m >= traffic.standstill_m + v * traffic.time_gap_s + braking_m
     }
 
-    fn appear(&self, at_s: f64, index: usize) -> io::Result<Traveller> {
+    /// Puts into the air what a vehicle has heard before it appeared there.
+    fn overhear(&mut self, index: usize, here: Point) {
+        for (aired_s, from, there, message) in &self.aired {
+            if Shift::between(here, *there).length_m() <= self.conditions.radio.range_m {
+                self.air.broadcast(*aired_s, *from, [index], message);
+            }
+        }
+    }
+
+    fn appear(&mut self, at_s: f64, index: usize) -> io::Result<Traveller> {
         let trip = &self.trips[index];
         let lane = &self.network.lanes[trip.road];
         let wrong = &self.conditions.wrong;
@@ -335,7 +356,12 @@ impl<'a> Traffic<'a> {
         )?;
         let period_s = self.corridor.period_s;
         let log = (self.logged == Some(index)).then(|| vehicle.listen());
-        vehicle.warm_up(at_s, period_s, warm_up_ticks(WARM_UP_S, self.corridor.message_rate_hz, period_s))?;
+        self.overhear(index, ground.road.at(lane.entry_m).0);
+        let ticks = warm_up_ticks(WARM_UP_S + LISTENING_S, self.corridor.message_rate_hz, period_s);
+        vehicle.warm_up(at_s, period_s, ticks, |at_s| self.air.arrived(at_s))?;
+        while let Some(Arrived { at_s, message, .. }) = self.air.arrived(at_s) {
+            vehicle.hear(at_s, &message)?;
+        }
         let dark = trip.dark(&self.conditions.radio);
         Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
     }

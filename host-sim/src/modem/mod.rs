@@ -11,7 +11,7 @@
 //! else has spoken there: to the unit it is still where it was, and may be waited for.
 //!
 //! *Intents* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
-//! every [`INTENT_EVERY_S`], so that eight peers fit the bus.
+//! every [`INTENT_EVERY_S`], so that all of them fit the bus.
 
 use holdover::wire::horizon::Knots;
 use holdover::wire::intent::Intent;
@@ -23,15 +23,21 @@ mod relevance;
 
 pub use relevance::{Ahead, Course, LEADERS, Rank};
 
-/// Slots of the unit.
-pub const PEERS: usize = 8;
+/// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
+pub const PEERS: usize = 12;
+
+/// Slots of the firmware.
+pub const ECU_PEERS: usize = 8;
 
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
 
-/// On a route an intent is relayed with each of the first messages in a slot but this one, because the unit trusts an identifier from its
-/// second frame on, and a vehicle may fall silent before half a second has gone by.
+/// What a station that ceases to matter says is relayed so often still.
 const NEWS: u8 = 4;
+
+/// On a route a slot's first intents are relayed with each message, so many of them, because the unit trusts an identifier from its
+/// second frame on, and a vehicle may fall silent before half a second has gone by.
+const FIRST_INTENTS: u8 = 3;
 
 /// A station that has not been relayed for longer than this has paused.
 const PAUSE_S: f64 = 0.45;
@@ -93,8 +99,10 @@ struct Tenant {
     relayed_s: f64,
     /// Nothing is relayed before.
     from_s: f64,
-    /// How often it has been relayed, up to [`NEWS`].
-    relayed: u8,
+    /// Whether it has been relayed.
+    relayed: bool,
+    /// How many of its intents have been relayed, up to [`FIRST_INTENTS`].
+    intents: u8,
     /// How often it has been relayed since it ceased to matter.
     gone: u8,
     intent: Option<(Intent, f64)>,
@@ -118,6 +126,8 @@ pub struct Relay {
     left: Vec<Option<Tenant>>,
     /// From when on a free slot may be used.
     rested_s: Vec<f64>,
+    /// Whether anything has been said in a slot.
+    is_begun: Vec<bool>,
     places: Vec<Placed>,
     course: Course,
     turned_away: u64,
@@ -128,8 +138,15 @@ impl Relay {
     #[must_use]
     pub fn new(base: BaseId) -> Self {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
-        let left = vec![None; PEERS];
-        Self { sender: Sender::new(base), slots, left, rested_s, places, course: Course::default(), turned_away: 0 }
+        let (left, is_begun) = (vec![None; PEERS], vec![false; PEERS]);
+        let (sender, course) = (Sender::new(base), Course::default());
+        Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0 }
+    }
+
+    /// Limits it to the slots that the unit has, if nothing has been heard yet.
+    pub fn limit(&mut self, slots: usize) {
+        self.slots.truncate(slots);
+        self.left.truncate(slots);
     }
 
     /// Lets it know the unit's way.
@@ -163,10 +180,10 @@ impl Relay {
         let says_where = message.route.is_some() || !self.course.is_on_route();
         match &mut self.slots[slot] {
             // After a pause it has to say first where it is, or the unit would take it where it was.
-            Some(tenant) if !says_where && (tenant.relayed == 0 || at_s - tenant.relayed_s > PAUSE_S) => return,
+            Some(tenant) if !says_where && (!tenant.relayed || at_s - tenant.relayed_s > PAUSE_S) => return,
             Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
                 tenant.relayed_s = at_s;
-                tenant.relayed = tenant.relayed.saturating_add(1).min(NEWS);
+                tenant.relayed = true;
                 tenant.gone = if rank == Rank::Irrelevant { tenant.gone.saturating_add(1) } else { 0 };
             }
             _ => return,
@@ -179,7 +196,9 @@ impl Relay {
         }
         said.extend(message.horizon.map(Said::Horizon));
         self.dismiss(slot, at_s);
-        for said in said {
+        // The unit trusts an identifier from its second frame on; a station's first message may be its last one before a silence.
+        let times = if std::mem::replace(&mut self.is_begun[slot], true) { 1 } else { 2 };
+        for said in std::iter::repeat_n(said, times).flatten() {
             #[allow(clippy::cast_possible_truncation)] // at most 16 slots
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             debug_assert!(sent.is_ok(), "a peer says nothing that the catalogue has no line for");
@@ -233,7 +252,8 @@ impl Relay {
             (None, _) => self.least_relevant(rank, at_s)?,
         };
         self.left[slot] = None;
-        self.slots[slot] = Some(Tenant { station, relayed_s: at_s, from_s, relayed: 0, gone: 0, intent: None });
+        self.slots[slot] =
+            Some(Tenant { station, relayed_s: at_s, from_s, relayed: false, intents: 0, gone: 0, intent: None });
         Some(slot)
     }
 
@@ -301,10 +321,11 @@ impl Relay {
     fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
         let is_on_route = self.course.is_on_route();
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due = is_on_route && tenant.relayed < NEWS
+        let is_due = is_on_route && tenant.intents < FIRST_INTENTS
             || tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
         if is_due {
             tenant.intent = Some((*intent, at_s));
+            tenant.intents = tenant.intents.saturating_add(1).min(FIRST_INTENTS);
         }
         is_due
     }

@@ -61,14 +61,13 @@ impl Air {
     }
 
     /// Sends a message from one vehicle to those.
-    pub fn broadcast(&mut self, at_s: f64, from: usize, to: impl IntoIterator<Item = usize>, message: V2xMessage) {
-        let message = Rc::new(message);
+    pub fn broadcast(&mut self, at_s: f64, from: usize, to: impl IntoIterator<Item = usize>, message: &Rc<V2xMessage>) {
         for to in to {
             for arrives_s in self.channel.send(Link { from, to }, at_s) {
                 self.sent += 1;
                 // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
                 let arrives_us = micros(arrives_s).max(micros(at_s) + 1);
-                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message: Rc::clone(&message) }));
+                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message: Rc::clone(message) }));
             }
         }
     }
