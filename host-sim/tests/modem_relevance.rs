@@ -179,7 +179,8 @@ fn who_is_leaving_the_intersection_keeps_its_slot() {
     // Much nearer to the unit, which is 100 m before it. Of those who have not yet crossed, the farthest makes room.
     assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 90)))));
     let still_heard = |station: &u8| bus.hear(0.2, &message(*station, Some(route(4, 0, 18 - 4 * i32::from(*station)))));
-    assert_eq!((1..PEERS as u8).filter(still_heard).collect::<Vec<_>>(), [1, 2, 3, 4, 6, 7]);
+    let expected = (1..PEERS as u8).filter(|station| *station != 5);
+    assert_eq!((1..PEERS as u8).filter(still_heard).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
 }
 
 #[test]
