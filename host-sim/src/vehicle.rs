@@ -49,6 +49,8 @@ const LOCATE_EVERY_S: f64 = 0.1;
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
 /// Cycle of the driver's wish, in seconds.
 const WISH_EVERY_S: f64 = 0.1;
+/// For so long a unit has been engaged when its vehicle appears, so that its first message already says how it will drive.
+const ENGAGED_S: f64 = 0.25;
 
 /// A vehicle of a run.
 pub struct Vehicle {
@@ -239,8 +241,8 @@ impl Vehicle {
     }
 
     /// The time before it appears, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and has not engaged it yet, and it only hears what arrives of the others. It ends
-    /// before the tick at `until_s`, with the vehicle where it was.
+    /// speak, the driver drives at constant speed and engages it only [`ENGAGED_S`] before the end, and it hears what arrives of the
+    /// others. It ends before the tick at `until_s`, with the vehicle where it was.
     ///
     /// # Errors
     /// The bus's.
@@ -252,9 +254,9 @@ impl Vehicle {
         mut arrived: impl FnMut(f64) -> Option<Arrived>,
     ) -> io::Result<()> {
         let (start_m, engages) = (self.plant.position_m, self.engaged);
-        self.engaged = false;
         for tick in (1..=ticks).rev() {
             let before_s = f64::from(tick) * period_s;
+            self.engaged = engages && before_s <= ENGAGED_S;
             self.plant.position_m = start_m - self.plant.speed_mps * before_s;
             while let Some(Arrived { at_s, message, .. }) = arrived(until_s - before_s) {
                 self.hear(at_s, &message)?;
