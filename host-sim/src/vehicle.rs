@@ -37,7 +37,7 @@ pub use time::{EPOCH_US, gnss, micros};
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
-pub const STEPS: usize = 712;
+pub const STEPS: usize = 862;
 /// The simulated unit: the same core as on the ECU, with the same capacities.
 pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
