@@ -19,6 +19,7 @@ mod gentleness;
 pub mod map;
 pub mod order;
 pub mod path;
+mod present;
 
 pub use axis::{Axis, Standing};
 pub use choice::{Choice, Slots};
@@ -26,6 +27,7 @@ pub use gentleness::Gentleness;
 pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
 pub use order::{Arrival, Entry};
 pub use path::{Path, Place, Scale, Segment};
+pub(crate) use present::{Present, Side};
 
 use crate::held::Held;
 use crate::time::{Duration, Instant};
@@ -56,36 +58,6 @@ pub(crate) const ANNOUNCED: Duration = Duration::from_millis(4_500);
 /// of a position on the globe (11 mm) out.
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
-
-/// A station at the ego's next crossing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct Present {
-    /// Its slot.
-    pub index: usize,
-    /// What it says.
-    pub entry: Entry,
-    /// When it said so.
-    pub heard: Instant,
-    /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
-    pub has_left: bool,
-    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there, or cannot keep out of it.
-    pub is_far_behind: bool,
-    /// Whether the ego may follow it.
-    pub is_announced: bool,
-    /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
-    pub lane: Option<Side>,
-}
-
-/// Which side of the ego on its own leg.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) enum Side {
-    /// It is ahead.
-    Ahead,
-    /// It is behind.
-    Behind,
-}
 
 /// The ego at its next crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,46 +9,32 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::rc::Rc;
 
-use holdover::ConfigError;
 use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
 use holdover::health::Refusal;
 use holdover::time::Instant;
-use holdover::wire::ego_intent::EgoIntent;
-use holdover::wire::{Predecessor, StationHash};
+use holdover::wire::StationHash;
 
 use super::alone;
-use super::conditions::{Conditions, WhenLost, config};
+use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Radio};
 use super::globe::Shift;
-use super::map::number;
 use super::network::Network;
 use super::road::Ground;
 use super::tally::Tally;
-use super::trips::{HEARD_S, Trip};
+use super::trips::Trip;
 use super::watch::{Sighting, Watch};
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::ground::Point;
-use crate::modem::{Course, V2xMessage};
-use crate::plant::{Difference, Machine, Plant};
-use crate::scenario::Accuracy;
-use crate::sensors::Sensors;
-use crate::vehicle::{Vehicle, seconds, speed};
-use crate::world::{Air, Arrived, TargetBelief, WARM_UP_S, clock_offset, warm_up_ticks};
+use crate::modem::V2xMessage;
+use crate::vehicle::Vehicle;
+use crate::world::{Air, Arrived, TargetBelief};
 
-/// How well every vehicle knows its own motion, as it publishes it.
-const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
+mod arrivals;
 
-/// A vehicle has heard whoever is near for so long before it appears, in seconds: from somewhere it has come.
-const LISTENING_S: f64 = 1.0;
-
-/// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
-const ENTRY_BRAKING_MPS2: f64 = 2.0;
-
-/// Nobody appears nearer than this behind a vehicle that is silent at that moment or within [`HEARD_S`], in metres.
-const UNHEARD_M: f64 = 100.0;
+use arrivals::LISTENING_S;
 
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
 pub const RUN_OUT_M: f64 = 100.0;
@@ -281,91 +267,6 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Those whose time has come appear, if there is room.
-    fn admit(&mut self, at_s: f64) -> io::Result<()> {
-        while let Some(trip) = self.trips.get(self.next).filter(|trip| trip.at_s <= at_s) {
-            self.waiting[trip.road].push_back(self.next);
-            self.next += 1;
-        }
-        for road in 0..self.waiting.len() {
-            let Some(&index) = self.waiting[road].front() else { continue };
-            if self.has_room(at_s, &self.trips[index]) {
-                self.waiting[road].pop_front();
-                let traveller = self.appear(at_s, index)?;
-                self.travellers.insert(index, traveller);
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and does not happen
-    /// to be silent near by, or to fall silent at once. Who comes up behind somebody has long heard of it; one that appears out of nothing has not.
-    fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
-        let entry_m = self.network.lanes[trip.road].entry_m;
-        let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
-        let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
-        let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
-        if (last.is_dark(at_s) || last.is_dark(at_s + HEARD_S)) && gap_m < UNHEARD_M {
-            return false;
-        }
-        let (v, w) = (trip.speed_mps, last.vehicle.plant.speed_mps);
-        let braking_m = ((v * v - w * w) / (2.0 * ENTRY_BRAKING_MPS2)).max(0.0);
-        let traffic = &self.corridor.traffic;
-        gap_m >= traffic.standstill_m + v * traffic.time_gap_s + braking_m
-    }
-
-    /// Puts into the air what a vehicle has heard before it appeared there.
-    fn overhear(&mut self, index: usize, here: Point) {
-        for (aired_s, from, there, message) in &self.aired {
-            if Shift::between(here, *there).length_m() <= self.conditions.radio.range_m {
-                self.air.broadcast(*aired_s, *from, [index], message);
-            }
-        }
-    }
-
-    fn appear(&mut self, at_s: f64, index: usize) -> io::Result<Traveller> {
-        let trip = &self.trips[index];
-        let lane = &self.network.lanes[trip.road];
-        let wrong = &self.conditions.wrong;
-        let difference = Difference {
-            mass_scale: wrong.mass_scale,
-            grade: wrong.grade,
-            headwind_mps: wrong.headwind_mps,
-            throttle: 1.0,
-        };
-        let machine = Machine::new(trip.kind, trip.kind.lag_s() * wrong.lag_scale, &difference);
-        let odometer_m = trip.odometer_m - lane.entry_m;
-        let plant = Plant::cruising(machine, trip.odometer_m, trip.speed_mps);
-        let wish = EgoIntent {
-            engaged: true,
-            predecessor: Predecessor::Unknown,
-            target_speed: speed(self.corridor.traffic.target_speed_mps),
-            time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
-        };
-        let config = config(self.corridor, &self.conditions, index, trip.kind);
-        let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
-        let sensors = Sensors::blind(ACCURACY);
-        let mut vehicle = Box::new(
-            Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
-        );
-        let ground = Ground { road: lane.road, odometer_m };
-        let crossings =
-            lane.stops.iter().map(|stop| (number(stop.intersection), number(stop.leg), stop.at_m - lane.entry_m));
-        vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
-            |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
-        )?;
-        let period_s = self.corridor.period_s;
-        let log = (self.logged == Some(index)).then(|| vehicle.listen());
-        self.overhear(index, ground.road.at(lane.entry_m).0);
-        let ticks = warm_up_ticks(WARM_UP_S + LISTENING_S, self.corridor.message_rate_hz, period_s);
-        vehicle.warm_up(at_s, period_s, ticks, |at_s| self.air.arrived(at_s))?;
-        while let Some(Arrived { at_s, message, .. }) = self.air.arrived(at_s) {
-            vehicle.hear(at_s, &message)?;
-        }
-        let dark = trip.dark(&self.conditions.radio);
-        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
-    }
-
     fn drive_alone(&mut self) {
         let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
         for own in sightings.iter().filter(|own| own.mode != Mode::Cooperative) {
@@ -418,8 +319,4 @@ impl<'a> Traffic<'a> {
 fn followed(vehicle: &Vehicle) -> Option<StationHash> {
     let target = vehicle.unit.coordination().choice().target?;
     vehicle.unit.peers().get(target.into())?.station()
-}
-
-fn refused(cause: &ConfigError) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the scenario: {cause}"))
 }
