@@ -10,7 +10,7 @@ const ENGAGED_S: f64 = 0.25;
 
 impl Vehicle {
     /// The time before it appears, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and engages it only [`ENGAGED_S`] before the end, and it hears what arrives of the
+    /// speak, the driver drives at constant speed and engages it only a moment before the end, and it hears what arrives of the
     /// others. It ends before the tick at `until_s`, with the vehicle where it was.
     ///
     /// # Errors
