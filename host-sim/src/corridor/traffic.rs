@@ -277,13 +277,11 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Who has left drives on by sight where its envelope would hold it. The one ahead of it vanishes without a word, and for
-    /// all that is certain it stands there: each would wait for that, and all behind it, back onto the way.
+    /// Who has left drives on by sight. The one ahead of it vanishes without a word, and for all that is certain it stands there:
+    /// each would wait for that, and all behind it, back onto the way.
     fn run_out(&mut self) {
         let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
-        for traveller in
-            self.travellers.values_mut().filter(|traveller| traveller.has_left && traveller.vehicle.limited)
-        {
+        for traveller in self.travellers.values_mut().filter(|traveller| traveller.has_left) {
             let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
             let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic);
             traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
