@@ -38,7 +38,7 @@ pub use time::{EPOCH_US, gnss, micros};
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
 pub const STEPS: usize = 862;
-/// The simulated unit: the same core as on the ECU, with the same capacities.
+/// The simulated unit: the same core as on the ECU, with room for more peers and longer horizons.
 pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
 /// Cycle of the time base, in seconds.

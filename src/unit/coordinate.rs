@@ -350,10 +350,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 /// followed. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on, which is less for
 /// any gains that are shipped.
 const HEEDED: Distance = Distance::from_mm(20_000);
-/// What lets the ego go on following who gets away from it, so that it does not take turns.
-const APART: Distance = Distance::from_mm(3_000);
 /// Half of the time, because the whole of it is beyond the format's 4 s.
 const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
+
+/// What lets the ego go on following who gets away from it, so that it does not take turns.
+const APART: Distance = Distance::from_mm(3_000);
 
 /// A peer that told its route less than this ago is not placed by the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);
