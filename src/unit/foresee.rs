@@ -8,7 +8,7 @@
 
 use super::OnboardUnit;
 use crate::controller::Gains;
-use crate::coordination::{Entry, REVIEW};
+use crate::coordination::{Entry, REVIEW, Standing};
 use crate::estimator::Reading;
 use crate::peers::{Sample, Track};
 use crate::time::Instant;
@@ -56,21 +56,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_later = crossing != self.coordination.next();
         let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
         for index in 0..PEERS {
-            let (Some(standing), Some((reading, rear))) = (self.coordination.standing(index), self.rear(index, at))
-            else {
-                continue;
-            };
+            let Some(standing) = self.coordination.standing(index) else { continue };
             let is_on_lane = self.coordination.is_on_lane(standing);
+            // What needs no horizon is asked first: most of the others are neither on the leg nor ahead.
+            let entry = self.entry(index, standing).filter(|entry| {
+                let is_ahead = if is_later { !is_on_lane } else { self.is_ahead(index, entry) };
+                is_ahead && standing.crossing == crossing && order.is_none_or(|(_, last)| last.is_before(entry))
+            });
+            if !is_on_lane && entry.is_none() {
+                continue;
+            }
+            let Some((reading, rear)) = self.rear(index, at) else { continue };
             if is_on_lane && reading.position > front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
                 lane = Some((index, reading.position));
             }
-            let is_here = standing.crossing == crossing && end.is_some_and(|end| rear < end);
-            let Some(station) = self.peers.get(index).and_then(Track::station).filter(|_| is_here) else { continue };
-            let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
-            let is_ahead = if is_later { !is_on_lane } else { self.is_ahead(index, &entry) };
-            let is_announced =
-                followed == Some(index) || self.coordination.is_announced(standing, at, crossing, front, own.speed);
-            if is_ahead && is_announced && order.is_none_or(|(_, last)| last.is_before(&entry)) {
+            let Some(entry) = entry.filter(|_| end.is_some_and(|end| rear < end)) else { continue };
+            if followed == Some(index) || self.coordination.is_announced(standing, at, crossing, front, own.speed) {
                 order = Some((index, entry));
             }
         }
@@ -81,6 +82,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));
         let target = self.more_careful(order, lane, at, crossing, front, own.speed)?;
         self.is_in_the_way(target, at, crossing, front, followed).then_some(target)
+    }
+
+    /// A peer in the order.
+    fn entry(&self, index: usize, standing: &Standing) -> Option<Entry> {
+        let station = self.peers.get(index).and_then(Track::station)?;
+        Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
     }
 
     /// Whether a station was ahead at the last review, and still is by what it has said since.
