@@ -338,17 +338,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
     /// there: if that one comes by a leg that crosses its own, the more so the farther the conflict area is.
     pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {
-        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
-        let Some(crossing) = crossing.filter(|_| standing.crossing == next) else { return Gentleness::NONE };
+        let Some(crossing) = self.crossed(standing, next) else { return Gentleness::NONE };
         let Some(point) = self.crossing_point(crossing) else { return Gentleness::NONE };
-        let Intersection { half, .. } = *crossing.intersection;
-        let crosses = crossing.intersection.conflict(crossing.leg, standing.leg);
-        if crosses { Gentleness::within(point.ahead_of(front).minus(half), speed) } else { Gentleness::NONE }
+        Gentleness::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
     }
 
     /// Whether the ego, with its front bumper there, at this speed and with that crossing next, follows one that stands there: who
-    /// comes by a crossing leg is followed when the others have been told for long enough, or else only where the ego could
-    /// not stop gently any more.
+    /// comes by another leg is followed when the others have been told for long enough. Sooner only if that leg crosses the ego's
+    /// and the ego could not stop gently any more.
     pub(crate) fn is_announced(
         &self,
         standing: &Standing,
@@ -357,7 +354,17 @@ impl<const PEERS: usize> Coordination<PEERS> {
         front: Position,
         speed: Speed,
     ) -> bool {
-        at.since(standing.since) >= ANNOUNCED || self.gentleness(standing, next, front, speed) == Gentleness::NONE
+        let is_urgent = match self.crossed(standing, next) {
+            Some(_) => self.gentleness(standing, next, front, speed) == Gentleness::NONE,
+            None => self.is_on_lane(standing),
+        };
+        is_urgent || at.since(standing.since) >= ANNOUNCED
+    }
+
+    /// That crossing, if one that stands there comes by a leg that crosses the ego's.
+    fn crossed(&self, standing: &Standing, next: usize) -> Option<&'static Crossing> {
+        let crossing = self.itinerary?.crossings.get(next).filter(|_| standing.crossing == next)?;
+        crossing.intersection.conflict(crossing.leg, standing.leg).then_some(crossing)
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.

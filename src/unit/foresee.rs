@@ -60,7 +60,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let is_on_lane = self.coordination.is_on_lane(standing);
             // What needs no horizon is asked first: most of the others are neither on the leg nor ahead.
             let entry = self.entry(index, standing).filter(|entry| {
-                let is_ahead = if is_later { !is_on_lane } else { self.is_ahead(index, entry) };
+                let is_ahead = is_later || self.is_ahead(index, entry);
                 is_ahead && standing.crossing == crossing && order.is_none_or(|(_, last)| last.is_before(entry))
             });
             if !is_on_lane && entry.is_none() {
@@ -75,8 +75,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 order = Some((index, entry));
             }
         }
-        // Who is ahead on the same leg comes to a later crossing before the ego, and after all who are there now.
-        let order = order.filter(|_| !(is_later && lane.is_some()));
+        // Who is ahead on the same leg and not yet at a later crossing comes there before the ego, and after all who are there now.
+        let comes_last =
+            |index| self.coordination.standing(index).is_some_and(|standing| standing.crossing != crossing);
+        let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
         let is_heeded = |index: &usize| self.is_heeded(*index, at, front, own.speed);
         let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
         let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));

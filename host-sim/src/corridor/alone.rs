@@ -3,11 +3,19 @@
 //! On its own road it has an ideal range sensor and an adaptive cruise control, the Intelligent Driver Model with the traffic's
 //! time gap. Nobody can be seen on a crossing road, so it stops before the conflict area of the next intersection and waits
 //! there until it hears again; unless it can no longer stop there.
+//!
+//! It minds whoever is just ahead of it in the order and whoever is just ahead on its leg, followed or not: far behind both it
+//! follows nobody, and would still have to give way to one that it does not hear. If only the link to the one on its leg is
+//! lost, it gives way to the other as it did before.
+
+use holdover::controller::Mode;
+use holdover::time::Instant;
 
 use super::description::Traffic;
 use super::network::Network;
 use super::watch::Sighting;
 use crate::plant::Kind;
+use crate::vehicle::Unit;
 
 /// Largest acceleration of the model.
 const ACCELERATION_MPS2: f64 = 1.5;
@@ -20,9 +28,32 @@ const EMERGENCY_MPS2: f64 = 6.0;
 /// How far before the conflict area the stop line is.
 const LINE_M: f64 = 1.0;
 
-/// The acceleration that it wants.
+/// To whom the link is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// Whoever is just ahead on the same leg.
+    pub lane: bool,
+    /// Whoever is just ahead in the order, and comes by a crossing leg.
+    pub crossing: bool,
+}
+
+impl Lost {
+    /// By what a unit knows; `None` while it hears both.
+    #[must_use]
+    pub fn of(unit: &Unit, now: Instant) -> Option<Self> {
+        let (choice, limits) = (unit.coordination().choice(), &unit.config().link);
+        let is_off = |slot: u8| unit.peers().get(slot.into()).is_some_and(|track| !track.link().is_on(now, limits));
+        let lane = choice.lane.is_some_and(is_off);
+        let crossing = choice.order.filter(|order| choice.lane != Some(*order)).is_some_and(is_off);
+        // Whatever else keeps a unit from cooperating, nothing is known then of those who cross.
+        let crossing = crossing || !lane && unit.mode() != Mode::Cooperative;
+        (lane || crossing).then_some(Self { lane, crossing })
+    }
+}
+
+/// The acceleration that it wants, on its own leg by sight; it stops at the line if it `waits` for those who cross.
 #[must_use]
-pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic) -> f64 {
+pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic, waits: bool) -> f64 {
     let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
     let ahead = all.iter().filter(|other| other.road == own.road && other.way_m > own.way_m);
     let ahead = ahead.min_by(|a, b| a.way_m.total_cmp(&b.way_m));
@@ -36,7 +67,7 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
         let gap_m = ahead.way_m - ahead.length_m - own.way_m;
         presses = presses.max(behind(gap_m, ahead.speed_mps, traffic.standstill_m));
     }
-    if let Some(gap_m) = to_stop_line(own, network) {
+    if let Some(gap_m) = to_stop_line(own, network).filter(|_| waits) {
         presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
     }
     (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)

@@ -9,13 +9,12 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::rc::Rc;
 
-use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
 use holdover::health::Refusal;
 use holdover::time::Instant;
 use holdover::wire::StationHash;
 
-use super::alone;
+use super::alone::{self, Lost};
 use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Radio};
 use super::globe::Shift;
@@ -212,7 +211,7 @@ impl<'a> Traffic<'a> {
             broadcasts.extend(message.filter(|_| !traveller.is_dark(at_s)).map(|message| (*index, message)));
         }
         if self.conditions.when_lost == WhenLost::Alone {
-            self.drive_alone();
+            self.drive_alone(at_s);
         }
         if self.conditions.envelope.engaged {
             self.run_out();
@@ -267,13 +266,15 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    fn drive_alone(&mut self) {
-        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
-        for own in sightings.iter().filter(|own| own.mode != Mode::Cooperative) {
-            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic);
-            if let Some(traveller) = self.travellers.get_mut(&own.trip) {
-                traveller.vehicle.override_with(wanted);
-            }
+    fn drive_alone(&mut self, at_s: f64) {
+        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(at_s, traveller)).collect();
+        for own in &sightings {
+            let Some(traveller) = self.travellers.get_mut(&own.trip) else { continue };
+            let vehicle = &mut traveller.vehicle;
+            let Some(lost) = Lost::of(&vehicle.unit, vehicle.instant(at_s)) else { continue };
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, lost.crossing);
+            let still_given_way = if lost.crossing { f64::INFINITY } else { vehicle.command_mps2 };
+            vehicle.override_with(wanted.min(still_given_way));
         }
     }
 
@@ -283,7 +284,7 @@ impl<'a> Traffic<'a> {
         let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
         for traveller in self.travellers.values_mut().filter(|traveller| traveller.has_left) {
             let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
-            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic);
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, true);
             traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
         }
     }
