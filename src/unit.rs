@@ -13,7 +13,7 @@ use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance};
+use crate::units::{Acceleration, Distance, Seconds, Speed};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
@@ -284,14 +284,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// How it drives with these gains and this standstill distance behind somebody, or behind nobody.
     fn driver_with(&self, association: Option<(Gains, Distance)>, gentleness: Gentleness) -> Driver {
-        let law = &self.config.law;
-        let wish = self.wish.as_ref();
-        let target_speed = wish.map_or(law.target_speed, |wish| wish.target_speed);
+        let (law, target_speed) = (&self.config.law, self.target_speed());
         let aim = match association {
             Some((gains, standstill)) => Aim::Follow {
                 gain: gains.gain,
                 damping: gains.damping,
-                time_gap: wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap),
+                time_gap: self.time_gap(),
                 standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
                 target_speed,
             },
@@ -300,6 +298,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Driver { aim, lag, mut limits } = Driver::of_config(&self.config, aim);
         limits.braking = gentleness.limit(limits.braking);
         Driver { aim, lag, limits }
+    }
+
+    /// `t_g`: the driver's, or else the configuration's.
+    fn time_gap(&self) -> Seconds {
+        self.wish.as_ref().and_then(|wish| wish.time_gap).unwrap_or(self.config.law.time_gap)
+    }
+
+    /// `v_∞` likewise.
+    fn target_speed(&self) -> Speed {
+        self.wish.as_ref().map_or(self.config.law.target_speed, |wish| wish.target_speed)
     }
 
     fn course(&self, now: Instant, target: Option<usize>) -> Course {

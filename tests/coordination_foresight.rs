@@ -8,8 +8,8 @@ use rig::junction::{CROSSING, Driver, HALF, Junction};
 use rig::{instant, m_of};
 
 /// A vehicle whose unit looks 3.1 s ahead, in the steps that it has room for.
-fn driver(station: u8, leg: usize, at: f64) -> Driver {
-    let mut driver = Driver::new(station, leg, at, 11.0, false);
+fn driver(station: u8, way: usize, at: f64) -> Driver {
+    let mut driver = Driver::new(station, way, at, 11.0, false);
     let mut config = *driver.rig.unit.config();
     (config.prediction.step, config.prediction.horizon) = (Duration::from_millis(50), Duration::from_millis(3_100));
     let way = driver.rig.unit.coordination().itinerary().expect("it has set out");
@@ -55,6 +55,31 @@ fn the_own_horizon_knows_that_the_one_ahead_will_have_left_and_is_not_followed_a
         assert!((foreseen - truth).abs() < 0.05, "after {} s: {foreseen} instead of {truth}", second + 1);
     }
     assert_eq!(junction.drivers[1].follows(), None);
+}
+
+#[test]
+fn the_own_horizon_knows_who_has_come_to_the_next_intersection_after_the_one_ahead_on_the_road() {
+    let mut junction = Junction::new(vec![driver(2, 0, 230.0)]);
+    // The one on the crossing road comes to the second intersection later, and will be 15 m ahead of the ego on its way there.
+    for (station, way, at) in [(3, 2, 155.0), (1, 0, 136.0)] {
+        junction.run(0.5, |_| {});
+        let mut driver = driver(station, way, at);
+        driver.rig.synchronise(junction.now - 1, 0);
+        junction.drivers.push(driver);
+    }
+    while junction.drivers[2].body.position < CROSSING {
+        junction.run(0.1, |_| {});
+    }
+    assert_eq!(junction.drivers[2].follows(), None, "there is nobody at the first one");
+    let foreseen = foreseen(&junction, 2, 3.0);
+    let free = junction.drivers[2].body.position + 33.0;
+    junction.run(3.0, |_| {});
+    let truth = junction.drivers[2].body.position;
+    assert_eq!(junction.drivers[2].follows(), Some(3));
+    assert!(
+        truth < free - 0.3 && (foreseen - truth).abs() < 0.1,
+        "{foreseen} instead of {truth}, on a free road {free}"
+    );
 }
 
 #[test]

@@ -4,6 +4,18 @@ use super::order::overlooks;
 use super::*;
 use crate::coordination::order::Arrival;
 
+static SCALE: Scale = Scale { north: 0, east: 0 };
+static SEGMENTS: [Segment; 1] = [Segment {
+    latitude: 0,
+    longitude: 0,
+    begins: Position::ZERO,
+    length: Distance::from_mm(1),
+    along: SCALE,
+    across: SCALE,
+    heading: 0,
+}];
+static PATH: Path = Path { segments: &SEGMENTS };
+
 fn entry(station: u8, arrival: u32, claim: Option<u8>) -> Entry {
     let claim = claim.map_or(Predecessor::None, |station| Predecessor::Station(StationHash(station)));
     Entry { station: StationHash(station), arrival: Some(Arrival(arrival)), claim }
@@ -61,17 +73,6 @@ fn at(tick: u64) -> Instant {
 
 impl Meeting {
     fn of(arrivals: &[u32]) -> Self {
-        static SCALE: Scale = Scale { north: 0, east: 0 };
-        static SEGMENTS: [Segment; 1] = [Segment {
-            latitude: 0,
-            longitude: 0,
-            begins: Position::ZERO,
-            length: Distance::from_mm(1),
-            along: SCALE,
-            across: SCALE,
-            heading: 0,
-        }];
-        static PATH: Path = Path { segments: &SEGMENTS };
         static INTERSECTION: Intersection = Intersection { id: 1, half: Distance::from_mm(4_000), approaches: &[] };
         static CROSSINGS: [Crossing; 1] =
             [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
@@ -211,6 +212,39 @@ fn one_of_two_that_head_for_the_same_place_gives_way() {
         let claims = meeting.claims();
         for (a, b) in (0..claims.len()).flat_map(|a| (0..a).map(move |b| (a, b))) {
             assert_ne!(claims[a], claims[b], "{arrivals:?}, {deaf} does not hear {unheard}: {claims:?}");
+        }
+    }
+}
+
+#[test]
+fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_it_crosses_and_no_gentle_stop_is_left() {
+    const fn approach(leg: u8, conflicts: u8) -> Approach {
+        Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
+    }
+    // Leg 2 comes the other way along the same street.
+    static INTERSECTION: Intersection = Intersection {
+        id: 1,
+        half: Distance::from_mm(4_000),
+        approaches: &[approach(0, 0b010), approach(1, 0b101), approach(2, 0b010)],
+    };
+    static CROSSINGS: [Crossing; 1] =
+        [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
+    static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
+    let mut coordination: Coordination<8> = Coordination::idle();
+    coordination.set_out(&ITINERARY).unwrap();
+    coordination.locate(Position::ZERO, Position::ZERO);
+    // At 10 m/s, 10 m and v²/(2 · 1.5 m/s²) before the conflict area.
+    let gentle_until = 196_000 - 10_000 - 33_333;
+    for (front, is_far) in [(0, true), (gentle_until - 1, true), (gentle_until + 1, false), (195_000, false)] {
+        for (ms, is_told) in [(0, false), (4_499, false), (4_500, true), (60_000, true)] {
+            for (leg, is_followed) in [(0, true), (1, is_told || !is_far), (2, is_told)] {
+                let (since, claim) = (at(3), Predecessor::Unknown);
+                let standing = Standing { crossing: 0, leg, arrival: None, claim, heard: since, since };
+                let (front, speed) = (Position::from_mm(front), Speed::from_mm_per_s(10_000));
+                let now = since.plus(Duration::from_millis(ms));
+                let is_announced = coordination.is_announced(&standing, now, 0, front, speed);
+                assert_eq!(is_announced, is_followed, "leg {leg}, {ms} ms, {front:?}");
+            }
         }
     }
 }

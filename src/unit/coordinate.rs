@@ -251,8 +251,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
         let law = &self.config.law;
         let gentle = self.gentleness(order, next, front, speed).limit(Acceleration::MAX);
-        let least =
-            front.ahead(speed.over(law.time_gap)).ahead(speed.over(law.damping)).ahead(braked_over(gentle, law.gain));
+        let least = front
+            .ahead(speed.over(self.time_gap()))
+            .ahead(speed.over(law.damping))
+            .ahead(braked_over(gentle, law.gain));
         let asks_first = if gentle == Acceleration::MAX {
             self.asks(first, at, next)
         } else {
@@ -273,10 +275,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         front: Position,
         followed: Option<usize>,
     ) -> bool {
-        let (law, wish) = (&self.config.law, self.wish.as_ref());
-        let wanted = wish.map_or(law.target_speed, |wish| wish.target_speed);
-        let time_gap = wish.and_then(|wish| wish.time_gap).unwrap_or(law.time_gap);
-        let free = front.ahead(wanted.over(time_gap)).ahead(wanted.over(law.damping));
+        let wanted = self.target_speed();
+        let free = front.ahead(wanted.over(self.time_gap())).ahead(wanted.over(self.config.law.damping));
         let apart = if followed == Some(index) { APART } else { Distance::ZERO };
         self.asks(index, at, next) < free.ahead(apart).to_bits()
     }
@@ -325,7 +325,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Some(crossing) = self.coordination.crossing() else { return false };
         let half = crossing.intersection.half;
         let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
-        front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.config.law.time_gap))
+        front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.time_gap()))
     }
 
     /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area: it gives way to

@@ -248,7 +248,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,
             },
-            target_speed: self.wish.as_ref().map_or(law.target_speed, |wish| wish.target_speed),
+            target_speed: self.target_speed(),
             time_gap,
             gain,
             damping,

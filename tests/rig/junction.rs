@@ -1,6 +1,6 @@
 //! An intersection on a flat globe where a step of 1e-7° is a centimetre: two straight streets, one to the north (leg 0) and
-//! one to the east (leg 1), that cross 200 m from where each begins, and for the one to the north a second intersection
-//! 190 m further on. Vehicles with a unit each drive on them, and hear one another without delay, if at all.
+//! one to the east (leg 1), that cross 200 m from where each begins, and 190 m further north a second intersection, with a third
+//! street to the east, which begins 400 m before. Vehicles with a unit each drive on them, and hear one another without delay, if at all.
 
 use super::*;
 use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
@@ -26,8 +26,11 @@ static EAST: [Segment; 1] = [Segment {
     across: Scale { north: -CM, east: 0 },
     heading: 7_200,
 }];
+static FAR_EAST: [Segment; 1] =
+    [Segment { latitude: 39_000, longitude: -40_000, length: Distance::from_mm(700_000), ..EAST[0] }];
 static NORTHWARD: Path = Path { segments: &NORTH };
 static EASTWARD: Path = Path { segments: &EAST };
+static FAR_EASTWARD: Path = Path { segments: &FAR_EAST };
 
 static FIRST: Intersection = Intersection {
     id: 5,
@@ -40,9 +43,12 @@ static FIRST: Intersection = Intersection {
 static SECOND: Intersection = Intersection {
     id: 6,
     half: Distance::from_mm(4_000),
-    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(390_000), conflicts: 0b10 }],
+    approaches: &[
+        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(390_000), conflicts: 0b10 },
+        Approach { leg: 1, path: &FAR_EASTWARD, crossing: Position::from_mm(400_000), conflicts: 0b01 },
+    ],
 };
-static WAYS: [Itinerary; 2] = [
+static WAYS: [Itinerary; 3] = [
     Itinerary {
         path: &NORTHWARD,
         crossings: &[
@@ -54,6 +60,10 @@ static WAYS: [Itinerary; 2] = [
         path: &EASTWARD,
         crossings: &[Crossing { intersection: &FIRST, leg: 1, at: Position::from_mm(200_000) }],
     },
+    Itinerary {
+        path: &FAR_EASTWARD,
+        crossings: &[Crossing { intersection: &SECOND, leg: 1, at: Position::from_mm(400_000) }],
+    },
 ];
 
 /// Where both streets cross, along each.
@@ -64,7 +74,8 @@ pub const HALF: f64 = 4.0;
 /// A vehicle with its unit.
 pub struct Driver {
     pub rig: Rig,
-    pub leg: usize,
+    /// North, east, or east at the second intersection.
+    pub way: usize,
     pub body: plant::Plant,
     /// Its own axis begins so far before its street.
     pub axis: f64,
@@ -78,18 +89,18 @@ pub struct Driver {
 }
 
 impl Driver {
-    pub fn new(station: u8, leg: usize, at: f64, speed: f64, envelope: bool) -> Self {
+    pub fn new(station: u8, way: usize, at: f64, speed: f64, envelope: bool) -> Self {
         let mut config = config();
         config.station = StationHash(station);
         config.envelope = envelope.then_some(holdover::config::Envelope::CAR);
         let mut rig = Rig::new(&config);
         rig.power_up(true, 0);
-        rig.unit.set_out(&WAYS[leg]).unwrap();
+        rig.unit.set_out(&WAYS[way]).unwrap();
         let body = plant::Plant { position: at, speed, acceleration: 0.0, lag: 0.3 };
         let axis = 1_000.0 * f64::from(station);
         Self {
             rig,
-            leg,
+            way,
             body,
             axis,
             target_speed: speed,
@@ -104,9 +115,11 @@ impl Driver {
     pub fn geo(&self, at: i64) -> GeoPosition {
         let cm = (self.body.position * 100.0).round() as i32;
         let (tag, stamp) = ((at / 100_000 % 4) as u8, gnss(at, 0).stamp());
-        match self.leg {
+        let eastward = |latitude, begins| GeoPosition { tag, latitude, longitude: cm + begins, heading: 7_200, stamp };
+        match self.way {
             0 => GeoPosition { tag, latitude: cm, longitude: 0, heading: 0, stamp },
-            _ => GeoPosition { tag, latitude: 20_000, longitude: cm - 20_000, heading: 7_200, stamp },
+            1 => eastward(20_000, -20_000),
+            _ => eastward(39_000, -40_000),
         }
     }
 

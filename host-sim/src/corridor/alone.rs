@@ -90,3 +90,40 @@ fn to_stop_line(own: &Sighting, network: &Network) -> Option<f64> {
     let gap_m = lines.filter(|gap_m| *gap_m >= 0.0).min_by(f64::total_cmp)?;
     (own.speed_mps * own.speed_mps <= 2.0 * HARDEST_MPS2 * gap_m).then_some(gap_m)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::read::corridor;
+    use super::*;
+
+    #[test]
+    fn it_stops_at_the_line_for_those_who_cross_and_for_nobody_else() {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let network = Network::of(&corridor);
+        let stop = network.lanes[0].stops[0];
+        let line_m = stop.at_m - network.junctions[stop.intersection].half_m - LINE_M;
+        let own = |before_m: f64| Sighting {
+            trip: 0,
+            road: 0,
+            way_m: line_m - before_m,
+            length_m: 4.8,
+            speed_mps: 10.0,
+            odometer_m: 0.0,
+            next: None,
+            followed: None,
+            belief: None,
+            limited: false,
+            dark: false,
+        };
+        let wanted = |before_m, waits| demand(&own(before_m), &[], &network, &corridor.traffic, waits);
+        assert!(wanted(30.0, true) < -1.0 && wanted(30.0, false) > 0.0, "{}", wanted(30.0, true));
+        // From 10 m/s with 4 m/s² it takes 12.5 m to stop.
+        assert!(wanted(12.6, true) < -3.0);
+        assert_eq!(wanted(12.4, true), wanted(12.4, false));
+        let ahead = Sighting { way_m: line_m - 10.0, speed_mps: 0.0, trip: 1, ..own(0.0) };
+        assert!(demand(&own(30.0), &[ahead], &network, &corridor.traffic, false) < -3.0);
+    }
+}

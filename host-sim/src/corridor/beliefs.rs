@@ -182,8 +182,6 @@ impl Watch for Beliefs<'_> {
 mod tests {
     use std::path::Path;
 
-    use holdover::controller::Mode;
-
     use super::super::read::corridor;
     use super::*;
     use crate::world::{Bounds, TargetBelief};
@@ -197,7 +195,6 @@ mod tests {
             speed_mps: 10.0,
             odometer_m: 500.0,
             next: None,
-            mode: Mode::Cooperative,
             followed: None,
             belief: None,
             limited: false,

@@ -258,7 +258,6 @@ impl<'a> Traffic<'a> {
             speed_mps: vehicle.plant.speed_mps,
             odometer_m: traveller.ground.odometer_m,
             next: vehicle.unit.coordination().crossing().map(|crossing| usize::from(crossing.intersection.id)),
-            mode: vehicle.unit.mode(),
             followed: followed(vehicle),
             belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
             limited: vehicle.limited,

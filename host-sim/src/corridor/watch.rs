@@ -1,6 +1,5 @@
 //! Watching a run: what those who watch it are shown of every vehicle at every tick.
 
-use holdover::controller::Mode;
 use holdover::wire::StationHash;
 
 use crate::world::TargetBelief;
@@ -23,8 +22,6 @@ pub struct Sighting {
     /// The intersection that its unit takes for the next one: its virtual lane is that one's. Between two reviews it may be
     /// one that the vehicle has just left.
     pub next: Option<usize>,
-    /// Its unit's mode.
-    pub mode: Mode,
     /// Whom its unit follows.
     pub followed: Option<StationHash>,
     /// Where its unit believes that one is, on its own odometer's axis.
