@@ -1,13 +1,13 @@
-//! How gently the ego makes way for one that comes by a leg that crosses its own: the way to the conflict area and its speed enter,
-//! a limit on its braking leaves.
+//! How gently the ego makes way for one that comes by another leg: the way to the conflict area and its speed enter, a limit on
+//! its braking leaves.
 
 use crate::fixed::{quotient, saturate_i32};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
 
-/// How hard the ego brakes, at most, to make way for one on a crossing leg: the last of these by which it would still come to
-/// a stand before the conflict area. The order may put somebody ahead who is just as near, and the law then asks for a gap of tens
-/// of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot hear it has the less to be
-/// surprised by: in 4 s of the last, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
+/// How hard the ego brakes, at most, to make way for one on another leg, whether that crosses the ego's or not: the last of these
+/// by which it would still come to a stand before the conflict area. The order may put somebody ahead who is just as near, and
+/// the law then asks for a gap of tens of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot
+/// hear it has the less to be surprised by: in 4 s of the last, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
 const GENTLE_MM_PER_S2: [i32; 3] = [1_500, 1_000, 600];
 
 /// What it takes until the brakes are on.

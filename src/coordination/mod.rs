@@ -49,7 +49,7 @@ pub(crate) const REVIEW: Duration = Duration::from_millis(100);
 /// only on its way, or lost once or twice, costs nothing.
 pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 
-/// The ego follows one that comes by a crossing leg only so long after it has heard of it, if it still can stop gently then, and
+/// The ego follows one that comes by another leg only so long after it has heard of it, if it still can stop gently then, and
 /// its own horizon says so from the beginning: as long as the longest silence that nobody is to be surprised by, and until
 /// the next message is heard.
 pub(crate) const ANNOUNCED: Duration = Duration::from_millis(4_500);
@@ -336,16 +336,20 @@ impl<const PEERS: usize> Coordination<PEERS> {
     }
 
     /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
-    /// there: if that one comes by a leg that crosses its own, the more so the farther the conflict area is.
+    /// there: if that one comes by another leg, the more so the farther the conflict area is.
     pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {
-        let Some(crossing) = self.crossed(standing, next) else { return Gentleness::NONE };
-        let Some(point) = self.crossing_point(crossing) else { return Gentleness::NONE };
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
+        let shared = crossing.filter(|crossing| standing.crossing == next && standing.leg != crossing.leg);
+        let Some((crossing, point)) = shared.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)))
+        else {
+            return Gentleness::NONE;
+        };
         Gentleness::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
     }
 
     /// Whether the ego, with its front bumper there, at this speed and with that crossing next, follows one that stands there: who
-    /// comes by another leg is followed when the others have been told for long enough. Sooner only if that leg crosses the ego's
-    /// and the ego could not stop gently any more.
+    /// comes by another leg is followed when the others have been told for long enough, or else only where the ego could not
+    /// stop gently any more.
     pub(crate) fn is_announced(
         &self,
         standing: &Standing,
@@ -354,17 +358,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         front: Position,
         speed: Speed,
     ) -> bool {
-        let is_urgent = match self.crossed(standing, next) {
-            Some(_) => self.gentleness(standing, next, front, speed) == Gentleness::NONE,
-            None => self.is_on_lane(standing),
-        };
-        is_urgent || at.since(standing.since) >= ANNOUNCED
-    }
-
-    /// That crossing, if one that stands there comes by a leg that crosses the ego's.
-    fn crossed(&self, standing: &Standing, next: usize) -> Option<&'static Crossing> {
-        let crossing = self.itinerary?.crossings.get(next).filter(|_| standing.crossing == next)?;
-        crossing.intersection.conflict(crossing.leg, standing.leg).then_some(crossing)
+        at.since(standing.since) >= ANNOUNCED || self.gentleness(standing, next, front, speed) == Gentleness::NONE
     }
 
     /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.

@@ -217,7 +217,7 @@ fn one_of_two_that_head_for_the_same_place_gives_way() {
 }
 
 #[test]
-fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_it_crosses_and_no_gentle_stop_is_left() {
+fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gentle_stop_is_left() {
     const fn approach(leg: u8, conflicts: u8) -> Approach {
         Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
     }
@@ -237,7 +237,7 @@ fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_it_cro
     let gentle_until = 196_000 - 10_000 - 33_333;
     for (front, is_far) in [(0, true), (gentle_until - 1, true), (gentle_until + 1, false), (195_000, false)] {
         for (ms, is_told) in [(0, false), (4_499, false), (4_500, true), (60_000, true)] {
-            for (leg, is_followed) in [(0, true), (1, is_told || !is_far), (2, is_told)] {
+            for (leg, is_followed) in [(0, true), (1, is_told || !is_far), (2, is_told || !is_far)] {
                 let (since, claim) = (at(3), Predecessor::Unknown);
                 let standing = Standing { crossing: 0, leg, arrival: None, claim, heard: since, since };
                 let (front, speed) = (Position::from_mm(front), Speed::from_mm_per_s(10_000));

@@ -5,6 +5,7 @@ use crate::config::{Config, Link as Limits};
 use crate::estimator::bound::Doubt;
 use crate::time::{GnssTime, Instant};
 use crate::units::{Acceleration, Position, Speed};
+use crate::wire::horizon::{KNOTS, Knot, Knots};
 
 const LIMITS: Limits = Config::car(StationHash(0)).link;
 /// Everybody is believed here; plausibility has its own facts.
@@ -121,7 +122,6 @@ fn another_station_gets_the_slot_after_a_silence_and_finds_it_empty() {
 
 #[test]
 fn a_horizon_belongs_to_the_sample_with_its_tag_while_that_is_the_newest() {
-    use crate::wire::horizon::{KNOTS, Knot, Knots};
     let knots = Knots { tag: 2, knots: [Knot::default(); KNOTS] };
     let mut track = track([]);
     assert!(!track.foresee(at(90), knots), "of no sample");
@@ -133,7 +133,6 @@ fn a_horizon_belongs_to_the_sample_with_its_tag_while_that_is_the_newest() {
 
 #[test]
 fn a_horizon_of_the_tags_last_round_belongs_to_no_sample() {
-    use crate::wire::horizon::{KNOTS, Knot, Knots};
     let mut track = track([]);
     assert!(track.admit(Sample { tag: 2, ..sample(100, 100) }, &DOUBT, &LIMITS).is_ok());
     assert!(track.foresee(at(101), Knots { tag: 2, knots: [Knot::default(); KNOTS] }));
@@ -155,4 +154,22 @@ fn a_slot_beyond_the_capacity_is_refused_and_a_station_is_found_by_its_name() {
     let admitted = peers.get_mut(Slot(1)).map(|track| track.admit(sample(100, 100), &DOUBT, &LIMITS));
     assert_eq!(admitted, Ok(Ok(Admission::News)));
     assert_eq!(peers.index_of(StationHash(1)), Some(1));
+}
+
+#[test]
+fn a_horizon_that_was_overtaken_with_its_sample_does_not_displace_the_newest_one_s() {
+    let mut track = track::<0>([]);
+    let tagged = |true_at, received, tag| Sample { tag, ..sample(true_at, received) };
+    let knots = |tag| Knots { tag, knots: [Knot::default(); KNOTS] };
+    track.admit(tagged(300, 310, 0), &DOUBT, &LIMITS).unwrap();
+    assert!(track.foresee(at(310), knots(0)));
+    for (true_at, tag) in [(200, 3), (100, 2)] {
+        assert_eq!(track.admit(tagged(true_at, 311, tag), &DOUBT, &LIMITS), Ok(Admission::History));
+        assert!(!track.foresee(at(311), knots(tag)));
+        assert_eq!(track.knots(), Some(&knots(0)), "{tag}");
+    }
+    // One that is ahead of its sample waits for it.
+    assert!(!track.foresee(at(400), knots(1)));
+    track.admit(tagged(400, 401, 1), &DOUBT, &LIMITS).unwrap();
+    assert_eq!(track.knots(), Some(&knots(1)));
 }

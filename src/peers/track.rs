@@ -199,8 +199,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         is_new
     }
 
-    /// Takes in the horizon that the station computed; whether it belongs to the newest sample.
+    /// Takes in the horizon that the station computed; whether it belongs to the newest sample. One that was overtaken together
+    /// with its sample does not displace the newest one's; one that has overtaken its sample waits for it.
     pub fn foresee(&mut self, received: Instant, knots: Knots) -> bool {
+        let behind = self.newest().map_or(0, |newest| newest.tag.wrapping_sub(knots.tag) % 4);
+        if matches!(behind, 1 | 2) && self.knots().is_some() {
+            return false;
+        }
         self.knots = Some((received, knots));
         self.knots().is_some()
     }

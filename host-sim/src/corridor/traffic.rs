@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::rc::Rc;
 
+use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
 use holdover::health::Refusal;
 use holdover::time::Instant;
@@ -213,9 +214,7 @@ impl<'a> Traffic<'a> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone(at_s);
         }
-        if self.conditions.envelope.engaged {
-            self.run_out();
-        }
+        self.run_out();
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
         let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
         self.tally.on_way += sightings.len() as u64;
@@ -277,11 +276,21 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Who has left drives on by sight. The one ahead of it vanishes without a word, and for all that is certain it stands there:
-    /// each would wait for that, and all behind it, back onto the way.
+    /// Who has left and has lost whom it follows drives on by sight: the one ahead of it vanishes without a word, and for all that
+    /// is known it stands there. Each would wait for that, and all behind it, back onto the way. With the envelope everyone who
+    /// has left does, as what is certain of the one ahead counts then.
     fn run_out(&mut self) {
+        let is_lost = |vehicle: &Vehicle| matches!(vehicle.unit.mode(), Mode::Fallback { .. });
+        let by_sight = |traveller: &Traveller| {
+            traveller.has_left && (self.conditions.envelope.engaged || is_lost(&traveller.vehicle))
+        };
+        let all: Vec<usize> =
+            self.travellers.values().filter(|one| by_sight(one)).map(|traveller| traveller.trip).collect();
+        if all.is_empty() {
+            return;
+        }
         let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
-        for traveller in self.travellers.values_mut().filter(|traveller| traveller.has_left) {
+        for traveller in self.travellers.values_mut().filter(|traveller| all.contains(&traveller.trip)) {
             let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
             let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, true);
             traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
