@@ -37,7 +37,7 @@ pub use time::{EPOCH_US, gnss, micros};
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
-pub const STEPS: usize = 862;
+pub const STEPS: usize = 1082;
 /// The simulated unit: the same core as on the ECU, with room for more peers and longer horizons.
 pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 

@@ -8,7 +8,7 @@
 
 use super::OnboardUnit;
 use crate::controller::Gains;
-use crate::coordination::{Entry, REVIEW, Standing};
+use crate::coordination::{Entry, REVIEW, Slots, Standing};
 use crate::estimator::Reading;
 use crate::peers::{Sample, Track};
 use crate::time::Instant;
@@ -23,10 +23,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Some(mut review) = review.map(|review| review.max(now)) else { return };
         let (mut crossing, mut gentleness) = (self.coordination.next(), self.coordination.choice().gentleness);
         let mut gains = self.association.map(|(_, gains)| gains);
+        let minded = self.minded(now, crossing);
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
-            let target = self.outlook(review, &own, crossing, manner.target);
+            let target = self.outlook(review, &own, crossing, minded, manner.target);
             let is_new = target != manner.target;
             let may = self.gentleness(target, crossing, own.position, own.speed);
             if is_new || may < gentleness {
@@ -49,16 +50,42 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(Gains::look_up(&self.config.law, own.speed, ahead.speed, headway))
     }
 
+    /// Whom it may follow one day, with that crossing next: who is ahead on its leg now, and nobody passes there; who is ahead in the
+    /// order; and who has come to a later crossing.
+    fn minded(&self, now: Instant, next: usize) -> Slots {
+        let mut minded = Slots::NONE;
+        let Some(own) = self.estimator.read_own(now) else { return minded };
+        for index in 0..PEERS {
+            let is_minded = self.coordination.standing(index).is_some_and(|standing| {
+                if self.coordination.is_on_lane(standing) {
+                    self.estimator.read(index, now).is_some_and(|reading| reading.position > own.position)
+                } else {
+                    let is_ahead = || self.entry(index, standing).is_some_and(|entry| self.is_ahead(index, &entry));
+                    standing.crossing > next || standing.crossing == next && is_ahead()
+                }
+            });
+            minded.set(index, is_minded);
+        }
+        minded
+    }
+
     /// Whom the ego will follow, with that state and that crossing next, by the order and the horizons as they are
     /// known now. Who registers in between is not known.
-    fn outlook(&self, at: Instant, own: &Reading, crossing: usize, followed: Option<usize>) -> Option<usize> {
+    fn outlook(
+        &self,
+        at: Instant,
+        own: &Reading,
+        crossing: usize,
+        minded: Slots,
+        followed: Option<usize>,
+    ) -> Option<usize> {
         let (front, end) = (own.position, self.coordination.end_of(crossing));
         let is_later = crossing != self.coordination.next();
         let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
-        for index in 0..PEERS {
+        for index in (0..PEERS).filter(|index| minded.contains(*index)) {
             let Some(standing) = self.coordination.standing(index) else { continue };
             let is_on_lane = self.coordination.is_on_lane(standing);
-            // What needs no horizon is asked first: most of the others are neither on the leg nor ahead.
+            // What needs no horizon is asked first.
             let entry = self.entry(index, standing).filter(|entry| {
                 let is_ahead = is_later || self.is_ahead(index, entry);
                 is_ahead && standing.crossing == crossing && order.is_none_or(|(_, last)| last.is_before(entry))

@@ -1,10 +1,10 @@
 //! How right the units are about their targets: who is where and what the units believe enter, tick by tick; position errors
-//! on the virtual lane leave, in three classes.
+//! on the virtual lane leave, in two classes.
 //!
 //! A target's true place on the virtual lane is its own bumper if it drives on the same road, and otherwise as far before the
 //! crossing point as it is on its road. When a target's own association changes, what it will do changes with it, and
-//! nobody who heard it before could know: for [`CHANGED_S`] from then on the errors stand apart, and so do those of a unit
-//! that has heard nothing from the target since.
+//! who heard it before knows only what it has announced: for [`CHANGED_S`] from then on the errors stand apart. Those later on of a
+//! unit that has still heard nothing from the target since count, and are shown apart besides.
 
 use std::collections::BTreeMap;
 
@@ -87,7 +87,7 @@ pub struct Beliefs<'a> {
     pub settled: Class,
     /// It has changed within the last [`CHANGED_S`].
     pub changing: Class,
-    /// It has changed before that, and nothing has been heard from the target since.
+    /// Of the first class: it has changed before that, and nothing has been heard from the target since.
     pub unheard: Class,
     /// For each unit and target whose error was in the first class and beyond [`BEYOND_M`], the largest.
     pub beyond: BTreeMap<(usize, usize), Worst>,
@@ -152,9 +152,10 @@ impl Watch for Beliefs<'_> {
             let changed_s = self.associations.get(&target.trip).map_or(f64::NEG_INFINITY, |known| known.1);
             if at_s - changed_s < CHANGED_S {
                 self.changing.add(worst);
-            } else if at_s - belief.age_s < changed_s {
-                self.unheard.add(worst);
             } else {
+                if at_s - belief.age_s < changed_s {
+                    self.unheard.add(worst);
+                }
                 self.settled.add(worst);
                 if error_m.abs() > BEYOND_M {
                     let held = self.beyond.entry((own.trip, target.trip)).or_insert(worst);

@@ -26,7 +26,7 @@ pub struct Outcome {
     pub lowest_speed_mps: Option<f64>,
     /// Ticks of all vehicles, and those at which an envelope changed the command.
     pub ticks: [u64; 2],
-    /// Errors: settled, within a second of a change, unheard since.
+    /// Errors: settled, within a second of a change, and of the settled ones those unheard since.
     pub errors: [Class; 3],
     /// Pairs of a unit and its target whose settled error was beyond 0.2 m.
     pub beyond: usize,
