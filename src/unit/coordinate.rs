@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::OnboardUnit;
 use crate::coordination::{
-    Arrival, Crossing, Entry, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
+    Arrival, Crossing, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
 };
 use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
@@ -174,9 +174,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             else {
                 continue;
             };
-            let Some(station) = self.peers.get(index).and_then(|track| track.station()) else { continue };
+            let Some(entry) = self.entry(index, standing) else { continue };
             if self.coordination.is_here(standing) {
-                let entry = Entry { station, arrival: standing.arrival, claim: standing.claim };
                 let has_left = self.has_left(rear);
                 let side = if reading.position > front { Side::Ahead } else { Side::Behind };
                 let takes_along = side == Side::Behind || !is_committed;

@@ -114,7 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// A peer in the order.
-    fn entry(&self, index: usize, standing: &Standing) -> Option<Entry> {
+    pub(super) fn entry(&self, index: usize, standing: &Standing) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
         Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
     }

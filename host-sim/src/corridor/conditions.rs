@@ -9,7 +9,7 @@ use crate::scenario::Envelope;
 use crate::vehicle::{distance, duration, fine_seconds, seconds, speed, station};
 use crate::world::horizon;
 
-/// What is done when the link to the target is lost.
+/// What is done when the link to whoever is just ahead is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhenLost {
     /// What the unit does: it goes by its estimate.

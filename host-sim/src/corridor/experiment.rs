@@ -32,7 +32,7 @@ pub struct Sides {
     pub holdover: Side,
     /// With a link without delay, loss and silence.
     pub perfect_link: Side,
-    /// With vehicles that drive alone while the link to their target is lost.
+    /// With vehicles that drive alone while the link to whoever is just ahead is lost.
     pub alone: Side,
     /// As the scenario says, with the envelope the other way round.
     pub envelope: Side,

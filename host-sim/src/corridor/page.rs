@@ -27,7 +27,7 @@ pub fn render(
         [Cell::text(name.trim())].into_iter().chain(cells).collect()
     };
     let caption = "All seeds together. Beside what the scenario describes: the same trips with a link without delay, loss and \
-                   silence; with vehicles that drive alone while the link to their target is lost (an ideal range sensor and \
+                   silence; with vehicles that drive alone while the link to whoever is just ahead is lost (an ideal range sensor and \
                    adaptive cruise control on the same road, the stop line at an intersection); and with the envelope the \
                    other way round.";
     page.table(caption, &header, &LINES.iter().map(row).collect::<Vec<Vec<Cell>>>());
