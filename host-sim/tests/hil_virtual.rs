@@ -89,7 +89,7 @@ fn a_silent_device_is_a_verdict() {
         let setup = setup(SHORT, &[]);
         let (port, mut rig) = bench(Behaviour::good(setup.config, !lock_step)); // waits for what never comes
         rig.power(false).unwrap();
-        let mut rig = NoPower(rig);
+        let mut rig = NoPower { rig, ended: None };
         let outcome = match lock_step {
             true => lock_step::run(&setup, port, &mut rig, |_| {}),
             false => session::run(&setup, port, &mut rig, |_| {}),
@@ -136,6 +136,23 @@ fn a_late_harness_is_inconclusive_whatever_the_device_does() {
     assert_eq!((results.verdict, results.code()), ("inconclusive", Verdict::Inconclusive));
     assert!(results.reasons[0].starts_with("the harness was 5"), "{:?}", results.reasons);
     assert!(results.timing.harness.lateness.max_ms.unwrap() > 50.0);
+}
+
+#[test]
+fn a_device_whose_process_ended_has_failed_however_late_the_harness_was() {
+    let setup = setup(SHORT, &[]);
+    let mut behaviour = Behaviour::good(setup.config, false);
+    behaviour.stall = Some((Duration::from_millis(1_500), Duration::from_millis(60)));
+    behaviour.dies_after = Some(Duration::from_millis(2_000));
+    for (ended, verdict) in [(Some("exit status: 7"), Verdict::Failed), (None, Verdict::Inconclusive)] {
+        let (port, rig) = bench(behaviour.clone());
+        let mut rig = NoPower { rig, ended };
+        let results = judge(&setup, &session::run(&setup, port, &mut rig, |_| {}).unwrap());
+        assert_eq!(results.code(), verdict, "{:?}", results.reasons);
+        let says_late = results.reasons.iter().any(|reason| reason.starts_with("the harness was "));
+        assert_eq!(says_late, ended.is_none(), "{:?}", results.reasons);
+        assert!(results.reasons.last().unwrap().starts_with("the device is gone"), "{:?}", results.reasons);
+    }
 }
 
 #[test]
@@ -194,7 +211,11 @@ fn one_step_too_much(frame: Frame) -> Frame {
 }
 
 /// Nobody can give the device power.
-struct NoPower(VirtualRig);
+struct NoPower {
+    rig: VirtualRig,
+    /// How its process ended.
+    ended: Option<&'static str>,
+}
 
 impl Rig for NoPower {
     fn power(&mut self, _: bool) -> io::Result<()> {
@@ -202,14 +223,14 @@ impl Rig for NoPower {
     }
 
     fn interface(&mut self, up: bool) -> io::Result<()> {
-        self.0.interface(up)
+        self.rig.interface(up)
     }
 
     fn villain(&mut self) -> io::Result<&mut dyn Port> {
-        self.0.villain()
+        self.rig.villain()
     }
 
     fn has_ended(&mut self) -> Option<String> {
-        None
+        self.ended.map(str::to_owned)
     }
 }

@@ -1,6 +1,7 @@
 //! The judge: an outcome and the limits enter, figures and a verdict with its reasons leave.
 //!
-//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device.
+//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device. Only
+//! a device whose process has ended by itself has failed however late the harness was.
 
 use std::collections::BTreeMap;
 
@@ -134,7 +135,8 @@ pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let faults = recoveries(setup, outcome);
     let own = inconclusive(outcome, &timing);
     let failed = failed(setup, outcome, &device, &deviation, &timing, &faults, &scenario);
-    let (verdict, reasons) = match (own.is_empty(), failed.is_empty()) {
+    let has_ended = outcome.cut.as_ref().is_some_and(Cut::has_ended);
+    let (verdict, reasons) = match (own.is_empty() || has_ended, failed.is_empty()) {
         (false, _) => ("inconclusive", own.into_iter().chain(failed).collect()),
         (true, false) => ("failed", failed),
         (true, true) => ("passed", Vec::new()),

@@ -32,6 +32,14 @@ pub enum Cut {
     },
 }
 
+impl Cut {
+    /// Whether the device's process ended by itself.
+    #[must_use]
+    pub const fn has_ended(&self) -> bool {
+        matches!(self, Self::Silent { ended: Some(_), .. } | Self::Gone { ended: Some(_), .. })
+    }
+}
+
 /// The frames of lock step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Steps {
