@@ -4,7 +4,7 @@ mod rig;
 
 use holdover::health::Refusal;
 use holdover::wire::route::Route;
-use holdover::wire::{Message, Predecessor, Said, StationHash};
+use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 use rig::plant;
 
@@ -308,29 +308,50 @@ fn another_station_in_a_live_slot_does_not_move_the_axis() {
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
 }
 
+/// The first one hears in that slot of a station that is so many metres before the crossing; what became of its motion.
+fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> Result<(), Refusal> {
+    let (now, slot) = (junction.now, Slot(slot));
+    let rig = &mut junction.drivers[0].rig;
+    let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
+    let route = Route {
+        tag: motion.tag,
+        intersection: 5,
+        leg: 1,
+        distance: rig::metres(metres),
+        stamp: motion.stamp,
+        arrival: 1,
+        predecessor: Predecessor::None,
+    };
+    let _ = rig.put(now, &Message::Peer(slot, Said::Route(route)));
+    rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
+}
+
+#[test]
+fn a_station_that_was_refused_in_a_free_slot_is_known_there_after_a_silence_in_its_own() {
+    let mut junction = settled(two(15.0, false));
+    junction.run(2.0, |_| {});
+    for metres in [90.0, 89.5, 89.0] {
+        let _ = says(&mut junction, 2, 77, metres);
+        junction.run(0.1, |_| {});
+    }
+    let slot_of = |junction: &Junction| junction.drivers[0].rig.unit.peers().index_of(StationHash(77));
+    assert_eq!(slot_of(&junction), Some(2));
+    let _ = says(&mut junction, 3, 77, 88.5); // the first frame of an identifier is not trusted
+    assert_eq!(says(&mut junction, 3, 77, 88.5), Err(Refusal::StationConflict));
+    junction.run(2.0, |_| {});
+    for metres in [78.0, 77.5] {
+        says(&mut junction, 3, 77, metres).unwrap();
+        junction.run(0.1, |_| {});
+    }
+    assert_eq!(slot_of(&junction), Some(3));
+}
+
 #[test]
 fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_was_in_another() {
     let mut junction = settled(two(15.0, false));
     junction.run(2.0, |_| {});
-    let slot = holdover::wire::Slot(2);
-    let says = |junction: &mut Junction, station: u8, metres: f64| {
-        let now = junction.now;
-        let rig = &mut junction.drivers[0].rig;
-        let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
-        let route = Route {
-            tag: motion.tag,
-            intersection: 5,
-            leg: 1,
-            distance: rig::metres(metres),
-            stamp: motion.stamp,
-            arrival: 1,
-            predecessor: Predecessor::None,
-        };
-        rig.put(now, &Message::Peer(slot, Said::Route(route))).expect("a route is taken note of");
-        rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
-    };
     for metres in [90.0, 89.5, 89.0] {
-        let _ = says(&mut junction, 77, metres);
+        let _ = says(&mut junction, 2, 77, metres);
         junction.run(0.1, |_| {});
     }
     junction.run(2.5, |_| {});
@@ -342,6 +363,6 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let before = held(&junction);
     assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
     // The one in slot 1 speaks in slot 2.
-    assert_eq!(says(&mut junction, 2, 20.0), Err(Refusal::StationConflict));
+    assert_eq!(says(&mut junction, 2, 2, 20.0), Err(Refusal::StationConflict));
     assert_eq!(held(&junction), before);
 }

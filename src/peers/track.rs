@@ -104,6 +104,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.intent.as_ref()
     }
 
+    /// Until when its newest sample's own horizon reaches, if that came.
+    #[must_use]
+    pub fn told_until(&self) -> Option<Instant> {
+        let (_, intent, newest) = (self.knots()?, self.intent()?, self.newest()?);
+        Some(newest.at.plus(Duration::from_millis(100).times(i64::from(intent.horizon_tenths))))
+    }
+
     /// The horizon that it computed from its newest sample, if that came.
     #[must_use]
     pub fn knots(&self) -> Option<&Knots> {
@@ -131,6 +138,11 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// Takes note of a motion of another station that is refused.
     pub fn dispute(&mut self) {
         self.is_disputed = true;
+    }
+
+    /// Takes note that the slot is the station's that speaks now.
+    pub fn settle(&mut self) {
+        self.is_disputed = false;
     }
 
     /// Takes a sample in, or refuses it by the first rule that it breaks:
@@ -171,7 +183,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
         let admission = self.insert(sample)?;
         self.link.heard(sample.received, sample.at);
-        self.is_disputed = false;
+        self.settle();
         Ok(admission)
     }
 

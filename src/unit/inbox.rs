@@ -154,6 +154,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if holder.is_some() {
             self.vacate(index);
         }
+        // Its motion is taken only when its place is known, and that only if what else it says is.
+        self.peers.get_mut(slot)?.settle();
         Ok(left)
     }
 
