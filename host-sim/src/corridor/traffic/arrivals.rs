@@ -8,6 +8,7 @@ use holdover::wire::Predecessor;
 use holdover::wire::ego_intent::EgoIntent;
 
 use super::{Traffic, Traveller};
+use crate::channel::Window;
 use crate::corridor::conditions::config;
 use crate::corridor::globe::Shift;
 use crate::corridor::map::number;
@@ -30,7 +31,8 @@ pub(super) const LISTENING_S: f64 = 1.0;
 /// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
 const ENTRY_BRAKING_MPS2: f64 = 2.0;
 
-/// Nobody appears nearer than this behind a vehicle that is silent at that moment or within [`HEARD_S`], in metres.
+/// Nobody appears nearer than this, in metres, behind a vehicle that it has not heard for the last [`LISTENING_S`], or will not
+/// for the next [`HEARD_S`].
 const UNHEARD_M: f64 = 100.0;
 
 impl Traffic<'_> {
@@ -51,14 +53,17 @@ impl Traffic<'_> {
         Ok(())
     }
 
-    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and does not happen
-    /// to be silent near by, or to fall silent at once. Who comes up behind somebody has long heard of it; one that appears out of nothing has not.
+    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and, if it is near,
+    /// neither of the two happens to have been silent just before, nor the one ahead to fall silent at once. Who comes up behind
+    /// somebody has long heard of it; one that appears out of nothing has not.
     fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
-        if (last.is_dark(at_s) || last.is_dark(at_s + HEARD_S)) && gap_m < UNHEARD_M {
+        let was_silent = |dark: Window| dark.from_s.max(at_s - LISTENING_S) < dark.to_s.min(at_s);
+        let is_unheard = was_silent(last.dark) || was_silent(trip.dark(&self.conditions.radio));
+        if (is_unheard || last.is_dark(at_s) || last.is_dark(at_s + HEARD_S)) && gap_m < UNHEARD_M {
             return false;
         }
         let (v, w) = (trip.speed_mps, last.vehicle.plant.speed_mps);
