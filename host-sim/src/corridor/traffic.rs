@@ -37,7 +37,7 @@ mod arrivals;
 use arrivals::LISTENING_S;
 
 /// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
-pub const RUN_OUT_M: f64 = 100.0;
+pub const RUN_OUT_M: f64 = 60.0;
 
 /// A vehicle on the roads.
 struct Traveller {
