@@ -83,7 +83,10 @@ pub struct Coordination<const PEERS: usize> {
     overlooked: [Held<Instant>; PEERS],
     claim: Held<StationHash>,
     choice: Choice,
-    reviewed: Held<Instant>,
+    /// When the next review is due: others have been told what will be found then.
+    due: Held<Instant>,
+    /// Whether there is one before that.
+    at_once: bool,
 }
 
 impl<const PEERS: usize> Coordination<PEERS> {
@@ -98,7 +101,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
             overlooked: [Held::Nothing; PEERS],
             claim: Held::Nothing,
             choice: Choice::NONE,
-            reviewed: Held::Nothing,
+            due: Held::Nothing,
+            at_once: false,
         }
     }
 
@@ -122,7 +126,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.overlooked = [Held::Nothing; PEERS];
         self.claim.clear();
         self.choice = Choice::NONE;
-        self.reviewed.clear();
+        self.due.clear();
+        self.at_once = false;
     }
 
     /// The ego's way, if it has one.
@@ -231,18 +236,18 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// Whether a review is due.
     pub(crate) fn is_due(&self, now: Instant) -> bool {
-        self.itinerary.is_some() && self.reviewed.get().is_none_or(|last| now.since(last) >= REVIEW)
+        self.itinerary.is_some() && (self.at_once || self.due.get().is_none_or(|due| now >= due))
     }
 
     /// When the next review is due.
     pub(crate) fn next_review(&self) -> Option<Instant> {
         self.itinerary?;
-        Some(self.reviewed.get()?.plus(REVIEW))
+        self.due.get()
     }
 
-    /// What was found at the last review does not hold any more: the next one is due.
+    /// What was found at the last review does not hold any more: there is one more before the next.
     pub(crate) fn review_at_once(&mut self) {
-        self.reviewed.clear();
+        self.at_once = true;
     }
 
     /// Brings the ego on to the crossing that its front bumper at this position, and its length, make the next one.
@@ -266,7 +271,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// Reviews who is here. Gives whether the ego gave way to one that overlooked it.
     pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
-        self.reviewed.set(now);
+        self.at_once = false;
+        self.due.set(match self.due.get() {
+            Some(due) if now < due => due,
+            Some(due) if now.since(due) < REVIEW => due.plus(REVIEW),
+            _ => now.plus(REVIEW),
+        });
         let Some(registration) = self.registration.get() else { return false };
         let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
         // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
