@@ -24,7 +24,7 @@ mod relevance;
 pub use relevance::{Ahead, Course, LEADERS, Rank};
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
-pub const PEERS: usize = 12;
+pub const PEERS: usize = 16;
 
 /// Slots of the firmware.
 pub const ECU_PEERS: usize = 8;
