@@ -16,6 +16,19 @@ static SEGMENTS: [Segment; 1] = [Segment {
 }];
 static PATH: Path = Path { segments: &SEGMENTS };
 
+const fn approach(leg: u8, conflicts: u8) -> Approach {
+    Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
+}
+
+// Leg 2 comes the other way along the same street.
+static INTERSECTION: Intersection = Intersection {
+    id: 1,
+    half: Distance::from_mm(4_000),
+    approaches: &[approach(0, 0b010), approach(1, 0b101), approach(2, 0b010)],
+};
+static CROSSINGS: [Crossing; 1] = [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
+static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
+
 fn entry(station: u8, arrival: u32, claim: Option<u8>) -> Entry {
     let claim = claim.map_or(Predecessor::None, |station| Predecessor::Station(StationHash(station)));
     Entry { station: StationHash(station), arrival: Some(Arrival(arrival)), claim }
@@ -218,18 +231,6 @@ fn one_of_two_that_head_for_the_same_place_gives_way() {
 
 #[test]
 fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gentle_stop_is_left() {
-    const fn approach(leg: u8, conflicts: u8) -> Approach {
-        Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
-    }
-    // Leg 2 comes the other way along the same street.
-    static INTERSECTION: Intersection = Intersection {
-        id: 1,
-        half: Distance::from_mm(4_000),
-        approaches: &[approach(0, 0b010), approach(1, 0b101), approach(2, 0b010)],
-    };
-    static CROSSINGS: [Crossing; 1] =
-        [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
-    static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
     let mut coordination: Coordination<8> = Coordination::idle();
     coordination.set_out(&ITINERARY).unwrap();
     coordination.locate(Position::ZERO, Position::ZERO);
@@ -247,4 +248,25 @@ fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gen
             }
         }
     }
+}
+
+#[test]
+fn a_review_at_once_does_not_move_the_times_of_the_others() {
+    let mut coordination: Coordination<8> = Coordination::idle();
+    coordination.set_out(&ITINERARY).unwrap();
+    let after = |ms| at(0).plus(Duration::from_millis(ms));
+    let mut review = |ms| {
+        coordination.review_at_once();
+        assert!(coordination.is_due(after(ms)));
+        let _ = coordination.review(after(ms), StationHash(1), &[]);
+        assert!(!coordination.is_due(after(ms)));
+        coordination.next_review()
+    };
+    assert_eq!(review(0), Some(after(100)));
+    assert_eq!(review(70), Some(after(100)));
+    assert_eq!(review(99), Some(after(100)));
+    // A tick that comes late does not move them either, unless it is one too many.
+    assert_eq!(review(103), Some(after(200)));
+    assert_eq!(review(299), Some(after(300)));
+    assert_eq!(review(450), Some(after(550)));
 }

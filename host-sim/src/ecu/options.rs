@@ -90,7 +90,7 @@ mod tests {
         let ids: Vec<u16> = identifiers(BaseId::DEFAULT).collect();
         assert_eq!(ids.len(), 7 + 6 * PEERS);
         assert!(ids.contains(&0x480) && ids.contains(&0x4C0) && ids.contains(&(0x4C0 + 8 * 7 + 5)));
-        assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * 12)));
+        assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * u16::try_from(PEERS).unwrap())));
     }
 
     #[test]

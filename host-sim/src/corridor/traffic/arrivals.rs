@@ -128,3 +128,62 @@ impl Traffic<'_> {
 fn refused(cause: &ConfigError) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the scenario: {cause}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::corridor::conditions::Conditions;
+    use crate::corridor::experiment::Experiment;
+    use crate::corridor::read::corridor;
+    use crate::corridor::watch::{Sighting, Watch};
+    use crate::plant::Kind;
+
+    /// When the second one appeared.
+    struct Second(Option<f64>);
+
+    impl Watch for Second {
+        fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+            if self.0.is_none() && sightings.iter().any(|one| one.trip == 1) {
+                self.0 = Some(at_s);
+            }
+        }
+        fn left(&mut self, _: f64, _: usize) {}
+    }
+
+    /// Two on one road, each with its arrival and when it falls silent after that: when the second one appears.
+    fn second_appears_s(first: (f64, f64), second: (f64, f64)) -> f64 {
+        let text = include_str!("../../../scenarios/corridor.toml");
+        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap());
+        let trip = |(at_s, dark_after_s)| Trip {
+            road: 0,
+            at_s,
+            speed_mps: 10.0,
+            kind: Kind::Car,
+            dark_after_s,
+            odometer_m: 0.0,
+        };
+        let trips = [trip(first), trip(second)];
+        let conditions = Conditions::of(&experiment.corridor);
+        assert_eq!((conditions.radio.dark_s, LISTENING_S), (4.0, 1.0));
+        let Experiment { corridor, network, itineraries } = &experiment;
+        let mut traffic = Traffic::new(corridor, network, itineraries, &trips, conditions, 1);
+        let mut second = Second(None);
+        traffic.advance(9.0, &mut [&mut second]).unwrap();
+        second.0.unwrap()
+    }
+
+    #[test]
+    fn nobody_appears_near_behind_a_vehicle_that_it_has_not_heard() {
+        let silent_later = 60.0;
+        // It has room, and both have been on the air.
+        assert_eq!(second_appears_s((0.0, silent_later), (3.0, silent_later)), 3.0);
+        // The one ahead is silent from 2 s to 6 s.
+        let appears_s = second_appears_s((0.0, 2.0), (4.0, silent_later));
+        assert!((7.0..7.02).contains(&appears_s), "{appears_s}");
+        // The newcomer is, while it waits for room.
+        let appears_s = second_appears_s((0.0, silent_later), (1.0, 0.5));
+        assert!((6.5..6.52).contains(&appears_s), "{appears_s}");
+    }
+}
