@@ -18,6 +18,8 @@ pub struct Choice {
     pub ahead: Slots,
     /// All that are ahead on the same leg. Nobody passes there: who was ahead for certain is, whatever is believed of him since.
     pub leading: Slots,
+    /// Who got out of reach far ahead, and has not been heard since.
+    pub lost: Slots,
 }
 
 impl Choice {
@@ -29,6 +31,7 @@ impl Choice {
         gentleness: Gentleness::NONE,
         ahead: Slots::NONE,
         leading: Slots::NONE,
+        lost: Slots::NONE,
     };
 
     /// Another station has this slot now.
@@ -38,6 +41,7 @@ impl Choice {
         }
         self.ahead.set(index, false);
         self.leading.set(index, false);
+        self.lost.set(index, false);
     }
 }
 

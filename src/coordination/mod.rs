@@ -345,6 +345,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.choice.leading = leading;
     }
 
+    /// Takes note of who got out of reach.
+    pub(crate) fn note_lost(&mut self, lost: Slots) {
+        self.choice.lost = lost;
+    }
+
     /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
     /// there: if that one comes by another leg, the more so the farther the conflict area is.
     pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {

@@ -195,6 +195,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
+        self.coordination.note_lost(self.lost(now, front));
         let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
         let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = lane.map(|(index, _)| index).filter(is_heeded);
@@ -210,11 +211,34 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Whether a peer matters to the ego with its front bumper there: who was far ahead when it was heard last has got out of
-    /// reach, and nobody is ahead then as far as it matters.
+    /// reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
+    /// whom nobody hears any more.
     pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
-        let silence = self.peers.get(index).and_then(|track| track.link().silence(at)).unwrap_or(Duration::MAX);
+        self.is_in_reach(index, at)
+            || !self.coordination.choice().lost.contains(index) && !self.is_far_ahead(index, at, front, speed)
+    }
+
+    fn is_in_reach(&self, index: usize, at: Instant) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+        silence.is_some_and(|silence| silence <= self.config.link.holdover)
+    }
+
+    fn is_far_ahead(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
         let heeded = front.ahead(HEEDED).ahead(speed.over(HEEDED_TIME)).ahead(speed.over(HEEDED_TIME));
-        silence <= self.config.link.holdover || self.rear(index, at).is_some_and(|(_, rear)| rear <= heeded)
+        self.rear(index, at).is_none_or(|(_, rear)| rear > heeded)
+    }
+
+    /// Who has got out of reach far ahead, driving on. Who stood when it was heard last still stands there.
+    fn lost(&self, now: Instant, front: Position) -> Slots {
+        let mut lost = self.coordination.choice().lost;
+        for index in 0..PEERS {
+            let drives_off = || {
+                let estimate = self.rear(index, now);
+                estimate.is_some_and(|(reading, rear)| rear > front.ahead(OUT_OF_REACH) && reading.speed > Speed::ZERO)
+            };
+            lost.set(index, !self.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
+        }
+        lost
     }
 
     /// Who is ahead of the ego's front bumper on its own leg by what is certain of it; who may be on either side is where it was.
@@ -351,6 +375,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 const HEEDED: Distance = Distance::from_mm(20_000);
 /// Half of the time, because the whole of it is beyond the format's 4 s.
 const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
+
+/// Who drives on silently so far ahead is not heard because it is too far away.
+const OUT_OF_REACH: Distance = Distance::from_mm(250_000);
 
 /// What lets the ego go on following who gets away from it, so that it does not take turns.
 const APART: Distance = Distance::from_mm(3_000);
