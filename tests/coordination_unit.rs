@@ -366,3 +366,28 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     assert_eq!(says(&mut junction, 2, 2, 20.0), Err(Refusal::StationConflict));
     assert_eq!(held(&junction), before);
 }
+
+/// Whether the ego follows a silent one, which is so far ahead when it is heard last and has this speed, where it is
+/// estimated to be when the ego comes near after 16 s of standing.
+fn is_caught_up(ahead: f64, speed: f64) -> bool {
+    let mut junction =
+        Junction::new(vec![Driver::new(1, 0, 5.0, 11.0, false), Driver::new(2, 0, 5.0 + ahead, speed, false)]);
+    junction.run(1.0, |_| {});
+    junction.drivers[1].speaks = false;
+    let stand = |junction: &mut Junction| {
+        let lag = junction.drivers[0].body.lag;
+        junction.drivers[0].body = plant::Plant { position: 5.0, speed: 0.0, acceleration: 0.0, lag };
+    };
+    junction.run(16.0, stand);
+    let mut is_followed = false;
+    junction.run(42.0, |junction| {
+        is_followed |= junction.drivers[0].rig.unit.coordination().choice().target.is_some();
+    });
+    is_followed
+}
+
+#[test]
+fn who_got_out_of_reach_driving_on_is_not_followed_any_more_and_who_was_near_is() {
+    assert!(!is_caught_up(285.0, 1.0));
+    assert!(is_caught_up(150.0, 1.0));
+}
