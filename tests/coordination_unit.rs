@@ -308,8 +308,9 @@ fn another_station_in_a_live_slot_does_not_move_the_axis() {
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
 }
 
-/// The first one hears in that slot of a station that is so many metres before the crossing; what became of its motion.
-fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> Result<(), Refusal> {
+/// The first one hears in that slot of a station that is so many metres before the crossing; what became of its route and
+/// of its motion.
+fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> [Result<(), Refusal>; 2] {
     let (now, slot) = (junction.now, Slot(slot));
     let rig = &mut junction.drivers[0].rig;
     let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
@@ -322,8 +323,7 @@ fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> Result<(
         arrival: 1,
         predecessor: Predecessor::None,
     };
-    let _ = rig.put(now, &Message::Peer(slot, Said::Route(route)));
-    rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
+    [Said::Route(route), Said::Motion(motion)].map(|said| rig.put(now, &Message::Peer(slot, said)))
 }
 
 #[test]
@@ -337,10 +337,10 @@ fn a_station_that_was_refused_in_a_free_slot_is_known_there_after_a_silence_in_i
     let slot_of = |junction: &Junction| junction.drivers[0].rig.unit.peers().index_of(StationHash(77));
     assert_eq!(slot_of(&junction), Some(2));
     let _ = says(&mut junction, 3, 77, 88.5); // the first frame of an identifier is not trusted
-    assert_eq!(says(&mut junction, 3, 77, 88.5), Err(Refusal::StationConflict));
+    assert_eq!(says(&mut junction, 3, 77, 88.5), [Ok(()), Err(Refusal::StationConflict)]);
     junction.run(2.0, |_| {});
     for metres in [78.0, 77.5] {
-        says(&mut junction, 3, 77, metres).unwrap();
+        says(&mut junction, 3, 77, metres)[1].unwrap();
         junction.run(0.1, |_| {});
     }
     assert_eq!(slot_of(&junction), Some(3));
@@ -351,7 +351,7 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let mut junction = settled(two(15.0, false));
     junction.run(2.0, |_| {});
     for metres in [90.0, 89.5, 89.0] {
-        let _ = says(&mut junction, 2, 77, metres);
+        says(&mut junction, 2, 77, metres)[0].expect("a route is taken note of");
         junction.run(0.1, |_| {});
     }
     junction.run(2.5, |_| {});
@@ -363,7 +363,7 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let before = held(&junction);
     assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
     // The one in slot 1 speaks in slot 2.
-    assert_eq!(says(&mut junction, 2, 2, 20.0), Err(Refusal::StationConflict));
+    assert_eq!(says(&mut junction, 2, 2, 20.0), [Ok(()), Err(Refusal::StationConflict)]);
     assert_eq!(held(&junction), before);
 }
 

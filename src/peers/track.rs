@@ -104,13 +104,6 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.intent.as_ref()
     }
 
-    /// Until when its newest sample's own horizon reaches, if that came.
-    #[must_use]
-    pub fn told_until(&self) -> Option<Instant> {
-        let (_, intent, newest) = (self.knots()?, self.intent()?, self.newest()?);
-        Some(newest.at.plus(Duration::from_millis(100).times(i64::from(intent.horizon_tenths))))
-    }
-
     /// The horizon that it computed from its newest sample, if that came.
     #[must_use]
     pub fn knots(&self) -> Option<&Knots> {
