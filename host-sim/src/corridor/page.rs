@@ -69,8 +69,8 @@ fn speed(page: &mut Page, loads: &[Load]) {
     page.section("How fast this is simulated");
     let said = proportion(loads).map_or(String::new(), |said| format!(" {said}."));
     page.paragraph(&format!(
-        "Corridors side by side, each with a seed of its own, at rates at which so many vehicles are under way on average (in \
-         parentheses: were); {SPAN_S} s of them, once the roads are full.{said}"
+        "Corridors side by side, each with a seed of its own, as many as it takes until so many vehicles are under way on \
+         average (in parentheses: were); {SPAN_S} s of them, once the roads are full.{said}"
     ));
     let rows: Vec<Vec<Cell>> = loads.iter().map(|load| scale_row(load).map(Cell::number).to_vec()).collect();
     page.table("Wall time on this machine, and how many cores the threads had of it.", &SCALE, &rows);

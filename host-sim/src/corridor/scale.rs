@@ -1,10 +1,10 @@
 //! How fast a corridor is simulated: a number of vehicles enters; how much faster than real time so many are leaves.
 //!
-//! So many vehicles under way at once take corridors side by side, as many as at the description's own rate of arrivals have
-//! that many (rate times mean travel time), with a seed each; rounded up, and the rate is that much less. Each thread has its
-//! share of the corridors. When the roads have filled, all threads wait for one another, and what follows is timed. All that a
-//! run has is there: radio, buses, units, bodies, those who watch. Vehicles that have left and drive on out of sight are
-//! simulated too, but not counted.
+//! So many vehicles under way at once take corridors side by side, with a seed each: as many as it takes until that many are
+//! under way on average in the time that is measured, and of the arrivals of all of them so many that it is just that many.
+//! Each thread has its share of the corridors, as even as whole corridors can be. When the roads have filled, all threads wait
+//! for one another, and what follows is timed. All that a run has is there: radio, buses, units, bodies, those who watch.
+//! Vehicles that have left and drive on out of sight are simulated too, but not counted.
 
 use std::io;
 use std::sync::Barrier;
@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::beliefs::Beliefs;
 use super::conditions::Conditions;
-use super::description::{Corridor, RoadPlan};
+use super::description::Corridor;
 use super::experiment::Experiment;
 use super::referee::Referee;
 use super::tally::Tally;
@@ -32,6 +32,9 @@ pub const SPAN_S: f64 = 30.0;
 
 /// Before, the roads fill for so many mean travel times.
 const FILL: f64 = 2.0;
+
+/// Roads by which hardly anybody comes are not laid more than so many times for each vehicle.
+const MOST_PER_VEHICLE: usize = 20;
 
 /// What it takes to simulate so many vehicles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -77,20 +80,15 @@ fn core_s() -> Option<f64> {
 /// A scenario that the units refuse.
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // numbers of vehicles
 pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f64) -> Result<Load, Error> {
-    let rate_hz = experiment.corridor.roads.iter().map(|road| road.vehicles_per_min).sum::<f64>() / 60.0;
-    let usual = rate_hz * travel_s;
-    let corridors = (vehicles as f64 / usual).ceil().max(1.0) as usize;
     let fill_s = FILL * travel_s;
-    let corridor = thinned(&experiment.corridor, vehicles as f64 / (usual * corridors as f64), fill_s + SPAN_S);
-    let seeds: Vec<u64> = (0..corridors as u64).map(|number| seed.wrapping_add(number)).collect();
+    let corridor = Corridor { duration_s: fill_s + SPAN_S, ..experiment.corridor.clone() };
+    let lots = lots(experiment, &corridor, seed, vehicles, travel_s);
+    let corridors = lots.len();
     let threads = rayon::current_num_threads().min(corridors);
     let full = Barrier::new(threads);
-    let share = |first: usize| {
-        let mine: Vec<u64> = seeds.iter().skip(first).step_by(threads).copied().collect();
-        drive(experiment, &corridor, &mine, fill_s, &full)
-    };
+    let share = |mine: &[Lot]| drive(experiment, &corridor, mine, fill_s, &full);
     let shares: Vec<io::Result<Share>> = thread::scope(|scope| {
-        let running: Vec<_> = (0..threads).map(|first| scope.spawn(move || share(first))).collect();
+        let running: Vec<_> = dealt(lots, threads).into_iter().map(|mine| scope.spawn(move || share(&mine))).collect();
         let ended =
             running.into_iter().map(|share| share.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
         ended.collect()
@@ -116,26 +114,63 @@ pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f6
     })
 }
 
-/// The corridor with that share of the arrivals, for so long.
-fn thinned(corridor: &Corridor, share: f64, duration_s: f64) -> Corridor {
-    let thin = |road: &RoadPlan| RoadPlan { vehicles_per_min: road.vehicles_per_min * share, ..road.clone() };
-    Corridor { duration_s, roads: corridor.roads.iter().map(thin).collect(), ..corridor.clone() }
+/// One corridor: who comes under a seed, and how many of them are under way on average in the time that is measured.
+struct Lot {
+    seed: u64,
+    trips: Vec<Trip>,
+    under_way: f64,
+}
+
+impl Lot {
+    fn new(seed: u64, trips: Vec<Trip>, corridor: &Corridor, travel_s: f64) -> Self {
+        let to_s = corridor.duration_s;
+        let on_way_s = |trip: &Trip| ((trip.at_s + travel_s).min(to_s) - trip.at_s.max(to_s - SPAN_S)).max(0.0);
+        let under_way = trips.iter().map(on_way_s).sum::<f64>() / SPAN_S;
+        Self { seed, trips, under_way }
+    }
+}
+
+/// Corridors with so many vehicles under way: as many as it takes, and every so manieth arrival left out.
+#[allow(clippy::cast_precision_loss)] // a number of vehicles
+fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize, travel_s: f64) -> Vec<Lot> {
+    let mut lots: Vec<Lot> = Vec::new();
+    let mut under_way = 0.0;
+    while under_way < vehicles as f64 && lots.len() < MOST_PER_VEHICLE * vehicles {
+        let seed = seed.wrapping_add(lots.len() as u64);
+        lots.push(Lot::new(seed, trips(corridor, &experiment.network, seed), corridor, travel_s));
+        under_way = lots.iter().map(|lot| lot.under_way).sum();
+    }
+    let share = vehicles as f64 / under_way;
+    let mut owed = 0.0;
+    let mut stays = |_: &Trip| {
+        owed += share;
+        let stays = owed >= 1.0;
+        owed -= f64::from(u8::from(stays));
+        stays
+    };
+    let thin = |lot: Lot| Lot::new(lot.seed, lot.trips.into_iter().filter(&mut stays).collect(), corridor, travel_s);
+    lots.into_iter().map(thin).collect()
+}
+
+/// The corridors, dealt out to the threads: the largest first, each to whom has the least.
+fn dealt(mut lots: Vec<Lot>, threads: usize) -> Vec<Vec<Lot>> {
+    let mut hands: Vec<(f64, Vec<Lot>)> = (0..threads).map(|_| (0.0, Vec::new())).collect();
+    lots.sort_by(|a, b| b.under_way.total_cmp(&a.under_way));
+    for lot in lots {
+        if let Some((load, hand)) = hands.iter_mut().min_by(|(a, _), (b, _)| a.total_cmp(b)) {
+            *load += lot.under_way;
+            hand.push(lot);
+        }
+    }
+    hands.into_iter().map(|(_, hand)| hand).collect()
 }
 
 /// One thread's share: the corridors of those seeds one after the other, first until they are full, then under the clock.
-fn drive(
-    experiment: &Experiment,
-    corridor: &Corridor,
-    seeds: &[u64],
-    fill_s: f64,
-    full: &Barrier,
-) -> io::Result<Share> {
+fn drive(experiment: &Experiment, corridor: &Corridor, lots: &[Lot], fill_s: f64, full: &Barrier) -> io::Result<Share> {
     let network = &experiment.network;
-    let all: Vec<Vec<Trip>> = seeds.iter().map(|seed| trips(corridor, network, *seed)).collect();
-    let mut worlds: Vec<(Traffic, Referee, Beliefs)> = seeds
+    let mut worlds: Vec<(Traffic, Referee, Beliefs)> = lots
         .iter()
-        .zip(&all)
-        .map(|(seed, trips)| {
+        .map(|Lot { seed, trips, .. }| {
             let conditions = Conditions::of(corridor);
             let traffic = Traffic::new(corridor, network, &experiment.itineraries, trips, conditions, *seed);
             (traffic, Referee::new(network, trips), Beliefs::new(network, None))
@@ -154,4 +189,55 @@ fn drive(
     let after = advance(fill_s + SPAN_S)?;
     let core_s = core_s().zip(core_before_s).map(|(after, before)| after - before);
     Ok(Share { tally: after.less(before?), wall_s: start.elapsed().as_secs_f64(), core_s })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::corridor::read::corridor;
+
+    fn of_the_corridor(edit: impl Fn(&str) -> String) -> (Experiment, Corridor) {
+        let text = edit(include_str!("../../scenarios/corridor.toml"));
+        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), &text, &Default::default()).unwrap());
+        let corridor = Corridor { duration_s: 90.0, ..experiment.corridor.clone() };
+        (experiment, corridor)
+    }
+
+    fn sum(lots: &[Lot]) -> f64 {
+        lots.iter().map(|lot| lot.under_way).sum()
+    }
+
+    #[test]
+    fn as_many_are_under_way_as_are_asked_for_whoever_happens_to_come() {
+        let (experiment, corridor) = of_the_corridor(str::to_owned);
+        for seed in [1, 77, u64::MAX] {
+            for vehicles in [1, 10, 30, 100, 300] {
+                let lots = lots(&experiment, &corridor, seed, vehicles, 29.0);
+                // One that is left out or not is at most one vehicle.
+                assert!((sum(&lots) - vehicles as f64).abs() < 1.0, "{seed} {vehicles} {}", sum(&lots));
+            }
+        }
+    }
+
+    #[test]
+    fn the_threads_are_dealt_all_corridors_as_evenly_as_whole_ones_can_be() {
+        let (experiment, corridor) = of_the_corridor(str::to_owned);
+        let lots = lots(&experiment, &corridor, 1, 100, 29.0);
+        let (count, largest) = (lots.len(), lots.iter().map(|lot| lot.under_way).fold(0.0, f64::max));
+        for threads in [1, 2, 3, 8] {
+            let hands = dealt(super::lots(&experiment, &corridor, 1, 100, 29.0), threads);
+            assert_eq!((hands.len(), hands.iter().map(Vec::len).sum::<usize>()), (threads, count));
+            let loads = || hands.iter().map(|hand| sum(hand));
+            assert!(loads().fold(0.0, f64::max) - loads().fold(f64::MAX, f64::min) <= largest, "{threads}");
+        }
+    }
+
+    #[test]
+    fn roads_by_which_nobody_comes_end_the_search() {
+        let (experiment, corridor) =
+            of_the_corridor(|text| text.replace("vehicles_per_min = ", "vehicles_per_min = 0 # "));
+        assert!(sum(&lots(&experiment, &corridor, 1, 3, 29.0)) == 0.0);
+    }
 }
