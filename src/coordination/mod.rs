@@ -19,15 +19,18 @@ mod gentleness;
 pub mod map;
 pub mod order;
 pub mod path;
+mod patience;
 mod present;
 
 pub use axis::{Axis, Standing};
 pub use choice::{Choice, Slots};
 pub use gentleness::Gentleness;
 pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
-pub use order::{Arrival, Entry};
+pub use order::{Arrival, Entry, Regard};
 pub use path::{Path, Place, Scale, Segment};
 pub(crate) use present::{Present, Side};
+
+use patience::Patience;
 
 use crate::held::Held;
 use crate::time::{Duration, Instant};
@@ -44,10 +47,6 @@ pub fn standstill_behind(law: Distance, crossing: &Crossing, leg: u8) -> Distanc
 
 /// Time from one review to the next.
 pub(crate) const REVIEW: Duration = Duration::from_millis(100);
-
-/// A later arrival has to overlook the ego for this long to be given way: five of the messages that tell it, so that what is
-/// only on its way, or lost once or twice, costs nothing.
-pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 
 /// The ego follows one that comes by another leg only so long after it has heard of it, if it still can stop gently then, and
 /// its own horizon says so from the beginning: as long as the longest silence that nobody is to be surprised by, and until
@@ -79,8 +78,8 @@ pub struct Coordination<const PEERS: usize> {
     current: usize,
     registration: Held<Registration>,
     axes: [Axis; PEERS],
-    /// Since when a slot overlooks the ego.
-    overlooked: [Held<Instant>; PEERS],
+    /// With those that do not heed the ego.
+    patience: [Patience; PEERS],
     claim: Held<StationHash>,
     choice: Choice,
     /// When the next review is due: others have been told what will be found then.
@@ -98,7 +97,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             current: 0,
             registration: Held::Nothing,
             axes: [Axis::UNKNOWN; PEERS],
-            overlooked: [Held::Nothing; PEERS],
+            patience: [Patience::FULL; PEERS],
             claim: Held::Nothing,
             choice: Choice::NONE,
             due: Held::Nothing,
@@ -123,7 +122,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.current = 0;
         self.registration.clear();
         self.axes = [Axis::UNKNOWN; PEERS];
-        self.overlooked = [Held::Nothing; PEERS];
+        self.patience = [Patience::FULL; PEERS];
         self.claim.clear();
         self.choice = Choice::NONE;
         self.due.clear();
@@ -265,7 +264,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         if self.registration.as_ref().is_none() {
             self.registration.set(Registration { arrival, since: now });
             self.claim.clear();
-            self.overlooked = [Held::Nothing; PEERS];
+            self.patience = [Patience::FULL; PEERS];
         }
     }
 
@@ -293,12 +292,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         for Present { index, entry, heard, is_far_behind, .. } in
             present.iter().filter(|other| other.lane != Some(Side::Behind))
         {
-            let overlooks = !is_far_behind && order::overlooks(entry, &ego, present.iter().map(|other| &other.entry));
             // What was said before the ego could be heard of does not count.
-            let overlooks = overlooks && heard.since(registration.since) >= REVIEW;
-            if self.is_lasting(*index, *heard, overlooks)
-                && given_way.is_none_or(|other: &Entry| other.is_before(entry))
-            {
+            let counts = !is_far_behind && heard.since(registration.since) >= REVIEW;
+            let regard = Regard::of(entry, &ego, present.iter().map(|other| &other.entry));
+            let regard = if counts { regard } else { Regard::Heeds };
+            let is_over = self.patience.get_mut(*index).is_some_and(|patience| patience.is_over(*heard, regard));
+            if is_over && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
                 given_way = Some(entry);
             }
         }
@@ -329,8 +328,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         self.choice.vacate(index);
-        if let Some(overlooked) = self.overlooked.get_mut(index) {
-            overlooked.clear();
+        if let Some(patience) = self.patience.get_mut(index) {
+            *patience = Patience::FULL;
         }
     }
 
@@ -374,17 +373,6 @@ impl<const PEERS: usize> Coordination<PEERS> {
         speed: Speed,
     ) -> bool {
         at.since(standing.since) >= ANNOUNCED || self.gentleness(standing, next, front, speed) == Gentleness::NONE
-    }
-
-    /// Whether a slot has overlooked the ego for too long, by when it said so: what a silent one said last may be out of date.
-    fn is_lasting(&mut self, index: usize, heard: Instant, overlooks: bool) -> bool {
-        let Some(since) = self.overlooked.get_mut(index) else { return false };
-        match (overlooks, since.get()) {
-            (false, _) => since.clear(),
-            (true, None) => since.set(heard),
-            (true, Some(begun)) => return heard.since(begun) >= OVERLOOKED,
-        }
-        false
     }
 }
 

@@ -83,18 +83,33 @@ impl Entry {
     }
 }
 
-/// Whether a station that arrived after the ego acts as if the ego were not there: it claims nobody, or somebody who was there
-/// before the ego. Whom the ego has not heard of may well be between the two.
-#[must_use]
-pub fn overlooks<'a>(other: &Entry, own: &Entry, mut all: impl Iterator<Item = &'a Entry>) -> bool {
-    if other.is_before(own) || other.claims(own) {
-        return false;
-    }
-    match other.claim {
-        Predecessor::None => true,
-        Predecessor::Unknown => false,
-        Predecessor::Station(claimed) => {
-            all.find(|entry| entry.station == claimed).is_some_and(|entry| entry.is_before(own))
+/// What becomes of the ego's place by what another station claims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Regard {
+    /// It arrived before the ego, or goes after the ego or somebody who does.
+    Heeds,
+    /// It arrived after the ego and claims somebody of whom the ego has not heard: one between the two, or one before the ego.
+    Unclear,
+    /// It arrived after the ego and acts as if the ego were not there: it claims nobody, or somebody who was there before the ego.
+    Overlooks,
+}
+
+impl Regard {
+    /// How another station regards the ego; all that the ego has heard of are there to tell whom it claims.
+    #[must_use]
+    pub fn of<'a>(other: &Entry, own: &Entry, mut all: impl Iterator<Item = &'a Entry>) -> Self {
+        if other.is_before(own) || other.claims(own) {
+            return Self::Heeds;
+        }
+        match other.claim {
+            Predecessor::None => Self::Overlooks,
+            Predecessor::Unknown => Self::Heeds, // it has not arrived yet
+            Predecessor::Station(claimed) => match all.find(|entry| entry.station == claimed) {
+                None => Self::Unclear,
+                Some(claimed) if claimed.is_before(own) => Self::Overlooks,
+                Some(_) => Self::Heeds,
+            },
         }
     }
 }

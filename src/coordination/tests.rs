@@ -1,6 +1,5 @@
 //! The order, against a naive oracle; and stations that hear one another late, in part or not at all.
 
-use super::order::overlooks;
 use super::*;
 use crate::coordination::order::Arrival;
 
@@ -57,19 +56,20 @@ fn arrivals_of_gnss_time_come_round_after_2_9_hours() {
 }
 
 #[test]
-fn only_who_arrived_later_and_claims_somebody_before_the_ego_or_nobody_overlooks_it() {
+fn who_arrived_later_and_claims_somebody_before_the_ego_or_nobody_overlooks_it_and_a_stranger_is_unclear() {
     let (before, own, after, later) =
         (entry(1, 10, None), entry(2, 20, Some(1)), entry(3, 30, Some(2)), entry(4, 40, None));
     let all = [before, after, later];
     let claims = |claim| Entry { claim, ..later };
     let station = |station| Predecessor::Station(StationHash(station));
-    assert!(overlooks(&claims(Predecessor::None), &own, all.iter()));
-    assert!(overlooks(&claims(station(1)), &own, all.iter()));
-    assert!(!overlooks(&claims(station(2)), &own, all.iter()));
-    assert!(!overlooks(&claims(station(3)), &own, all.iter()));
-    assert!(!overlooks(&claims(station(77)), &own, all.iter()));
-    assert!(!overlooks(&claims(Predecessor::Unknown), &own, all.iter()));
-    assert!(!overlooks(&before, &own, all.iter()));
+    let regard = |other: &Entry| Regard::of(other, &own, all.iter());
+    assert_eq!(regard(&claims(Predecessor::None)), Regard::Overlooks);
+    assert_eq!(regard(&claims(station(1))), Regard::Overlooks);
+    assert_eq!(regard(&claims(station(2))), Regard::Heeds);
+    assert_eq!(regard(&claims(station(3))), Regard::Heeds);
+    assert_eq!(regard(&claims(station(77))), Regard::Unclear);
+    assert_eq!(regard(&claims(Predecessor::Unknown)), Regard::Heeds);
+    assert_eq!(regard(&before), Regard::Heeds);
 }
 
 /// Stations at one intersection, each with its own coordination, and what each last heard of each other.
@@ -227,6 +227,25 @@ fn one_of_two_that_head_for_the_same_place_gives_way() {
             assert_ne!(claims[a], claims[b], "{arrivals:?}, {deaf} does not hear {unheard}: {claims:?}");
         }
     }
+}
+
+#[test]
+fn one_whose_claim_is_of_a_stranger_for_longer_than_a_silence_lasts_is_given_way() {
+    // The first two hear nothing of one another, and the last one nothing of the second, which hears it.
+    let deaf = [(0, 1), (1, 0), (2, 1)];
+    let mut meeting = Meeting::of(&[1, 2, 3]);
+    for tick in 0..100 {
+        let gave_way = meeting.tick(tick, |to, from| !deaf.contains(&(to, from)));
+        assert_eq!(gave_way, usize::from(tick == 61), "{tick}");
+        let claims = if tick < 61 { [None, None, Some(0)] } else { [None, Some(2), Some(0)] };
+        assert_eq!(meeting.claims(), claims, "{tick}");
+    }
+    // A silence of 4 s is not that long.
+    let mut meeting = Meeting::of(&[1, 2, 3]);
+    for tick in 0..100 {
+        assert_eq!(meeting.tick(tick, |to, from| tick > 41 || !deaf.contains(&(to, from))), 0, "{tick}");
+    }
+    assert_eq!(meeting.chain(), Some(vec![0, 1, 2]));
 }
 
 #[test]
