@@ -83,7 +83,6 @@ impl Experiment {
                 let remains = traffic.run(&mut watches, &mut log).map_err(refused)?;
                 journal.log = log;
                 journal.errors.clone_from(&beliefs.watched);
-                journal.dark = logged.map(|ego| trips[ego].dark(&conditions.radio));
                 remains
             }
             None => traffic.run(&mut watches, &mut log).map_err(refused)?,

@@ -44,6 +44,9 @@ impl Journal {
 
 impl Watch for Journal {
     fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+        if sightings.iter().any(|own| Some(own.trip) == self.ego && own.dark) {
+            self.dark.get_or_insert(Window { from_s: at_s, to_s: at_s }).to_s = at_s;
+        }
         if self.last_s.is_some_and(|last_s| at_s - last_s < EVERY_S - 1e-9) {
             return;
         }

@@ -271,8 +271,9 @@ impl<'a> Traffic<'a> {
             let vehicle = &mut traveller.vehicle;
             let Some(lost) = Lost::of(&vehicle.unit, vehicle.instant(at_s)) else { continue };
             let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, lost.crossing);
-            let still_given_way = if lost.crossing { f64::INFINITY } else { vehicle.command_mps2 };
-            vehicle.override_with(wanted.min(still_given_way));
+            let choice = vehicle.unit.coordination().choice();
+            let gives_way = !lost.crossing && choice.target.is_some() && choice.target != choice.lane;
+            vehicle.override_with(if gives_way { wanted.min(vehicle.command_mps2) } else { wanted });
         }
     }
 

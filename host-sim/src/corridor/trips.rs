@@ -20,17 +20,17 @@ pub struct Trip {
     pub speed_mps: f64,
     /// What it is.
     pub kind: Kind,
-    /// When it falls silent, counted from its arrival.
+    /// When it falls silent, counted from when it appears on the road: it may have to wait for room.
     pub dark_after_s: f64,
     /// What its odometer shows at the beginning of the road.
     pub odometer_m: f64,
 }
 
 impl Trip {
-    /// When its radio is silent.
+    /// When its radio is silent if it appears at that time.
     #[must_use]
-    pub fn dark(&self, radio: &Radio) -> Window {
-        let from_s = self.at_s + self.dark_after_s;
+    pub fn dark(&self, appears_s: f64, radio: &Radio) -> Window {
+        let from_s = appears_s + self.dark_after_s;
         Window { from_s, to_s: from_s + radio.dark_s }
     }
 }

@@ -54,16 +54,16 @@ impl Traffic<'_> {
     }
 
     /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and, if it is near,
-    /// neither of the two happens to have been silent just before, nor the one ahead to fall silent at once. Who comes up behind
-    /// somebody has long heard of it; one that appears out of nothing has not.
+    /// has not been silent just before, nor is to fall silent at once. Who comes up behind somebody has long heard of it; one
+    /// that appears out of nothing has not.
     fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
         let was_silent = |dark: Window| dark.from_s.max(at_s - LISTENING_S) < dark.to_s.min(at_s);
-        let is_unheard = was_silent(last.dark) || was_silent(trip.dark(&self.conditions.radio));
-        if (is_unheard || last.is_dark(at_s) || last.is_dark(at_s + HEARD_S)) && gap_m < UNHEARD_M {
+        let is_unheard = was_silent(last.dark) || last.is_dark(at_s) || last.is_dark(at_s + HEARD_S);
+        if is_unheard && gap_m < UNHEARD_M {
             return false;
         }
         let (v, w) = (trip.speed_mps, last.vehicle.plant.speed_mps);
@@ -120,7 +120,7 @@ impl Traffic<'_> {
         while let Some(Arrived { at_s, message, .. }) = self.air.arrived(at_s) {
             vehicle.hear(at_s, &message)?;
         }
-        let dark = trip.dark(&self.conditions.radio);
+        let dark = trip.dark(at_s, &self.conditions.radio);
         Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
     }
 }
@@ -141,19 +141,24 @@ mod tests {
     use crate::plant::Kind;
 
     /// When the second one appeared.
-    struct Second(Option<f64>);
+    #[derive(Default)]
+    struct Second {
+        from_s: Option<f64>,
+        dark_s: f64,
+    }
 
     impl Watch for Second {
         fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
-            if self.0.is_none() && sightings.iter().any(|one| one.trip == 1) {
-                self.0 = Some(at_s);
-            }
+            let Some(second) = sightings.iter().find(|one| one.trip == 1) else { return };
+            self.from_s.get_or_insert(at_s);
+            self.dark_s += if second.dark { 0.01 } else { 0.0 };
         }
         fn left(&mut self, _: f64, _: usize) {}
     }
 
-    /// Two on one road, each with its arrival and when it falls silent after that: when the second one appears.
-    fn second_appears_s(first: (f64, f64), second: (f64, f64)) -> f64 {
+    /// Two on one road, each with its arrival and when it falls silent once it is there: when the second one appears, and for
+    /// how long it is silent in the next 9 s.
+    fn second_appears(first: (f64, f64), second: (f64, f64)) -> (f64, f64) {
         let text = include_str!("../../../scenarios/corridor.toml");
         let experiment = Experiment::new(corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap());
         let trip = |(at_s, dark_after_s)| Trip {
@@ -169,21 +174,26 @@ mod tests {
         assert_eq!((conditions.radio.dark_s, LISTENING_S), (4.0, 1.0));
         let Experiment { corridor, network, itineraries } = &experiment;
         let mut traffic = Traffic::new(corridor, network, itineraries, &trips, conditions, 1);
-        let mut second = Second(None);
+        let mut second = Second::default();
         traffic.advance(9.0, &mut [&mut second]).unwrap();
-        second.0.unwrap()
+        let from_s = second.from_s.unwrap();
+        traffic.advance(from_s + 9.0, &mut [&mut second]).unwrap();
+        (from_s, second.dark_s)
     }
 
     #[test]
     fn nobody_appears_near_behind_a_vehicle_that_it_has_not_heard() {
         let silent_later = 60.0;
         // It has room, and both have been on the air.
-        assert_eq!(second_appears_s((0.0, silent_later), (3.0, silent_later)), 3.0);
+        assert_eq!(second_appears((0.0, silent_later), (3.0, silent_later)), (3.0, 0.0));
         // The one ahead is silent from 2 s to 6 s.
-        let appears_s = second_appears_s((0.0, 2.0), (4.0, silent_later));
+        let (appears_s, _) = second_appears((0.0, 2.0), (4.0, silent_later));
         assert!((7.0..7.02).contains(&appears_s), "{appears_s}");
-        // The newcomer is, while it waits for room.
-        let appears_s = second_appears_s((0.0, silent_later), (1.0, 0.5));
-        assert!((6.5..6.52).contains(&appears_s), "{appears_s}");
+    }
+
+    #[test]
+    fn who_has_waited_for_room_is_silent_on_the_road_for_as_long_as_anybody() {
+        let (appears_s, dark_s) = second_appears((0.0, 2.0), (4.0, 2.5));
+        assert!(appears_s > 6.5 && (dark_s - 4.0).abs() < 0.015, "{appears_s} {dark_s}");
     }
 }
