@@ -53,6 +53,8 @@ pub struct Referee<'a> {
     pub lowest_speed_mps: Option<f64>,
     /// Ticks of all vehicles, and those at which an envelope changed the command.
     pub ticks: [u64; 2],
+    /// Those who have left: whoever is still on his way may run into one.
+    beyond: Vec<Sighting>,
     together: BTreeSet<(Place, [usize; 2])>,
     standing: BTreeMap<usize, (f64, bool)>,
     inside: BTreeSet<Inside>,
@@ -73,6 +75,7 @@ impl<'a> Referee<'a> {
             smallest_clearance_s: None,
             lowest_speed_mps: None,
             ticks: [0, 0],
+            beyond: Vec::new(),
             together: BTreeSet::new(),
             standing: BTreeMap::new(),
             inside: BTreeSet::new(),
@@ -81,9 +84,10 @@ impl<'a> Referee<'a> {
     }
 
     fn on_roads(&mut self, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {
-        let mut order: Vec<&Sighting> = sightings.iter().collect();
+        let mut order: Vec<&Sighting> = sightings.iter().chain(&self.beyond).collect();
         order.sort_by(|a, b| a.road.cmp(&b.road).then(b.way_m.total_cmp(&a.way_m)));
-        for pair in order.windows(2).filter(|pair| pair[0].road == pair[1].road) {
+        let has_left = |one: &Sighting| one.way_m >= self.network.lanes[one.road].exit_m;
+        for pair in order.windows(2).filter(|pair| pair[0].road == pair[1].road && !has_left(pair[1])) {
             let gap_m = pair[0].way_m - pair[0].length_m - pair[1].way_m;
             self.smallest_gap_m = Some(self.smallest_gap_m.map_or(gap_m, |least| least.min(gap_m)));
             if gap_m < 0.0 {
@@ -144,6 +148,10 @@ fn sorted(a: usize, b: usize) -> [usize; 2] {
 }
 
 impl Watch for Referee<'_> {
+    fn beyond(&mut self, sightings: &[Sighting]) {
+        self.beyond = sightings.to_vec();
+    }
+
     fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
         let mut together = BTreeSet::new();
         self.on_roads(sightings, &mut together);

@@ -215,10 +215,15 @@ impl<'a> Traffic<'a> {
             self.drive_alone(at_s);
         }
         self.run_out();
-        let on_way = self.travellers.values().filter(|traveller| !traveller.has_left);
-        let sightings: Vec<Sighting> = on_way.map(|traveller| self.sight(at_s, traveller)).collect();
-        self.tally.on_way += sightings.len() as u64;
-        watches.iter_mut().for_each(|watch| watch.tick(at_s, &sightings));
+        let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
+            self.travellers.values().partition(|traveller| traveller.has_left);
+        let [beyond, on_way] = [beyond, on_way]
+            .map(|some| some.into_iter().map(|traveller| self.sight(at_s, traveller)).collect::<Vec<Sighting>>());
+        self.tally.on_way += on_way.len() as u64;
+        for watch in watches.iter_mut() {
+            watch.beyond(&beyond);
+            watch.tick(at_s, &on_way);
+        }
         self.broadcast(at_s, broadcasts);
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);

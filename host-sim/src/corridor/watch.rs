@@ -34,6 +34,8 @@ pub struct Sighting {
 
 /// Someone who watches a run.
 pub trait Watch {
+    /// Before a tick: those who have left and drive on beyond the end of their way.
+    fn beyond(&mut self, _sightings: &[Sighting]) {}
     /// A tick, with everyone on his way in the order of their trips.
     fn tick(&mut self, at_s: f64, sightings: &[Sighting]);
     /// A vehicle has left.
