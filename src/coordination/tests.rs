@@ -289,3 +289,46 @@ fn a_review_at_once_does_not_move_the_times_of_the_others() {
     assert_eq!(review(299), Some(after(300)));
     assert_eq!(review(450), Some(after(550)));
 }
+
+/// The ego, station 9, arrived at 20; after so many reviews of the same others, each 100 ms after the last: when it has arrived
+/// by then, and whom it claims.
+fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
+    let mut coordination: Coordination<8> = Coordination::idle();
+    coordination.set_out(&ITINERARY).unwrap();
+    coordination.locate(Position::ZERO, Position::ZERO);
+    coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+    for tick in 1..=times {
+        let present: Vec<_> = others.iter().map(|other| Present { heard: at(tick), ..*other }).collect();
+        coordination.review(at(tick), StationHash(9), &present);
+    }
+    (coordination.registration().unwrap().arrival.0, coordination.claim())
+}
+
+fn there(index: usize, entry: Entry, lane: Option<Side>) -> Present {
+    Present { index, entry, heard: at(0), has_left: false, is_far_behind: false, is_announced: true, lane }
+}
+
+#[test]
+fn whoever_is_ahead_on_the_same_leg_takes_the_ego_along_until_it_has_left() {
+    let ahead = there(0, entry(1, 30, None), Some(Side::Ahead));
+    assert_eq!(reviewed(1, &[ahead]), (31, Predecessor::Station(StationHash(1))));
+    let further = there(1, entry(2, 40, Some(1)), Some(Side::Ahead));
+    assert_eq!(reviewed(1, &[further, ahead]), (41, Predecessor::Station(StationHash(2))));
+    assert_eq!(reviewed(1, &[Present { has_left: true, ..ahead }]), (20, Predecessor::None));
+}
+
+#[test]
+fn whoever_is_behind_on_the_same_leg_is_neither_followed_nor_given_way() {
+    let (earlier, careless) = (entry(1, 10, None), entry(2, 30, None));
+    for other in [earlier, careless] {
+        assert_eq!(reviewed(50, &[there(0, other, Some(Side::Behind))]), (20, Predecessor::None));
+    }
+}
+
+#[test]
+fn one_that_overlooks_the_ego_is_given_way_after_a_second_unless_it_is_far_behind() {
+    let careless = there(0, entry(1, 30, None), None);
+    assert_eq!(reviewed(10, &[careless]), (20, Predecessor::None));
+    assert_eq!(reviewed(11, &[careless]), (31, Predecessor::Station(StationHash(1))));
+    assert_eq!(reviewed(50, &[Present { is_far_behind: true, ..careless }]), (20, Predecessor::None));
+}
