@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test cross firmware vcan c package)
+steps=(fmt lint doc test study cross firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -21,6 +21,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   lint      no warning of the compiler or of clippy; unsafe code only in src/board/, at the edge of holdover-c and in tests/embedded/
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
+  study     the verdicts of the case study: the four intersections for ten minutes, and the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
@@ -67,6 +68,13 @@ step_doc() {
 
 step_test() {
     cargo test --locked --workspace --profile checked --no-fail-fast
+}
+
+step_study() {
+    cargo build --locked --release -p holdover-sim
+    local sim=${CARGO_TARGET_DIR:-target}/release/holdover-sim
+    "$sim" run corridor --no-report
+    "$sim" string --delays 0.2 --losses 0.4 --step-only --seeds 20 --no-report
 }
 
 step_cross() {
