@@ -14,6 +14,7 @@ pub mod cost;
 pub mod description;
 pub mod experiment;
 pub mod figures;
+pub mod fit;
 pub mod globe;
 pub mod journal;
 pub mod map;

@@ -6,16 +6,13 @@ use super::road::Road;
 use super::traffic::RUN_OUT_M;
 
 /// A road is a leg of an intersection if it passes within so many metres of its middle.
-const PASSES_WITHIN_M: f64 = 12.0;
+pub const PASSES_WITHIN_M: f64 = 12.0;
 
 /// Roads that cross at less than this, in degrees, share their pavement or are the two directions of one street.
 const LEAST_ANGLE_DEG: f64 = 20.0;
 
 /// The roads reach so far beyond where vehicles appear and vanish, in metres.
 const BEYOND_M: f64 = 20.0 + RUN_OUT_M;
-
-/// Legs of an intersection, at most; a message has three bits for them.
-const LEGS: usize = 8;
 
 /// An intersection on a road.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,12 +67,17 @@ pub struct Network {
     pub junctions: Vec<Junction>,
 }
 
+/// Whether two ways with those directions, in degrees, cross; otherwise they run beside one another, or on one another.
+#[must_use]
+pub fn cross(a_deg: f64, b_deg: f64) -> bool {
+    (LEAST_ANGLE_DEG..=180.0 - LEAST_ANGLE_DEG).contains(&(a_deg - b_deg).rem_euclid(180.0))
+}
+
 impl Junction {
     /// Whether vehicles on those two legs can meet: their ways cross.
     #[must_use]
     pub fn conflict(&self, a: usize, b: usize) -> bool {
-        let apart = (self.legs[a].heading_deg - self.legs[b].heading_deg).rem_euclid(180.0);
-        a != b && (LEAST_ANGLE_DEG..=180.0 - LEAST_ANGLE_DEG).contains(&apart)
+        a != b && cross(self.legs[a].heading_deg, self.legs[b].heading_deg)
     }
 }
 
@@ -103,30 +105,5 @@ impl Network {
             lanes.push(Lane { road, stops, entry_m: first_m - appear_m, exit_m: last_m + leave_m });
         }
         Self { lanes, junctions }
-    }
-
-    /// That every road has an intersection and room before and after, and no intersection too many legs.
-    ///
-    /// # Errors
-    /// The cause and the remedy.
-    pub fn check(corridor: &Corridor) -> Result<(), (String, String)> {
-        let network = Self::of(corridor);
-        for (lane, plan) in network.lanes.iter().zip(&corridor.roads) {
-            if lane.stops.is_empty() {
-                let cause = format!("the road \"{}\" passes no intersection within {PASSES_WITHIN_M} m", plan.name);
-                return Err((cause, "move its points, or the intersection's `at`".into()));
-            }
-            if lane.entry_m < 0.0 || lane.exit_m > lane.road.length_m() {
-                let cause = format!("an intersection lies beyond the ends of the road \"{}\"", plan.name);
-                return Err((cause, "let the road's points reach to its intersections".into()));
-            }
-        }
-        for (junction, plan) in network.junctions.iter().zip(&corridor.intersections) {
-            if junction.legs.len() > LEGS {
-                let cause = format!("{} roads pass the intersection \"{}\"", junction.legs.len(), plan.name);
-                return Err((cause, format!("let at most {LEGS} pass it")));
-            }
-        }
-        Ok(())
     }
 }

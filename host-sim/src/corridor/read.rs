@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use super::description::{Corridor, IntersectionPlan, Limits, Radio, RoadPlan, Traffic, Wrong};
+use super::fit::{self, Part};
 use super::globe::Shift;
-use super::network::Network;
 use crate::error::{Error, quoted};
 use crate::ground::Point;
 use crate::scenario::keys::{Document, Number, Section};
@@ -55,7 +55,8 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let document = Document::new(file, text);
     let table = document.parse()?;
     let mut top = document.top(&table);
-    let _ = (top.value("kind"), top.text("about")?);
+    let kind_line = top.value("kind").and_then(|kind| top.line_of(kind));
+    let _ = top.text("about")?;
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let (duration, period) = (top.number(&DURATION)?, top.number(&PERIOD)?);
     let (step, horizon, rate) = (top.number(&STEP)?, top.number(&HORIZON)?, top.number(&RATE)?);
@@ -65,8 +66,12 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let wrong = wrong(top.section("wrong")?)?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let limits = limits(top.section("limits")?)?;
-    let roads = roads(&document, top.sections("road")?, &traffic)?;
-    let intersections = intersections(&document, top.sections("intersection")?)?;
+    let road_sections = counted(&document, "road", top.sections("road")?, ROADS, kind_line)?;
+    let intersection_sections =
+        counted(&document, "intersection", top.sections("intersection")?, INTERSECTIONS, kind_line)?;
+    let [road_lines, intersection_lines] = [&road_sections, &intersection_sections].map(|sections| lines(sections));
+    let roads = roads(&document, road_sections, &traffic)?;
+    let intersections = intersections(&document, intersection_sections)?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -102,7 +107,13 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         roads,
         intersections,
     };
-    Network::check(&corridor).map_err(|(cause, remedy)| document.error_at(None, cause, remedy))?;
+    fit::check(&corridor).map_err(|misfit| {
+        let line = match misfit.part {
+            Part::Road(road) => road_lines[road],
+            Part::Intersection(intersection) => intersection_lines[intersection],
+        };
+        document.error_at(line, misfit.cause, misfit.remedy)
+    })?;
     Ok(corridor)
 }
 
@@ -164,9 +175,9 @@ fn limits(mut section: Section) -> Result<Limits, Error> {
     Ok(limits)
 }
 
-fn roads(document: &Document, sections: Option<Vec<Section>>, traffic: &Traffic) -> Result<Vec<RoadPlan>, Error> {
+fn roads(document: &Document, sections: Vec<Section>, traffic: &Traffic) -> Result<Vec<RoadPlan>, Error> {
     let mut roads: Vec<RoadPlan> = Vec::new();
-    for mut section in sections.unwrap_or_default() {
+    for mut section in sections {
         let line = section.line();
         let name = name(document, &mut section)?;
         let points = section.pairs(&DEGREES)?.ok_or_else(|| missing(document, line, "points"))?;
@@ -191,12 +202,12 @@ fn roads(document: &Document, sections: Option<Vec<Section>>, traffic: &Traffic)
         }
         roads.push(RoadPlan { name, points, right_m, vehicles_per_min: rate.value });
     }
-    counted(document, "road", roads, ROADS)
+    Ok(roads)
 }
 
-fn intersections(document: &Document, sections: Option<Vec<Section>>) -> Result<Vec<IntersectionPlan>, Error> {
+fn intersections(document: &Document, sections: Vec<Section>) -> Result<Vec<IntersectionPlan>, Error> {
     let mut intersections = Vec::new();
-    for mut section in sections.unwrap_or_default() {
+    for mut section in sections {
         let line = section.line();
         let name = name(document, &mut section)?;
         let wanted = "give the two numbers [north, east] in degrees";
@@ -206,7 +217,7 @@ fn intersections(document: &Document, sections: Option<Vec<Section>>) -> Result<
         section.finish()?;
         intersections.push(IntersectionPlan { name, at: point(at.value), half_m });
     }
-    counted(document, "intersection", intersections, INTERSECTIONS)
+    Ok(intersections)
 }
 
 fn name(document: &Document, section: &mut Section) -> Result<String, Error> {
@@ -218,12 +229,29 @@ fn missing(document: &Document, line: Option<u64>, key: &str) -> Error {
     document.error_at(line, format!("`{key}` is missing"), "add it; scenarios/corridor.toml shows how")
 }
 
-fn counted<T>(document: &Document, what: &str, found: Vec<T>, most: usize) -> Result<Vec<T>, Error> {
-    if (1..=most).contains(&found.len()) {
-        return Ok(found);
+/// So many sections as there can be; what is said of too many is said of the first one too many, and of none where the file says
+/// what it is.
+fn counted<'a>(
+    document: &Document,
+    what: &str,
+    sections: Option<Vec<Section<'a>>>,
+    most: usize,
+    kind_line: Option<u64>,
+) -> Result<Vec<Section<'a>>, Error> {
+    let sections = sections.unwrap_or_default();
+    if (1..=most).contains(&sections.len()) {
+        return Ok(sections);
     }
-    let cause = format!("{} [[{what}]] make no corridor", found.len());
-    Err(document.error_at(None, cause, format!("give from 1 to {most}")))
+    let line = sections.get(most).map_or(kind_line, Section::line);
+    let (cause, remedy) = match sections.len() {
+        0 => (format!("there is no [[{what}]], and a corridor needs one"), format!("add from 1 to {most}")),
+        many => (format!("there are {many} [[{what}]]"), format!("give at most {most}")),
+    };
+    Err(document.error_at(line, cause, remedy))
+}
+
+fn lines(sections: &[Section]) -> Vec<Option<u64>> {
+    sections.iter().map(Section::line).collect()
 }
 
 fn point([latitude, longitude]: [f64; 2]) -> Point {

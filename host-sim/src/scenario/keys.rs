@@ -178,7 +178,8 @@ impl<'a> Section<'a> {
     /// A whole number, not negative, if given.
     pub fn whole(&mut self, key: &'static str) -> Result<Option<Found<u64>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
-        let number = whole(value).ok_or_else(|| self.mismatch(key, value, "a whole number from 0"))?;
+        let wanted = format!("a whole number from 0 to {}", u64::MAX);
+        let number = whole(value).ok_or_else(|| self.mismatch(key, value, &wanted))?;
         Ok(Some(Found { value: number, line: self.line_of(value) }))
     }
 
