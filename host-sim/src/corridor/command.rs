@@ -18,7 +18,7 @@ use crate::verdict::Verdict;
 /// Runs besides those of the seeds: the table of what is wrong.
 const WRONGS: usize = 6;
 
-/// Silences of each motion in the report, as many as `motions` makes.
+/// Silences of each motion in the report and the picture, as many as `motions` makes.
 const SILENCES: u32 = 50;
 
 /// Wall-clock figures; everything else is the same for the same seed.
@@ -46,11 +46,13 @@ pub struct Results {
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]
     pub sides: Sides,
+    /// Whether what follows is with the envelope; the sides are without and with it in any case.
+    pub excerpts_with_envelope: bool,
     /// How the errors grow with what is wrong.
     pub wrong: Vec<WrongRow>,
-    /// How the errors grow with the prediction step; empty without a report.
+    /// How the errors grow with the prediction step; empty without a report and a picture.
     pub steps: Vec<StepRow>,
-    /// What a target does in a silence, and who knows it; empty without a report.
+    /// What a target does in a silence, and who knows it; empty without a report and a picture.
     pub motions: Vec<Row>,
     /// Why it failed; empty if it passed.
     pub failures: Vec<String>,
@@ -85,16 +87,18 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         })
         .collect();
     let mut loads = Vec::new();
-    if let Some(travel_s) = sides.holdover.mean_travel_time_s {
+    let engaged = options.corridor.envelope.engaged;
+    let timed = if engaged { &sides.envelope } else { &sides.holdover };
+    if let Some(travel_s) = timed.mean_travel_time_s {
         for vehicles in &options.vehicles {
             loads.push(scale::measure(&experiment, first, *vehicles, travel_s)?);
             done();
         }
     }
     bar.finish_and_clear();
-    let motions = if options.report.is_some() { rows::run(first, SILENCES, || {})? } else { Vec::new() };
+    let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
-    let failures = verdict::failures(&options.corridor, &sides);
+    let failures = verdict::failures(&options.corridor.limits, &sides);
     let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
         .iter()
         .map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64)
@@ -104,6 +108,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         seed: first,
         seeds: options.seeds.len(),
         sides,
+        excerpts_with_envelope: engaged,
         wrong,
         steps: steps.iter().map(|(row, _)| row.clone()).collect(),
         motions,

@@ -18,6 +18,7 @@ use super::traffic::Traffic;
 use super::trips::{Trip, trips};
 use super::watch::Watch;
 use crate::error::Error;
+use crate::scenario::Envelope;
 
 /// Prediction steps of the figures over `δt`.
 pub const STEPS_S: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
@@ -25,16 +26,17 @@ pub const STEPS_S: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
 /// The figures over `δt` and over what is wrong are of so many seconds of arrivals of the first seed.
 pub const EXCERPT_S: f64 = 180.0;
 
-/// The figures of all seeds, beside the references.
+/// The figures of all seeds, beside the references. Each side is what it is called, whether the scenario engages the envelope
+/// or not.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Sides {
-    /// As the scenario says.
+    /// As the scenario says, without the envelope.
     pub holdover: Side,
-    /// With a link without delay, loss and silence.
+    /// The same with a link without delay, loss and silence.
     pub perfect_link: Side,
-    /// With vehicles that drive alone while the link to whoever is just ahead is lost.
+    /// The same with vehicles that drive alone while the link to whoever is just ahead is lost.
     pub alone: Side,
-    /// As the scenario says, with the envelope the other way round.
+    /// As the scenario says, with the envelope.
     pub envelope: Side,
 }
 
@@ -95,15 +97,7 @@ impl Experiment {
     /// # Errors
     /// As for [`run`](Self::run).
     pub fn sides(&self, seeds: &[u64], done: impl Fn() + Sync) -> Result<Sides, Error> {
-        let base = Conditions::of(&self.corridor);
-        let mut flipped = base;
-        flipped.envelope.engaged = !base.envelope.engaged;
-        let conditions = [
-            base,
-            Conditions { radio: base.radio.perfect(), ..base },
-            Conditions { when_lost: WhenLost::Alone, ..base },
-            flipped,
-        ];
+        let conditions = four(&self.corridor);
         let jobs: Vec<(u64, Conditions)> =
             seeds.iter().flat_map(|seed| conditions.map(|conditions| (*seed, conditions))).collect();
         let outcomes = self.all(&jobs, done)?;
@@ -183,7 +177,39 @@ impl Experiment {
     }
 }
 
-/// What the units refuse.
+/// The conditions of the four sides, in the order of [`Sides`].
+fn four(corridor: &Corridor) -> [Conditions; 4] {
+    let scenario = Conditions::of(corridor);
+    let [without, with] =
+        [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
+    let perfect_link = Conditions { radio: without.radio.perfect(), ..without };
+    [without, perfect_link, Conditions { when_lost: WhenLost::Alone, ..without }, with]
+}
+
+/// What the units refuse; nothing, as long as whatever a file may say is something that they take.
 pub(super) fn refused(error: io::Error) -> Error {
-    Error::new(error.to_string(), "change the scenario accordingly")
+    Error::new(error.to_string(), "report this with the scenario")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::corridor::read::corridor;
+    use crate::scenario::Overrides;
+
+    #[test]
+    fn a_side_is_what_it_is_called_whatever_the_scenario_does_with_the_envelope() {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let engaged = text.replacen("engaged = false", "engaged = true", 1);
+        let asked = Overrides { envelope: true, ..Overrides::default() };
+        for (text, overrides) in [(text, Overrides::default()), (text, asked), (&engaged, Overrides::default())] {
+            let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
+            let four = four(&corridor);
+            assert_eq!(four.map(|conditions| conditions.envelope.engaged), [false, false, false, true]);
+            assert_eq!(four[1].radio, corridor.radio.perfect());
+            assert_eq!(four.map(|conditions| conditions.when_lost == WhenLost::Alone), [false, false, true, false]);
+        }
+    }
 }

@@ -26,16 +26,17 @@ pub fn render(
         let cells = sides(results).into_iter().map(|side| Cell::number(of(side)));
         [Cell::text(name.trim())].into_iter().chain(cells).collect()
     };
-    let caption = "All seeds together. Beside what the scenario describes: the same trips with a link without delay, loss and \
-                   silence; with vehicles that drive alone while the link to whoever is just ahead is lost (an ideal range sensor and \
-                   adaptive cruise control on the same road, the stop line at an intersection); and with the envelope the \
-                   other way round.";
+    let caption = "All seeds together. Beside what the scenario describes, without the envelope: the same trips with a link \
+                   without delay, loss and silence; with vehicles that drive alone while the link to whoever is just ahead is lost \
+                   (an ideal range sensor and adaptive cruise control on the same road, the stop line at an intersection); and with \
+                   the envelope.";
     page.table(caption, &header, &LINES.iter().map(row).collect::<Vec<Vec<Cell>>>());
     page.section("Scenario");
     page.facts(&facts(options));
     page.command(&options.command);
     page.section("Figures");
-    page.paragraph(&format!("Seed {}, arrivals of the first {EXCERPT_S} s.", results.seed));
+    let how = if results.excerpts_with_envelope { "with" } else { "without" };
+    page.paragraph(&format!("Seed {}, arrivals of the first {EXCERPT_S} s, {how} the envelope.", results.seed));
     for plot in plots(experiment, results, steps) {
         page.figure(&plot.title, &plot.caption, &[&plot.chart]);
     }
@@ -112,7 +113,7 @@ fn facts(options: &CorridorOptions) -> Vec<(String, String)> {
             ),
         ),
         ("every vehicle", format!("silent for {} s from a random moment on", radio.dark_s)),
-        ("envelope", if corridor.envelope.engaged { "engaged" } else { "not engaged" }.to_owned()),
+        ("envelope in the figures", if corridor.envelope.engaged { "engaged" } else { "not engaged" }.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec()

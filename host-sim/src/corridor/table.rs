@@ -10,7 +10,7 @@ use super::scale::Load;
 pub type Line = (&'static str, fn(&Side) -> String);
 
 fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or("-".into(), |value| format!("{value:.digits$}"))
+    value.filter(|value| value.is_finite()).map_or("-".into(), |value| format!("{value:.digits$}"))
 }
 
 /// The figures in the order of the table.
@@ -37,7 +37,7 @@ pub const LINES: &[Line] = &[
 ];
 
 /// The names of the sides, in the order of the table.
-pub const SIDES: [&str; 4] = ["holdover", "perfect link", "drives alone", "envelope"];
+pub const SIDES: [&str; 4] = ["holdover", "perfect link", "drives alone", "with envelope"];
 
 /// The sides, in the same order.
 #[must_use]
@@ -60,6 +60,9 @@ pub fn text(results: &Results) -> String {
             let _ = write!(text, "{:>14}", of(side));
         });
         text.push('\n');
+    }
+    if results.excerpts_with_envelope {
+        text += "\nwith the envelope:\n";
     }
     let _ = writeln!(
         text,
@@ -125,16 +128,17 @@ pub fn scale_row(load: &Load) -> [String; 8] {
         format!("{:.2}", load.wall_s),
         format!("{:.1}", load.times_real_time),
         format!("{:.0}", load.vehicle_seconds_per_s),
-        format!("{:.1}", load.us_per_vehicle_second_and_peer),
+        number(Some(load.us_per_vehicle_second_and_peer), 1),
     ]
 }
 
-/// Whether the cost is in proportion, in words; nothing of less than two numbers of vehicles.
+/// Whether the cost is in proportion, in words; nothing of less than two numbers of vehicles, or where nobody was heard.
 #[must_use]
 pub fn proportion(loads: &[Load]) -> Option<String> {
     let ([first, ..], [.., last]) = (loads, loads) else { return None };
     let grown = last.us_per_vehicle_second_and_peer / first.us_per_vehicle_second_and_peer;
-    (loads.len() > 1).then(|| {
+    let is_known = [first, last].iter().all(|load| load.us_per_vehicle_second_and_peer.is_finite());
+    (loads.len() > 1 && is_known).then(|| {
         let (many, few) = (last.vehicles, first.vehicles);
         format!("{many} vehicles cost {grown:.2} times as much per vehicle and peer heard as {few} do")
     })
@@ -152,4 +156,42 @@ fn scale(loads: &[Load]) -> String {
         text.push('\n');
     }
     text + &said + if said.is_empty() { "" } else { "\n" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(vehicles: usize, peers_heard: f64) -> Load {
+        Load {
+            vehicles,
+            corridors: 1,
+            threads: 1,
+            under_way: vehicles as f64,
+            peers_heard,
+            wall_s: 0.1,
+            times_real_time: 300.0,
+            vehicle_seconds_per_s: 300.0,
+            cores: None,
+            us_per_vehicle_second_and_peer: 1e3 / peers_heard,
+        }
+    }
+
+    #[test]
+    fn the_cost_per_peer_heard_is_compared_where_there_is_one() {
+        let said = proportion(&[load(10, 4.0), load(300, 2.0)]);
+        assert_eq!(said.unwrap(), "300 vehicles cost 2.00 times as much per vehicle and peer heard as 10 do");
+        assert_eq!(proportion(&[load(10, 4.0)]), None);
+        assert_eq!(proportion(&[]), None);
+    }
+
+    #[test]
+    fn where_nobody_is_heard_nothing_is_said() {
+        for loads in [[load(1, 0.0), load(2, 0.5)], [load(1, 0.5), load(2, 0.0)], [load(1, 0.0), load(2, 0.0)]] {
+            assert_eq!(proportion(&loads), None);
+            let text = scale(&loads);
+            assert!(!text.contains("inf") && !text.contains("NaN") && !text.contains("times as much"), "{text}");
+        }
+        assert_eq!(scale_row(&load(1, 0.0))[7], "-");
+    }
 }
