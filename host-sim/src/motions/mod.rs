@@ -6,7 +6,8 @@
 //!                                         -> baselines
 //! ```
 //!
-//! [`rows::run`] gives the figures, [`table::text`] their table and [`section`] their part of a report, for other commands.
+//! [`rows::run`] gives the figures, [`table::text`] their table and [`section`] and [`largest`] their part of a report and of a
+//! picture, for other commands.
 
 pub mod arguments;
 pub mod consensus;
@@ -17,7 +18,7 @@ pub mod rows;
 pub mod silence;
 pub mod table;
 
-pub use page::section;
+pub use page::{largest, section};
 
 use indicatif::ProgressBar;
 use serde::Serialize;

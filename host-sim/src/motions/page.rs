@@ -1,4 +1,5 @@
-//! The report of target motions: rows enter; a table and curves on a page leave, alone or in another command's report.
+//! The report of target motions: rows enter; a table and curves on a page leave, alone or in another command's report,
+//! and bars for another command's picture.
 
 use super::options::MotionsOptions;
 use super::rows::{MethodFigures, Row};
@@ -6,7 +7,7 @@ use super::silence::NAMES;
 use super::table::standing;
 use crate::report::markup::{count, significant};
 use crate::report::page::{Cell, Page};
-use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
+use crate::report::plot::{Axis, Bars, Chart, Layer, Series, Tone};
 
 const WHAT: &str = "A vehicle that has heard another one over the paper’s channel (delay Normal(40 ms, 25.9 ms), 10 % loss) \
                     hears nothing for 4 s. Shown is how far from the truth its unit’s estimate is meanwhile, and what others \
@@ -39,6 +40,34 @@ pub fn section(page: &mut Page, rows: &[Row]) {
     }
 }
 
+/// The largest error of each method by what the target does; logarithmic, as freezing is far off.
+#[must_use]
+pub fn largest(rows: &[Row]) -> Bars {
+    let errors = |method: usize| rows.iter().map(|row| Some(row.methods.get(method)?.max_position_m)).collect();
+    let method = |(index, name): (usize, &str)| (name.replace('_', " "), tone(index, name), errors(index));
+    Bars {
+        title: "Largest position error in a silence of 4 s, by what the target does".into(),
+        description: "A bar for each method, in groups by what the target does.".into(),
+        x_label: "what the target does in the silence".into(),
+        y: Axis::logarithmic("largest position error", "m"),
+        height: 230.0,
+        groups: rows.iter().map(first_words).collect(),
+        methods: NAMES.into_iter().enumerate().map(method).collect(),
+    }
+}
+
+fn first_words(row: &Row) -> String {
+    row.motion.to_string().split(',').next().unwrap_or_default().to_owned()
+}
+
+fn tone(index: usize, method: &str) -> Tone {
+    match method {
+        "holdover" => Tone::Ours,
+        "paper" => Tone::Paper,
+        _ => Tone::Other(index),
+    }
+}
+
 /// A row for each method; what is least of a motion is strong.
 fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures) -> f64) {
     let spelled = |figures: &MethodFigures| significant(figure(figures), 3);
@@ -55,7 +84,6 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
         std::iter::once(name).chain(rows.iter().zip(&least).map(cell)).collect::<Vec<_>>()
     };
     let lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
-    let first_words = |row: &Row| row.motion.to_string().split(',').next().unwrap_or_default().to_owned();
     let motions: Vec<String> = rows.iter().map(first_words).collect();
     let header: Vec<&str> = std::iter::once("").chain(motions.iter().map(String::as_str)).collect();
     page.table(caption, &header, &lines);
@@ -64,12 +92,8 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
 /// Freezing is so far off that its line would flatten all others; it stands in the tables.
 fn growth(page: &mut Page, row: &Row) {
     let line = |(index, method): (usize, &MethodFigures)| {
-        let tone = match method.name {
-            "holdover" => Tone::Ours,
-            "paper" => Tone::Paper,
-            _ => Tone::Other(index),
-        };
-        Layer::Line { series: Series::new(method.name.replace('_', " "), method.growth.clone()), tone, marked: false }
+        let series = Series::new(method.name.replace('_', " "), method.growth.clone());
+        Layer::Line { series, tone: tone(index, method.name), marked: false }
     };
     // Ours last, so that it lies on top.
     let layers = row.methods.iter().enumerate().rev().filter(|(_, method)| method.name != "freeze").map(line).collect();
