@@ -236,4 +236,81 @@ mod tests {
         assert_eq!(violations_with_next(2), 0);
         assert_eq!(violations_with_next(3), 1);
     }
+
+    /// What becomes of an error at that time, in metres, about a target that began to follow somebody else at 10 s, by a unit
+    /// on the same road that heard from it so long before.
+    fn judged(errors: &[(f64, f64, f64)]) -> Judged {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let network = Network::of(&corridor);
+        let mut beliefs = Beliefs::new(&network, Some(0));
+        let see = |beliefs: &mut Beliefs, at_s: f64, believed: Option<(f64, f64)>| {
+            let target_m = 100.0 + 10.0 * at_s;
+            let of = |(error_m, age_s)| TargetBelief {
+                position_m: 500.0 + target_m + error_m,
+                speed_mps: 10.0,
+                age_s,
+                bound: None,
+            };
+            let own =
+                Sighting { followed: Some(station(1)), belief: believed.map(of), ..sighting(0, 0, target_m - 20.0) };
+            let target = Sighting { followed: (at_s >= 10.0).then(|| station(2)), ..sighting(1, 0, target_m) };
+            beliefs.tick(at_s, &[own, target]);
+        };
+        see(&mut beliefs, 9.0, None);
+        see(&mut beliefs, 10.0, None);
+        for (at_s, error_m, age_s) in errors {
+            see(&mut beliefs, *at_s, Some((*error_m, *age_s)));
+        }
+        assert_eq!(beliefs.changes, 1);
+        assert_eq!(beliefs.watched.len(), errors.len());
+        Judged {
+            counts: [beliefs.settled, beliefs.changing, beliefs.unheard].map(|class| class.count),
+            beyond: beliefs.beyond.iter().map(|(pair, worst)| (*pair, worst.error_m)).collect(),
+            settled: beliefs.settled,
+        }
+    }
+
+    struct Judged {
+        /// Settled, changing, unheard.
+        counts: [u64; 3],
+        beyond: Vec<((usize, usize), f64)>,
+        settled: Class,
+    }
+
+    #[test]
+    fn for_a_second_after_the_target_has_changed_whom_it_follows_errors_stand_apart() {
+        assert_eq!(judged(&[(10.01, 0.1, 0.05), (10.99, 0.1, 0.05)]).counts, [0, 2, 0]);
+        assert_eq!(judged(&[(11.0, 0.1, 0.05), (60.0, 0.1, 0.05)]).counts, [2, 0, 0]);
+    }
+
+    #[test]
+    fn later_errors_count_and_are_shown_apart_while_nothing_has_been_heard_since() {
+        assert_eq!(judged(&[(11.2, 0.1, 1.3)]).counts, [1, 0, 1]);
+        assert_eq!(judged(&[(11.2, 0.1, 1.1)]).counts, [1, 0, 0]);
+        assert_eq!(judged(&[(10.5, 0.1, 1.3)]).counts, [0, 1, 0]);
+    }
+
+    #[test]
+    fn a_pair_is_beyond_once_by_its_largest_error_of_the_first_class() {
+        let errors = [(10.5, 3.0, 0.05), (11.5, 0.19, 0.05), (12.0, 0.25, 0.05), (12.5, -0.5, 0.05), (13.0, 0.3, 0.05)];
+        let judged = judged(&errors);
+        assert_eq!(judged.beyond.len(), 1);
+        let (pair, error_m) = judged.beyond[0];
+        assert!(pair == (0, 1) && (error_m + 0.5).abs() < 1e-9, "{pair:?} {error_m}");
+        assert_eq!(super::tests::judged(&[(12.0, 0.19, 0.05)]).beyond, []);
+    }
+
+    #[test]
+    fn the_figures_of_a_class_are_its_largest_magnitude_and_the_root_of_its_mean_square() {
+        let settled = judged(&[(12.0, 0.3, 0.05), (13.0, -0.4, 0.05)]).settled;
+        assert!(
+            (settled.max_m().unwrap() - 0.4).abs() < 1e-9 && (settled.rms_m().unwrap() - 0.125_f64.sqrt()).abs() < 1e-9
+        );
+        let worst = settled.worst.unwrap();
+        assert_eq!((worst.at_s, worst.by, worst.target, worst.age_s), (13.0, 0, 1, 0.05));
+        let of_both = judged(&[(12.0, 0.3, 0.05)]).settled.with(judged(&[(13.0, -0.4, 0.05)]).settled);
+        assert_eq!((of_both.count, of_both.worst), (2, settled.worst));
+        assert_eq!((Class::default().max_m(), Class::default().rms_m()), (None, None));
+    }
 }

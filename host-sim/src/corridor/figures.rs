@@ -184,3 +184,57 @@ pub struct StepRow {
     #[serde(flatten)]
     pub side: Side,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::beliefs::Worst;
+    use super::*;
+
+    fn outcome(travel_times_s: &[f64], gap_m: Option<f64>, error_m: f64) -> Outcome {
+        let worst = Worst { error_m, at_s: 1.0, by: 0, target: 1, age_s: 0.1 };
+        let settled = Class { count: 2, worst: Some(worst), squares: error_m * error_m };
+        Outcome {
+            seed: 1,
+            travel_times_s: travel_times_s.to_vec(),
+            full_stops: 1,
+            collisions: [1, 2],
+            smallest_gap_m: gap_m,
+            smallest_clearance_s: None,
+            lowest_speed_mps: gap_m,
+            ticks: [10, 5],
+            errors: [settled, Class::default(), Class::default()],
+            beyond: 3,
+            changes: 4,
+            violations: 5,
+            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4 },
+        }
+    }
+
+    #[test]
+    fn the_figures_of_several_seeds_are_of_all_their_vehicles_together() {
+        let (one, other) = (outcome(&[20.0], Some(3.0), -0.3), outcome(&[30.0, 40.0], None, 0.1));
+        let side = Side::of(&[&one, &other]);
+        assert_eq!((side.served, side.unserved), (3, 2));
+        assert_eq!((side.mean_travel_time_s, side.longest_travel_time_s), (Some(30.0), Some(40.0)));
+        assert_eq!((side.collisions_on_roads, side.collisions_at_intersections, side.collisions()), (2, 4, 6));
+        assert_eq!(
+            (side.smallest_gap_m, side.smallest_clearance_s, side.lowest_speed_mps),
+            (Some(3.0), None, Some(3.0))
+        );
+        assert_eq!((side.position_error.ticks, side.position_error.max_m), (4, Some(0.3)));
+        assert!((side.position_error.rms_m.unwrap() - 0.025_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(side.position_error_unheard, ErrorFigures { ticks: 0, max_m: None, rms_m: None });
+        assert_eq!(
+            (side.full_stops, side.pairs_beyond, side.association_changes, side.bound_violations),
+            (2, 6, 8, 10)
+        );
+        assert_eq!((side.limited_share, side.refusals, side.order_disagreements, side.turned_away), (0.5, 4, 6, 8));
+    }
+
+    #[test]
+    fn without_vehicles_there_is_no_figure() {
+        let side = Side::of(&[&Outcome { travel_times_s: Vec::new(), ticks: [0, 0], ..outcome(&[], None, 0.1) }]);
+        assert_eq!((side.served, side.mean_travel_time_s, side.longest_travel_time_s), (0, None, None));
+        assert!(side.limited_share == 0.0);
+    }
+}

@@ -173,3 +173,170 @@ impl Watch for Referee<'_> {
         self.standing.remove(&trip);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::super::description::Corridor;
+    use super::super::read::corridor;
+    use super::super::trips::trips;
+    use super::*;
+
+    /// 2nd Street in both directions, which the third road crosses at the first intersection.
+    const NORTHWEST: usize = 0;
+    const SOUTHEAST: usize = 1;
+    const HARRISON: usize = 2;
+    const LENGTH_M: f64 = 5.0;
+
+    fn the_corridor() -> (Corridor, Network) {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let network = Network::of(&corridor);
+        (corridor, network)
+    }
+
+    fn on_road(trip: usize, road: usize, way_m: f64) -> Sighting {
+        Sighting {
+            trip,
+            road,
+            way_m,
+            length_m: LENGTH_M,
+            speed_mps: 10.0,
+            odometer_m: 0.0,
+            next: None,
+            followed: None,
+            belief: None,
+            limited: false,
+            dark: false,
+        }
+    }
+
+    /// With its front so far beyond the crossing point of the first intersection.
+    fn beyond(network: &Network, trip: usize, road: usize, front_m: f64) -> Sighting {
+        let stop = network.lanes[road].stops.iter().find(|stop| stop.intersection == 0).unwrap();
+        on_road(trip, road, stop.at_m + front_m)
+    }
+
+    /// What a referee sees who is shown two vehicles, a tick a second.
+    fn collisions(ticks: &[[Sighting; 2]], network: &Network) -> Vec<Collision> {
+        let mut referee = Referee::new(network, &[]);
+        for (at_s, sightings) in (0..).zip(ticks) {
+            referee.tick(f64::from(at_s), sightings);
+        }
+        referee.collisions
+    }
+
+    #[test]
+    fn a_bumper_gap_below_0_on_a_road_is_one_collision_as_long_as_it_lasts() {
+        let (_, network) = the_corridor();
+        let behind = |gap_m: f64| [on_road(1, NORTHWEST, 100.0), on_road(0, NORTHWEST, 100.0 - LENGTH_M - gap_m)];
+        assert_eq!(collisions(&[behind(0.5), behind(0.0)], &network), []);
+        let collision = |at_s| Collision { at_s, place: Place::Road(NORTHWEST), trips: [0, 1] };
+        assert_eq!(collisions(&[behind(0.5), behind(-0.1), behind(-0.5), behind(0.1)], &network), [collision(1.0)]);
+        let twice = [behind(-0.1), behind(0.1), behind(-0.1)];
+        assert_eq!(collisions(&twice, &network), [collision(0.0), collision(2.0)]);
+        let elsewhere = [on_road(1, NORTHWEST, 100.0), on_road(0, SOUTHEAST, 99.0)];
+        assert_eq!(collisions(&[elsewhere], &network), []);
+    }
+
+    #[test]
+    fn the_smallest_gap_is_that_of_the_nearest_two_on_one_road() {
+        let (_, network) = the_corridor();
+        let mut referee = Referee::new(&network, &[]);
+        assert_eq!(referee.smallest_gap_m, None);
+        let others = [on_road(2, SOUTHEAST, 100.0), on_road(3, HARRISON, 90.0)];
+        let [first, second, third] = [100.0, 85.0, 72.0].map(|way_m| on_road(0, NORTHWEST, way_m));
+        referee.tick(0.0, &[first, others[0], second, third, others[1]]);
+        assert_eq!(referee.smallest_gap_m, Some(8.0));
+        referee.tick(1.0, &[first, second]);
+        assert_eq!(referee.smallest_gap_m, Some(8.0));
+    }
+
+    #[test]
+    fn two_in_one_conflict_area_on_ways_that_cross_are_one_collision_as_long_as_they_are() {
+        let (_, network) = the_corridor();
+        let half_m = network.junctions[0].half_m;
+        let both = |a_m: f64, b_m: f64| [beyond(&network, 0, NORTHWEST, a_m), beyond(&network, 1, HARRISON, b_m)];
+        let (before_m, in_m, out_m) = (-half_m - 0.1, -half_m + 0.1, half_m + LENGTH_M + 0.1);
+        assert_eq!(collisions(&[both(in_m, before_m), both(out_m, in_m)], &network), []);
+        let collision = Collision { at_s: 1.0, place: Place::Intersection(0), trips: [0, 1] };
+        // The rear of the first is still in the area, then it is not.
+        let ticks = [both(0.0, before_m), both(out_m - 0.2, in_m), both(out_m - 0.15, 0.0), both(out_m, 0.0)];
+        assert_eq!(collisions(&ticks, &network), [collision]);
+    }
+
+    #[test]
+    fn two_in_one_conflict_area_on_ways_that_do_not_cross_are_none() {
+        let (_, network) = the_corridor();
+        let oncoming = [beyond(&network, 0, NORTHWEST, 0.0), beyond(&network, 1, SOUTHEAST, 0.0)];
+        let behind = [beyond(&network, 0, HARRISON, 4.0), beyond(&network, 1, HARRISON, -3.0)];
+        assert_eq!(collisions(&[oncoming, behind], &network), []);
+    }
+
+    #[test]
+    fn clearance_is_from_leaving_a_conflict_area_to_entering_it_on_a_way_that_crosses() {
+        let (_, network) = the_corridor();
+        let mut referee = Referee::new(&network, &[]);
+        let mut see = |at_s: f64, trip: usize, road: usize, front_m: f64| {
+            referee.tick(at_s, &[beyond(&network, trip, road, front_m)]);
+            referee.smallest_clearance_s
+        };
+        assert_eq!(see(1.0, 0, NORTHWEST, 0.0), None);
+        assert_eq!(see(2.0, 0, NORTHWEST, 20.0), None);
+        assert_eq!(see(2.5, 1, SOUTHEAST, 0.0), None);
+        assert_eq!(see(3.0, 1, SOUTHEAST, 20.0), None);
+        // Since the second one has left.
+        assert_eq!(see(4.5, 2, HARRISON, 0.0), Some(1.5));
+        assert_eq!(see(5.0, 2, HARRISON, 20.0), Some(1.5));
+        assert_eq!(see(7.0, 3, NORTHWEST, 0.0), Some(1.5));
+        assert_eq!(see(8.0, 3, NORTHWEST, 20.0), Some(1.5));
+        assert_eq!(see(8.75, 4, HARRISON, 0.0), Some(0.75));
+    }
+
+    /// When the full stops began of a vehicle with those speeds, a tenth of a second apart.
+    fn stops(speeds_mps: &[f64]) -> Vec<(f64, usize)> {
+        let (_, network) = the_corridor();
+        let mut referee = Referee::new(&network, &[]);
+        for (tenth, speed_mps) in (0..).zip(speeds_mps) {
+            referee.tick(f64::from(tenth) / 10.0, &[Sighting { speed_mps: *speed_mps, ..on_road(7, NORTHWEST, 50.0) }]);
+        }
+        assert_eq!(referee.lowest_speed_mps, speeds_mps.iter().copied().reduce(f64::min));
+        referee.stops
+    }
+
+    #[test]
+    fn a_full_stop_is_below_a_tenth_of_a_metre_a_second_for_half_a_second_and_not_shorter() {
+        let (slow, fast) = (0.099, 0.1);
+        assert_eq!(stops(&[&[fast], &[slow; 6][..]].concat()), [(0.1, 7)]);
+        assert_eq!(stops(&[&[fast], &[slow; 5][..], &[fast]].concat()), []);
+        assert_eq!(stops(&[fast; 20]), []);
+        // Once as long as it lasts, and once more after it has moved.
+        assert_eq!(stops(&[&[slow; 12][..], &[fast], &[slow; 6]].concat()), [(0.0, 7), (1.3, 7)]);
+    }
+
+    #[test]
+    fn the_travel_time_is_from_the_arrival_on_and_who_has_left_stands_no_more() {
+        let (corridor, network) = the_corridor();
+        let trips = trips(&corridor, &network, 1);
+        let mut referee = Referee::new(&network, &trips);
+        let arrived_s = trips[3].at_s;
+        let standing = Sighting { speed_mps: 0.0, ..on_road(3, NORTHWEST, 50.0) };
+        referee.tick(arrived_s + 40.0, &[standing]);
+        referee.left(arrived_s + 40.25, 3);
+        assert!((referee.travel_times_s[3].unwrap() - 40.25).abs() < 1e-9);
+        assert!(referee.travel_times_s.iter().enumerate().all(|(trip, time_s)| trip == 3 || time_s.is_none()));
+        referee.tick(arrived_s + 41.0, &[standing]);
+        assert_eq!(referee.stops, []);
+    }
+
+    #[test]
+    fn ticks_are_counted_and_those_at_which_an_envelope_changed_the_command() {
+        let (_, network) = the_corridor();
+        let mut referee = Referee::new(&network, &[]);
+        let limited = Sighting { limited: true, ..on_road(0, NORTHWEST, 50.0) };
+        referee.tick(0.0, &[limited, on_road(1, HARRISON, 50.0)]);
+        referee.tick(0.1, &[on_road(0, NORTHWEST, 50.0)]);
+        assert_eq!(referee.ticks, [3, 1]);
+    }
+}

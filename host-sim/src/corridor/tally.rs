@@ -22,3 +22,15 @@ impl Tally {
         Self { on_way: self.on_way - earlier.on_way, heard: self.heard - earlier.heard }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_came_after_an_earlier_tally_and_the_earlier_one_are_the_later_one() {
+        let (earlier, later) = (Tally { on_way: 3, heard: 5 }, Tally { on_way: 10, heard: 7 });
+        assert_eq!(later.less(earlier), Tally { on_way: 7, heard: 2 });
+        assert_eq!(later.less(earlier).with(earlier), later);
+    }
+}
