@@ -100,7 +100,7 @@ pub struct RunSettings {
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub vehicles: Option<Vec<usize>>,
 
-    /// Draw a one-page picture, for a corridor
+    /// Draw a one-page picture, for a corridor: trajectories, errors, and ours beside seven other methods
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
 
@@ -116,7 +116,8 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
-    /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead
+    /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead.
+    /// The sides of a corridor are without and with it in any case; its excerpts and figures are then with it
     #[arg(long)]
     pub envelope: bool,
 

@@ -57,14 +57,14 @@ fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_s
     let edits = [("ego_after_s = 60.0", "ego_after_s = 0.0"), (of_second, of_harrison)];
     let file = short(folder.path(), &edits);
     let report = folder.path().join("report");
-    let output = sim(&["run", &file, "--json", "--vehicles", "1,3", "--out", report.to_str().unwrap()]);
+    let output = sim(&["run", &file, "--json", "--vehicles", "4,8", "--out", report.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     let (steps, motions) = (results["steps"].as_array().unwrap(), results["motions"].as_array().unwrap());
     assert_eq!((steps.len(), motions.len()), (7, 5));
     let scale = results["timing"]["scale"].as_array().unwrap();
     let asked: Vec<u64> = scale.iter().map(|load| load["vehicles"].as_u64().unwrap()).collect();
-    assert_eq!(asked, [1, 3]);
+    assert_eq!(asked, [4, 8]);
     for load in scale {
         let [under_way, peers, speed] =
             ["under_way", "peers_heard", "times_real_time"].map(|key| load[key].as_f64().unwrap());
@@ -80,7 +80,7 @@ fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_s
         "Figure 9. 5 m/s",
         "Figure 10. How many times faster than real time",
         "holdover loses",
-        "3 vehicles cost",
+        "8 vehicles cost",
     ] {
         assert!(page.contains(title), "{title}");
     }
@@ -94,6 +94,77 @@ fn a_limit_that_is_missed_is_a_failed_verdict() {
     assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains("verdict: failed") && text.contains("position error"), "{text}");
+}
+
+#[test]
+fn roads_by_which_nobody_comes_are_a_failed_verdict_as_nothing_was_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &[]);
+    let text = std::fs::read_to_string(&file).unwrap().replace("vehicles_per_min = ", "vehicles_per_min = 0 # ");
+    std::fs::write(&file, text).unwrap();
+    let output = sim(&["run", &file, "--no-report"]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for said in ["verdict: failed", "nobody got through", "no position error was measured", "no travel times"] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+}
+
+#[test]
+fn the_sides_are_what_they_are_called_with_the_envelope_or_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &[("duration_s = 20.0", "duration_s = 10.0")]);
+    let [without, with]: [serde_json::Value; 2] = [&[][..], &["--envelope"]].map(|more| {
+        let output = sim(&[&["run", file.as_str(), "--json", "--no-report"], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    });
+    for side in ["holdover", "perfect_link", "alone", "envelope"] {
+        assert_eq!(with[side], without[side], "{side}");
+    }
+    assert_eq!(without["holdover"]["limited_share"], 0.0);
+    assert_eq!([&without, &with].map(|results| results["excerpts_with_envelope"].as_bool().unwrap()), [false, true]);
+    // The arrivals last for less than an excerpt does.
+    let nothing_wrong = |results: &serde_json::Value| {
+        let mut row = results["wrong"][0].clone();
+        row.as_object_mut().unwrap().remove("what");
+        row
+    };
+    assert_eq!(nothing_wrong(&without), without["holdover"]);
+    assert_eq!(nothing_wrong(&with), with["envelope"]);
+}
+
+#[test]
+fn the_picture_has_the_papers_figures_and_ours_beside_others_and_is_the_same_for_the_same_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (of_second, of_harrison) = ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"");
+    let edits = [
+        ("duration_s = 20.0", "duration_s = 10.0"),
+        ("ego_after_s = 60.0", "ego_after_s = 0.0"),
+        (of_second, of_harrison),
+    ];
+    let file = short(folder.path(), &edits);
+    let draw = |name: &str| {
+        let picture = folder.path().join(name);
+        let output = sim(&["run", &file, "--no-report", "--json", "--picture", picture.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(results["motions"].as_array().unwrap().len(), 5);
+        std::fs::read_to_string(picture).unwrap()
+    };
+    let drawn = draw("1.svg");
+    for said in [
+        "Trajectories at the first intersection",
+        "Error of the ego",
+        "Largest position error over prediction step",
+        "Largest position error in a silence of 4 s",
+        "constant acceleration",
+        "slot following",
+        "depends on the machine",
+    ] {
+        assert!(drawn.contains(said), "{said}");
+    }
+    assert!(drawn == draw("2.svg"));
 }
 
 #[test]
