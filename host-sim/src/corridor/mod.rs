@@ -2,7 +2,7 @@
 //! unit's own code, agree on an order by radio, cross and leave; what happened to them leaves.
 //!
 //! ```text
-//! file -> read -> description -> network (roads, crossing points) -> trips (who comes when) -> traffic (the world)
+//! file -> read (fit: does it fit together) -> description -> network (roads, crossing points) -> trips (who comes when) -> traffic (the world)
 //!                                                     referee (collisions, gaps, stops), beliefs (errors) <-'
 //! ```
 

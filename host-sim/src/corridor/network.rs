@@ -107,3 +107,60 @@ impl Network {
         Self { lanes, junctions }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::corridor::read::corridor;
+
+    fn the_corridor() -> Network {
+        let text = include_str!("../../scenarios/corridor.toml");
+        Network::of(&corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap())
+    }
+
+    #[test]
+    fn the_first_intersection_has_three_legs_and_the_others_four() {
+        let network = the_corridor();
+        assert_eq!(network.junctions.iter().map(|junction| junction.legs.len()).collect::<Vec<_>>(), [3, 4, 4, 4]);
+        for (road, lane) in network.lanes.iter().enumerate() {
+            for stop in &lane.stops {
+                let leg = network.junctions[stop.intersection].legs[stop.leg];
+                assert_eq!((leg.road, leg.at_m), (road, stop.at_m));
+            }
+        }
+    }
+
+    #[test]
+    fn a_road_meets_its_intersections_in_the_order_of_travel_193_m_apart() {
+        let network = the_corridor();
+        for (road, order) in [(0, vec![0, 1, 2, 3]), (1, vec![3, 2, 1, 0]), (2, vec![0])] {
+            let lane = &network.lanes[road];
+            assert_eq!(lane.stops.iter().map(|stop| stop.intersection).collect::<Vec<_>>(), order);
+            let ways = lane.stops.windows(2).map(|pair| pair[1].at_m - pair[0].at_m);
+            ways.for_each(|way_m| assert!((way_m - 193.0).abs() < 1.0, "{way_m}"));
+            let (first, last) = (lane.stops[0], lane.stops[order.len() - 1]);
+            let [before_m, beyond_m] = [first.at_m - lane.entry_m, lane.exit_m - last.at_m];
+            assert!((before_m - 180.0).abs() < 1e-9 && (beyond_m - 40.0).abs() < 1e-9, "{before_m} {beyond_m}");
+        }
+    }
+
+    #[test]
+    fn legs_conflict_if_their_ways_cross_and_not_if_they_are_of_one_street() {
+        let junction = &the_corridor().junctions[1];
+        let conflict = |a: usize, b: usize| {
+            let leg = |road| junction.legs.iter().position(|leg| leg.road == road).unwrap();
+            junction.conflict(leg(a), leg(b))
+        };
+        // 2nd Street is roads 0 and 1, Folsom Street 3 and 4.
+        assert!([(0, 3), (3, 0), (0, 4), (1, 3), (4, 1)].into_iter().all(|(a, b)| conflict(a, b)));
+        assert!(![(0, 0), (0, 1), (1, 0), (3, 4)].into_iter().any(|(a, b)| conflict(a, b)));
+    }
+
+    #[test]
+    fn ways_cross_at_20_degrees_and_more() {
+        assert!(cross(0.0, 20.0) && cross(350.0, 10.0) && cross(0.0, 160.0) && cross(90.0, 270.0 - 20.0));
+        assert!(!cross(0.0, 19.9) && !cross(0.0, 160.1) && !cross(359.0, 1.0) && !cross(10.0, 190.0));
+    }
+}
