@@ -160,7 +160,7 @@ fn the_picture_has_the_papers_figures_and_ours_beside_others_and_is_the_same_for
         "Largest position error in a silence of 4 s",
         "constant acceleration",
         "slot following",
-        "depends on the machine",
+        "How many updates a second",
     ] {
         assert!(drawn.contains(said), "{said}");
     }

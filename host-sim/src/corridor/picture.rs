@@ -18,10 +18,11 @@ const TITLE: f64 = 30.0;
 /// A line of the note below the figures.
 const LINE: f64 = 18.0;
 
-const NOTE: [&str; 3] = [
-    "Where the ego's error leaps, it follows someone else from then on. The dots by themselves are what the paper reports from",
-    "its own simulation. How many updates a second a core makes at each prediction step depends on the machine: the report has",
-    "it, and this picture is the same for the same seed.",
+const NOTE: [&str; 4] = [
+    "Where the ego's error leaps, it follows someone else from then on. The dots by themselves are what the paper",
+    "reports from its own simulation. In free acceleration and slot following the target has said what it will do; what",
+    "a driver will do nobody says. How many updates a second a core makes at each prediction step depends on the",
+    "machine: the report has it, and this picture is the same for the same seed.",
 ];
 
 /// A figure and what stands above it.
@@ -52,8 +53,8 @@ pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journ
     }
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 0 {} {:.0}\" role=\"img\">\n<style>{}\n\
-         .heading{{font:600 15px system-ui,sans-serif;fill:currentColor}}\
-         .note{{font:13px system-ui,sans-serif;fill:currentColor}}</style>\n{body}</svg>\n",
+         .heading{{font:600 15px system-ui,sans-serif;fill:var(--ink)}}\
+         .note{{font:13px system-ui,sans-serif;fill:var(--ink)}}</style>\n{body}</svg>\n",
         Width::Wide.pixels() + 20.0,
         top + BETWEEN,
         escape(STYLE)
