@@ -241,6 +241,19 @@ mod tests {
     }
 
     #[test]
+    fn whoever_runs_into_one_that_has_left_collides_too_and_those_who_have_both_left_are_nobody_s() {
+        let (_, network) = the_corridor();
+        let exit_m = network.lanes[NORTHWEST].exit_m;
+        let mut referee = Referee::new(&network, &[]);
+        referee.beyond(&[on_road(1, NORTHWEST, exit_m + 1.0), on_road(2, NORTHWEST, exit_m + 0.5)]);
+        referee.tick(0.0, &[on_road(3, NORTHWEST, exit_m + 0.5 - LENGTH_M - 2.0)]);
+        assert_eq!((referee.collisions.len(), referee.smallest_gap_m), (0, Some(2.0)));
+        referee.tick(1.0, &[on_road(3, NORTHWEST, exit_m - LENGTH_M + 1.0)]);
+        let trips: Vec<_> = referee.collisions.iter().map(|collision| collision.trips).collect();
+        assert_eq!(trips, [[2, 3]]);
+    }
+
+    #[test]
     fn the_smallest_gap_is_that_of_the_nearest_two_on_one_road() {
         let (_, network) = the_corridor();
         let mut referee = Referee::new(&network, &[]);
