@@ -31,6 +31,7 @@ pub mod replay;
 pub mod report;
 pub mod run;
 pub mod scenario;
+pub mod seeds;
 pub mod sensors;
 pub mod streams;
 pub mod string;

@@ -214,3 +214,12 @@ fn options_of_a_string_are_not_for_a_corridor_nor_the_other_way_round() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("is a corridor"));
 }
+
+#[test]
+fn seeds_that_cannot_be_are_refused_with_cause_and_remedy() {
+    for seeds in ["0", "10001", "9223372036854775807"] {
+        let output = sim(&["run", "corridor", "--seeds", seeds, "--no-report"]);
+        let message = format!("error: --seeds: is {seeds}; give a number from 1 to 10000\n");
+        assert_eq!((output.status.code(), String::from_utf8_lossy(&output.stderr)), (Some(2), message.into()));
+    }
+}

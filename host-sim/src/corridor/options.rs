@@ -9,6 +9,7 @@ use crate::cli::RunSettings;
 use crate::error::Error;
 use crate::options::{can_be_file, can_be_folder};
 use crate::scenario::Overrides;
+use crate::seeds;
 
 /// More vehicles at once would take gigabytes.
 const MOST_VEHICLES: usize = 10_000;
@@ -59,10 +60,7 @@ impl CorridorOptions {
         };
         let corridor = read::corridor(file, text, &overrides)?;
         let count = settings.seeds.unwrap_or(1);
-        let last = count.checked_sub(1).and_then(|more| corridor.seed.checked_add(more));
-        let last = last.ok_or_else(|| {
-            Error::new(format!("is {count}"), "give at least 1, and no seed beyond 2^64").in_option("--seeds")
-        })?;
+        let seeds = seeds::checked(corridor.seed, count)?.collect();
         let report = (!settings.no_report).then_some(settings.out);
         if let Some(folder) = &report {
             can_be_folder(folder)?;
@@ -92,7 +90,6 @@ impl CorridorOptions {
             command += &format!(" --vehicles {}", numbers.join(","));
         }
         let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
-        let seeds = (corridor.seed..=last).collect();
         Ok(Self { corridor, name, command, seeds, json: settings.json, report, vehicles, picture: settings.picture })
     }
 }

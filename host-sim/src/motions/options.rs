@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::arguments::MotionsArguments;
 use crate::error::Error;
 use crate::options::can_be_folder;
+use crate::seeds;
 
 /// The most silences of a motion: their errors are held at once.
 pub const MOST_SILENCES: u32 = 1000;
@@ -33,10 +34,7 @@ impl MotionsOptions {
             let remedy = format!("give a number from 1 to {MOST_SILENCES}");
             return Err(Error::new(format!("is {silences}"), remedy).in_option("--silences"));
         }
-        if seed.checked_add(u64::from(silences)).is_none() {
-            let cause = format!("seeds from {seed} on end before there are {silences}");
-            return Err(Error::new(cause, "give a smaller first seed").in_option("--seed"));
-        }
+        seeds::from(seed, u64::from(silences))?;
         let report = (!no_report).then_some(out);
         if let Some(folder) = &report {
             can_be_folder(folder)?;

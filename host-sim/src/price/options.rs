@@ -7,9 +7,7 @@ use crate::channel::{Impairment, Window};
 use crate::error::Error;
 use crate::options::can_be_folder;
 use crate::scenario::{Overrides, Scenario};
-
-/// The most seeds.
-const MOST_SEEDS: u64 = 10_000;
+use crate::seeds;
 
 /// Silences unless given, in seconds.
 const SILENCES_S: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
@@ -58,14 +56,7 @@ impl PriceOptions {
         };
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
         let scenarios = scenarios(&scenario, silences)?;
-        if !(1..=MOST_SEEDS).contains(&seeds) {
-            let remedy = format!("give a number from 1 to {MOST_SEEDS}");
-            return Err(Error::new(format!("is {seeds}"), remedy).in_option("--seeds"));
-        }
-        if scenario.seed.checked_add(seeds).is_none() {
-            let cause = format!("seeds from {} on end before there are {seeds}", scenario.seed);
-            return Err(Error::new(cause, "give a smaller first seed").in_option("--seed"));
-        }
+        seeds::checked(scenario.seed, seeds)?;
         if !(1.0..=1e6).contains(&distance) {
             let error = Error::new(format!("is {distance}"), "give metres from 1 to 1000000");
             return Err(error.in_option("--distance"));

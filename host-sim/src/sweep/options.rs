@@ -6,9 +6,7 @@ use super::arguments::SweepArguments;
 use crate::error::Error;
 use crate::options::can_be_folder;
 use crate::scenario::{Overrides, Scenario};
-
-/// The most seeds: the errors of a step's runs are held at once.
-pub const MOST_SEEDS: u64 = 10_000;
+use crate::seeds;
 
 /// A sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,14 +37,7 @@ impl SweepOptions {
         let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
         let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
         let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
-        if !(1..=MOST_SEEDS).contains(&seeds) {
-            let remedy = format!("give a number from 1 to {MOST_SEEDS}");
-            return Err(Error::new(format!("is {seeds}"), remedy).in_option("--seeds"));
-        }
-        if scenario.seed.checked_add(seeds).is_none() {
-            let cause = format!("seeds from {} on end before there are {seeds}", scenario.seed);
-            return Err(Error::new(cause, "give a smaller first seed").in_option("--seed"));
-        }
+        seeds::checked(scenario.seed, seeds)?;
         let report = (!no_report).then_some(out);
         if let Some(folder) = &report {
             can_be_folder(folder)?;
