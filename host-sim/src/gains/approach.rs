@@ -1,8 +1,11 @@
-//! What a pair of gains makes of one situation: own speed, target speed and headway at the moment of association enter; how
-//! near, how hard and how long the approach is leaves. The target keeps its speed; the vehicle is a car with its lag and
-//! its limits, in steps of 20 ms.
+//! What a law makes of one situation: own speed, target speed and headway at the moment of association enter; how near, how
+//! hard and how long the approach is leaves. The target keeps its speed; the vehicle is a car with its lag and its limits,
+//! in steps of 20 ms.
+//!
+//! The limits on the demand, 2.5 and -4 m/s² and 5 m/s³, hold by construction: the demand is cut to them, and what a lag makes
+//! of it is never more. So they are no result.
 
-use super::linear::{Pair, TIME_GAP_S};
+use super::linear::Law;
 
 const STEP_S: f64 = 0.02;
 /// Watched for this long.
@@ -50,29 +53,31 @@ impl Situation {
     }
 
     /// The bumper gap wanted in the end.
-    fn wanted_gap_m(&self) -> f64 {
-        STANDSTILL_M + self.target_mps * TIME_GAP_S
+    fn wanted_gap_m(&self, time_gap_s: f64) -> f64 {
+        STANDSTILL_M + self.target_mps * time_gap_s
     }
 
-    /// The approach by the law with these gains.
+    /// The approach by that law.
     #[must_use]
-    pub fn by_law(&self, pair: Pair) -> Approach {
-        self.approach(|gap_m, own_mps| {
-            let error = -gap_m + STANDSTILL_M + own_mps * TIME_GAP_S + pair.damping_s * (own_mps - self.target_mps);
+    pub fn by_law(&self, law: Law) -> Approach {
+        let Law { pair, time_gap_s } = law;
+        self.approach(self.wanted_gap_m(time_gap_s), |gap_m, own_mps| {
+            let error = -gap_m + STANDSTILL_M + own_mps * time_gap_s + pair.damping_s * (own_mps - self.target_mps);
             -pair.gain * error
         })
     }
 
-    /// The approach by braking that hard from the start, until the speeds are equal.
+    /// The approach by braking that hard from the start, until the speeds are equal, beside the gap that this time gap wants.
     #[must_use]
-    pub fn by_braking(&self, braking_mps2: f64) -> Approach {
-        self.approach(|_, own_mps| if own_mps > self.target_mps { -braking_mps2 } else { 0.0 })
+    pub fn by_braking(&self, braking_mps2: f64, time_gap_s: f64) -> Approach {
+        let wish = |_, own_mps| if own_mps > self.target_mps { -braking_mps2 } else { 0.0 };
+        self.approach(self.wanted_gap_m(time_gap_s), wish)
     }
 
-    fn approach(&self, wish: impl Fn(f64, f64) -> f64) -> Approach {
+    fn approach(&self, wanted_gap_m: f64, wish: impl Fn(f64, f64) -> f64) -> Approach {
         let keep = (-STEP_S / LAG_S).exp();
         let (mut gap, mut own, mut a, mut demand) = (self.gap_m(), self.own_mps, 0.0f64, 0.0f64);
-        let floor = self.gap_m().min(self.wanted_gap_m());
+        let floor = self.gap_m().min(wanted_gap_m);
         let mut seen = Approach {
             least_gap_m: gap,
             overshoot_m: 0.0,
@@ -92,7 +97,7 @@ impl Situation {
             seen.braking_mps2 = seen.braking_mps2.max(-a);
             seen.acceleration_mps2 = seen.acceleration_mps2.max(a);
             seen.jerk_mps3 = seen.jerk_mps3.max((a - before.0).abs() / STEP_S);
-            if (gap - self.wanted_gap_m()).abs() > SETTLED.0 || (own - self.target_mps).abs() > SETTLED.1 {
+            if (gap - wanted_gap_m).abs() > SETTLED.0 || (own - self.target_mps).abs() > SETTLED.1 {
                 seen.settled_s = f64::from(step) * STEP_S;
             }
         }
@@ -103,13 +108,17 @@ impl Situation {
 
 #[cfg(test)]
 mod tests {
+    use super::super::linear::Pair;
     use super::*;
 
-    const USUAL: Pair = Pair { gain: 0.5, damping_s: 2.0 };
+    const USUAL: Law = Law { pair: Pair { gain: 0.5, damping_s: 2.0 }, time_gap_s: 1.0 };
 
     #[test]
     fn at_the_gap_and_the_speed_that_are_wanted_nothing_happens() {
         let rest = Situation { own_mps: 10.0, target_mps: 10.0, headway_m: 16.8 }.by_law(USUAL);
+        assert!(rest.settled_s == 0.0 && rest.braking_mps2 < 1e-9 && rest.overshoot_m < 1e-9, "{rest:?}");
+        let law = Law { time_gap_s: 1.6, ..USUAL };
+        let rest = Situation { own_mps: 10.0, target_mps: 10.0, headway_m: 22.8 }.by_law(law);
         assert!(rest.settled_s == 0.0 && rest.braking_mps2 < 1e-9 && rest.overshoot_m < 1e-9, "{rest:?}");
     }
 
@@ -122,7 +131,7 @@ mod tests {
 
     #[test]
     fn braking_from_20_to_0_at_4_takes_some_50_metres_more_than_the_ramp() {
-        let braking = Situation { own_mps: 20.0, target_mps: 0.0, headway_m: 104.8 }.by_braking(4.0);
+        let braking = Situation { own_mps: 20.0, target_mps: 0.0, headway_m: 104.8 }.by_braking(4.0, 1.0);
         // 20²/8, and the jerk's ramp of 0.8 s and the lag of 0.3 s at 20 m/s: half of one and all of the other.
         assert!((100.0 - braking.least_gap_m - 64.0).abs() < 1.0, "{braking:?}");
     }

@@ -2,13 +2,13 @@
 //!
 //! With the lag of a bus the sound pairs are a narrow strip, and the mean of two of them may lie beside it. So there is one
 //! curve through its middle, the cells say where on it, and whatever is interpolated is on it too: the whole of it is
-//! proved, thousandth by thousandth.
+//! proved, thousandth by thousandth. Curve and cells are chosen at one time gap, and [proved](super::proof) at more.
 
 use rayon::prelude::*;
 
 use super::approach::Situation;
 use super::cell::Cell;
-use super::linear::Pair;
+use super::linear::{DESIGN_TIME_GAP_S, Pair};
 
 /// Speeds, own and target's: so many, from 0, in steps of this many m/s.
 pub const SPEEDS: usize = 8;
@@ -40,7 +40,7 @@ pub fn curve() -> Vec<u32> {
         let gain = f64::from(CURVE_FIRST_MILLI + point * CURVE_STEP_MILLI) / 1e3;
         let sound = (50..=399)
             .map(|step| step * DAMPING_STEP_MILLI)
-            .filter(|damping| Pair { gain, damping_s: f64::from(*damping) / 1e3 }.is_sound());
+            .filter(|damping| Pair { gain, damping_s: f64::from(*damping) / 1e3 }.at(DESIGN_TIME_GAP_S).is_sound());
         let (low, high) = sound.fold((u32::MAX, 0), |(low, high), damping| (low.min(damping), high.max(damping)));
         (low.min(high) + high) / 2
     };
@@ -60,11 +60,11 @@ pub fn on_curve(curve: &[u32], gain_milli: u32) -> Pair {
     Pair { gain: f64::from(gain_milli) / 1e3, damping_s: damping_milli / 1e3 }
 }
 
-/// The thousandths of `k` whose pair on the curve is not sound; there has to be none.
+/// All pairs on the curve, thousandth by thousandth of `k`.
 #[must_use]
-pub fn unsound(curve: &[u32]) -> Vec<u32> {
+pub fn pairs(curve: &[u32]) -> Vec<Pair> {
     let last = CURVE_FIRST_MILLI + (POINTS - 1) * CURVE_STEP_MILLI;
-    (CURVE_FIRST_MILLI..=last).into_par_iter().filter(|gain| !on_curve(curve, *gain).is_sound()).collect()
+    (CURVE_FIRST_MILLI..=last).map(|gain| on_curve(curve, gain)).collect()
 }
 
 /// All situations: own speed slowest, headway fastest.
