@@ -32,6 +32,8 @@ struct Results<'a> {
     shipped_time_gap_s: f64,
     /// The smallest of the time gaps at and above which it holds; none if it does not hold at the largest.
     smallest_time_gap_s: Option<f64>,
+    /// The first seed.
+    seed: u64,
     rows: &'a [Row],
 }
 
@@ -40,8 +42,7 @@ struct Results<'a> {
 /// # Errors
 /// A configuration that the units refuse, and places that cannot be written.
 pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
-    let cells = options.time_gaps_s.len() * options.delays_s.len() * options.losses.len();
-    let bar = output::progress((cells * options.disturbances.len()) as u64 * options.seeds);
+    let bar = output::progress(rows::count(options));
     let rows = rows::run(options, || bar.inc(1))?;
     bar.finish_and_clear();
     let failures = rows::failures(&rows);
@@ -52,12 +53,13 @@ pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
     if options.json {
         let smallest_time_gap_s = rows::smallest_time_gap_s(&rows);
         let shipped_time_gap_s = options::shipped_time_gap_s();
-        let results = Results { limit: rows::LIMIT, shipped_time_gap_s, smallest_time_gap_s, rows: &rows };
+        let results =
+            Results { limit: rows::LIMIT, shipped_time_gap_s, smallest_time_gap_s, seed: options.seed, rows: &rows };
         let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
         output::print(&format!("{json}\n"))?;
-        failures.iter().for_each(|failure| output::say(&format!("verdict: FAILED: {failure}")));
+        output::say(&table::verdict(options, &rows, &failures));
     } else {
-        output::print(&table::text(&rows, &failures))?;
+        output::print(&table::text(options, &rows, &failures))?;
     }
     if let Some(report) = report {
         output::say(&format!("report: {}", report.display()));

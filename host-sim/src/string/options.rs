@@ -8,6 +8,12 @@ use super::arguments::StringArguments;
 use super::disturbance::Disturbance;
 use crate::error::Error;
 use crate::options::can_be_folder;
+use crate::seeds;
+
+/// Seeds of a step unless said otherwise: at a step chance decides.
+const STEP_SEEDS: u64 = 40;
+/// Seeds of a sine unless said otherwise: over whole periods chance averages out.
+const SINE_SEEDS: u64 = 1;
 
 /// What is to be measured and what becomes of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +28,8 @@ pub struct StringOptions {
     pub disturbances: Vec<Disturbance>,
     /// The first seed of what is lost.
     pub seed: u64,
-    /// How many; at least 1, and none beyond 2^64.
-    pub seeds: u64,
+    /// How many, if it is said: from 1 to [`seeds::MOST`].
+    pub seeds: Option<u64>,
     /// Results as JSON.
     pub json: bool,
     /// Folder of the report; `None`: no report.
@@ -43,10 +49,7 @@ impl StringOptions {
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
         within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
-        if seeds.checked_sub(1).and_then(|more| seed.checked_add(more)).is_none() {
-            let remedy = "give at least 1, and no seed beyond 2^64";
-            return Err(Error::new(format!("is {seeds}"), remedy).in_option("--seeds"));
-        }
+        seeds::checked(seed, seeds.unwrap_or(STEP_SEEDS))?;
         let report = (!no_report).then_some(out);
         if let Some(folder) = &report {
             can_be_folder(folder)?;
@@ -54,6 +57,14 @@ impl StringOptions {
         let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
         Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, json, report })
+    }
+
+    /// How many seeds of that disturbance are run where such a share is lost. Nothing else is drawn, so without a loss one
+    /// of them is all.
+    #[must_use]
+    pub fn seeds_of(&self, disturbance: Disturbance, loss: f64) -> u64 {
+        let usual = if disturbance == Disturbance::Step { STEP_SEEDS } else { SINE_SEEDS };
+        if loss > 0.0 { self.seeds.unwrap_or(usual) } else { 1 }
     }
 
     /// The same command again.
@@ -64,13 +75,13 @@ impl StringOptions {
             self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
         let sines =
             if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
+        let seeds = self.seeds.map_or(String::new(), |seeds| format!(" --seeds {seeds}"));
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --seed {} --seeds {}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --seed {}{seeds}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),
-            self.seed,
-            self.seeds
+            self.seed
         )
     }
 }

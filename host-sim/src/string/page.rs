@@ -2,7 +2,7 @@
 
 use super::options::{StringOptions, shipped_time_gap_s};
 use super::rows::{LIMIT, Row};
-use super::table::ratio;
+use super::table::{ratio, runs};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
 
@@ -10,12 +10,16 @@ const WHAT: &str = "Ten vehicles follow a leader that is disturbed. Shown is the
                     vehicle’s speed amplitude to its predecessor’s. Below 1 a disturbance dies out along the string; above \
                     1 it grows, and the last vehicle brakes for what the first hardly felt.";
 
+const CHANCE: &str = "Which messages are lost decides what a step passes on, so the largest ratio grows with the number of \
+                      seeds, and the verdict is of these runs and no others.";
+
 /// The page.
 pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
     let mut page = Page::new("holdover-sim · report of string stability", "What a string makes of a disturbance");
-    let passed = format!("With holdover no ratio is above {LIMIT}.");
+    let passed = format!("With holdover no ratio is above {LIMIT} in {}.", runs(options, rows));
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
     page.paragraph(WHAT);
+    page.paragraph(&format!("{}. {CHANCE}", runs(options, rows)));
     table(&mut page, rows);
     page.command(&options.command());
     if options.time_gaps_s.len() > 1 {
@@ -41,13 +45,23 @@ fn table(page: &mut Page, rows: &[Row]) {
             Cell::number(row.loss.to_string()),
             Cell::judged(ratio(row.holdover.as_ref()), met),
             Cell::text(place.unwrap_or_default()),
+            Cell::number(row.runs.to_string()),
             Cell::number(row.runs_above.to_string()),
             Cell::number(ratio(row.as_it_stands.as_ref())),
             Cell::number(ratio(row.age_times_speed.as_ref())),
         ]
     };
-    let header =
-        ["Time gap, s", "Delay, s", "Loss", "Holdover", "Where", "Runs above", "As it stands", "Age times speed"];
+    let header = [
+        "Time gap, s",
+        "Delay, s",
+        "Loss",
+        "Holdover",
+        "Where",
+        "Runs",
+        "Runs above",
+        "As it stands",
+        "Age times speed",
+    ];
     let caption = "Largest ratio of a vehicle’s speed amplitude to its predecessor’s, with holdover; and without it, by the \
                    newest message as it stands, and moved on by its age times its speed.";
     page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());

@@ -36,7 +36,9 @@ pub struct Row {
     pub age_times_speed: Option<Worst>,
     /// Of each disturbance the largest ratio with holdover.
     pub by_disturbance: Vec<Option<Worst>>,
-    /// Runs in which the ratio with holdover is above the limit.
+    /// Runs with holdover, one for each disturbance and seed.
+    pub runs: usize,
+    /// Those of them in which the ratio is above the limit.
     pub runs_above: usize,
     /// Collisions with holdover.
     pub collisions: usize,
@@ -44,7 +46,10 @@ pub struct Row {
     pub not_following: usize,
 }
 
-/// The outcome of one disturbance.
+/// A place of the table: time gap, delay and loss.
+type Place = (f64, f64, f64);
+
+/// The outcome of one run.
 struct Outcome {
     holdover: Option<Worst>,
     as_it_stands: Option<Worst>,
@@ -53,41 +58,60 @@ struct Outcome {
     not_following: usize,
 }
 
-/// Runs all of it on all cores; `done` is called after each disturbance.
+/// What is run at each place, in the order of the rows: each disturbance as often as it has seeds.
+fn places(options: &StringOptions) -> Vec<(Place, Vec<(Disturbance, u64)>)> {
+    let mut places = Vec::new();
+    for &time_gap_s in &options.time_gaps_s {
+        for &delay_s in &options.delays_s {
+            for &loss in &options.losses {
+                let of = |&disturbance| (disturbance, options.seeds_of(disturbance, loss));
+                places.push(((time_gap_s, delay_s, loss), options.disturbances.iter().map(of).collect()));
+            }
+        }
+    }
+    places
+}
+
+/// How many runs there are.
+#[must_use]
+pub fn count(options: &StringOptions) -> u64 {
+    places(options).iter().flat_map(|(_, disturbances)| disturbances).map(|(_, seeds)| seeds).sum()
+}
+
+/// Runs all of it on all cores; `done` is called after each run.
 ///
 /// # Errors
 /// What a unit finds wrong with the configuration.
 pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
-    let mut cells = Vec::new();
-    for &time_gap_s in &options.time_gaps_s {
-        for &delay_s in &options.delays_s {
-            cells.extend(options.losses.iter().map(|&loss| (time_gap_s, delay_s, loss)));
-        }
-    }
-    let seeds: Vec<u64> = (0..options.seeds).map(|more| options.seed + more).collect();
+    let places = places(options);
     let mut jobs = Vec::new();
-    for &cell in &cells {
-        for &disturbance in &options.disturbances {
-            jobs.extend(seeds.iter().map(|&seed| (cell, disturbance, seed)));
+    for (place, disturbances) in &places {
+        for &(disturbance, seeds) in disturbances {
+            jobs.extend((options.seed..options.seed + seeds).map(|seed| (*place, disturbance, seed)));
         }
     }
-    let one = |&(cell, disturbance, seed)| {
-        let outcome = outcome(cell, disturbance, seed);
+    let one = |&(place, disturbance, seed)| {
+        let outcome = outcome(place, disturbance, seed);
         done();
         outcome
     };
     // Collected in order before anything is compared, so that the number of threads decides nothing.
     let outcomes: Vec<Outcome> = jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
-    let of_cell = |(cell, outcomes): (&(f64, f64, f64), &[Outcome])| row(*cell, outcomes, seeds.len());
-    Ok(cells.iter().zip(outcomes.chunks(options.disturbances.len() * seeds.len())).map(of_cell).collect())
+    let mut outcomes = outcomes.into_iter();
+    let mut all_seeds = |&(_, seeds): &(_, u64)| (0..seeds).filter_map(|_| outcomes.next()).collect();
+    let of_place = |(place, disturbances): &(Place, Vec<_>)| {
+        row(*place, &disturbances.iter().map(&mut all_seeds).collect::<Vec<_>>())
+    };
+    Ok(places.iter().map(of_place).collect())
 }
 
-/// The outcomes of all disturbances, of each all seeds.
-fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome], seeds: usize) -> Row {
-    let largest = |outcomes: &[Outcome], of: fn(&Outcome) -> &Option<Worst>| {
-        outcomes.iter().filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+/// The outcomes of each disturbance with all its seeds.
+fn row((time_gap_s, delay_s, loss): Place, outcomes: &[Vec<Outcome>]) -> Row {
+    let largest = |outcomes: &mut dyn Iterator<Item = &Outcome>, of: fn(&Outcome) -> &Option<Worst>| {
+        outcomes.filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
     };
-    let worst = |of| largest(outcomes, of);
+    let all = || outcomes.iter().flatten();
+    let worst = |of| largest(&mut all(), of);
     Row {
         time_gap_s,
         delay_s,
@@ -95,10 +119,11 @@ fn row((time_gap_s, delay_s, loss): (f64, f64, f64), outcomes: &[Outcome], seeds
         holdover: worst(|outcome| &outcome.holdover),
         as_it_stands: worst(|outcome| &outcome.as_it_stands),
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
-        by_disturbance: outcomes.chunks(seeds).map(|of_one| largest(of_one, |outcome| &outcome.holdover)).collect(),
-        runs_above: outcomes.iter().filter(|outcome| is_above(&outcome.holdover)).count(),
-        collisions: outcomes.iter().map(|outcome| outcome.collisions).sum(),
-        not_following: outcomes.iter().map(|outcome| outcome.not_following).sum(),
+        by_disturbance: outcomes.iter().map(|of| largest(&mut of.iter(), |outcome| &outcome.holdover)).collect(),
+        runs: all().count(),
+        runs_above: all().filter(|outcome| is_above(&outcome.holdover)).count(),
+        collisions: all().map(|outcome| outcome.collisions).sum(),
+        not_following: all().map(|outcome| outcome.not_following).sum(),
     }
 }
 
@@ -106,11 +131,7 @@ fn is_above(worst: &Option<Worst>) -> bool {
     worst.as_ref().is_some_and(|worst| worst.ratio > LIMIT)
 }
 
-fn outcome(
-    (time_gap_s, delay_s, loss): (f64, f64, f64),
-    disturbance: Disturbance,
-    seed: u64,
-) -> Result<Outcome, Error> {
+fn outcome((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, seed: u64) -> Result<Outcome, Error> {
     let scenario = scenario(time_gap_s, delay_s, loss, disturbance)?;
     let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
     let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
@@ -205,14 +226,13 @@ mod tests {
 
     #[test]
     fn the_largest_of_all_seeds_counts_for_each_disturbance_and_for_all() {
-        let outcomes =
-            [("step", 0.9), ("step", 1.1), ("1 Hz", 0.7), ("1 Hz", 0.6)].map(|(which, ratio)| outcome(ratio, which));
-        let row = row((1.0, 0.1, 0.2), &outcomes, 2);
+        let outcomes = [vec![outcome(0.9, "step"), outcome(1.1, "step")], vec![outcome(0.7, "1 Hz")]];
+        let row = row((1.0, 0.1, 0.2), &outcomes);
         let ratios: Vec<f64> = row.by_disturbance.iter().flatten().map(|worst| worst.ratio).collect();
         assert_eq!(ratios, [1.1, 0.7]);
         assert_eq!(
-            (row.holdover.unwrap().ratio, row.age_times_speed, row.runs_above, row.collisions),
-            (1.1, None, 1, 4)
+            (row.holdover.unwrap().ratio, row.age_times_speed, row.runs, row.runs_above, row.collisions),
+            (1.1, None, 3, 1, 3)
         );
     }
 }

@@ -3,29 +3,31 @@
 use std::fmt::Write;
 
 use super::amplification::Worst;
-use super::options::shipped_time_gap_s;
+use super::disturbance::Disturbance;
+use super::options::{StringOptions, shipped_time_gap_s};
 use super::rows::{LIMIT, Row, smallest_time_gap_s};
 
 /// The table.
 #[must_use]
-pub fn text(rows: &[Row], failures: &[String]) -> String {
+pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
     let mut text = String::from("largest ratio of a vehicle's speed amplitude to its predecessor's\n");
     // Writing into a string cannot fail.
     let _ = writeln!(
         text,
-        "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>10}{:>14}{:>17}",
-        "time gap, s", "delay, s", "loss", "holdover", "", "runs above", "as it stands", "age times speed"
+        "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>6}{:>12}{:>14}{:>17}",
+        "time gap, s", "delay, s", "loss", "holdover", "", "runs", "runs above", "as it stands", "age times speed"
     );
     for row in rows {
         let place = row.holdover.as_ref().map(|worst| format!("({}, vehicle {})", worst.disturbance, worst.vehicle));
         let _ = writeln!(
             text,
-            "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>10}{:>14}{:>17}",
+            "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>6}{:>12}{:>14}{:>17}",
             row.time_gap_s,
             row.delay_s,
             row.loss,
             ratio(row.holdover.as_ref()),
             place.unwrap_or_default(),
+            row.runs,
             row.runs_above,
             ratio(row.as_it_stands.as_ref()),
             ratio(row.age_times_speed.as_ref()),
@@ -43,9 +45,31 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
             let _ = writeln!(text, "not so at the largest time gap that was tried");
         }
     }
-    let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
-    let _ = writeln!(text, "verdict: {verdict}");
+    let _ = writeln!(text, "{}", verdict(options, rows, failures));
     text
+}
+
+/// The verdict, and of how much it is.
+#[must_use]
+pub fn verdict(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
+    let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
+    format!("verdict: {verdict}; {}", runs(options, rows))
+}
+
+/// How many runs there were, and with how many seeds of what.
+#[must_use]
+pub fn runs(options: &StringOptions, rows: &[Row]) -> String {
+    let most = |disturbance: Disturbance| {
+        let seeds = options.losses.iter().map(|&loss| options.seeds_of(disturbance, loss)).max().unwrap_or(0);
+        let what = if disturbance == Disturbance::Step { "a step" } else { "each sine" };
+        format!("{what} with {seeds} {}", if seeds == 1 { "seed" } else { "seeds" })
+    };
+    let sine = options.disturbances.iter().copied().find(|disturbance| disturbance.frequency_hz().is_some());
+    let of: Vec<String> = std::iter::once(Disturbance::Step).chain(sine).map(most).collect();
+    let runs: usize = rows.iter().map(|row| row.runs).sum();
+    let is_drawn = options.losses.iter().any(|loss| *loss > 0.0);
+    let once = if is_drawn && options.losses.contains(&0.0) { ", where nothing is lost with 1" } else { "" };
+    format!("{runs} runs, {}{once}, from seed {} on", of.join(" and "), options.seed)
 }
 
 /// A ratio to four digits.
