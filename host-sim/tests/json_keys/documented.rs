@@ -1,4 +1,4 @@
-//! The tables of keys in `docs`: the Markdown enters; which keys a command's JSON has leaves, and what of a JSON is not as said.
+//! The tables of keys in README: the Markdown enters; which keys a command's JSON has leaves, and what of a JSON is not as said.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,18 +10,18 @@ pub struct Documents(BTreeMap<String, Vec<(String, Option<String>)>>);
 impl Documents {
     pub fn read() -> Self {
         let mut sections: BTreeMap<String, Vec<(String, Option<String>)>> = BTreeMap::new();
-        for file in ["../docs/JSON.md", "../docs/CORRIDOR.md"] {
-            let mut heading = String::new();
-            for line in std::fs::read_to_string(file).unwrap().lines() {
-                if let Some(title) = line.strip_prefix('#') {
-                    heading = title.trim_start_matches('#').replace('`', "").trim().to_owned();
-                } else if let Some(row) = line.strip_prefix("| `") {
-                    let (keys, what) = row.split_once("` | ").unwrap_or_else(|| panic!("{file}: {line}"));
-                    // The words between two backticks; what is between them and the next are commas.
-                    let keys = keys.split("`, `").map(str::to_owned);
-                    let section = sections.entry(heading.clone()).or_default();
-                    section.extend(keys.map(|key| (key, link(what))));
-                }
+        let readme = std::fs::read_to_string("../README.md").unwrap();
+        let (_, tables) = readme.split_once("\n## `--json`\n").expect("a section on it");
+        let mut heading = String::new();
+        for line in tables.lines() {
+            if let Some(title) = line.strip_prefix('#') {
+                heading = title.trim_start_matches('#').replace('`', "").trim().to_owned();
+            } else if let Some(row) = line.strip_prefix("| `") {
+                let (keys, what) = row.split_once("` | ").unwrap_or_else(|| panic!("{line}"));
+                // The words between two backticks; what is between them and the next are commas.
+                let keys = keys.split("`, `").map(str::to_owned);
+                let section = sections.entry(heading.clone()).or_default();
+                section.extend(keys.map(|key| (key, link(what))));
             }
         }
         Self(sections)
@@ -38,7 +38,7 @@ impl Documents {
     }
 }
 
-/// The heading that `[text](file#heading)` leads to.
+/// The heading that `[text](#heading)` leads to.
 fn link(what: &str) -> Option<String> {
     let (_, rest) = what.split_once("](")?;
     let (address, _) = rest.split_once(')')?;

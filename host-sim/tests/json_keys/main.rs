@@ -78,7 +78,7 @@ fn of_run_on_a_corridor() {
     // The ego is to come within the ten seconds.
     let text = text.replacen("ego_road = \"2nd Street, northwest\"", "ego_road = \"Harrison Street, southwest\"", 1);
     std::fs::write(folder.path().join("short.toml"), text).unwrap();
-    holds("--json", folder.path(), &["run short.toml --no-report --picture p.svg --vehicles 1,2"]);
+    holds("run corridor", folder.path(), &["run short.toml --no-report --picture p.svg --vehicles 1,2"]);
 }
 
 #[test]
