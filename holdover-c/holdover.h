@@ -151,7 +151,7 @@ enum holdover_status_t
   HOLDOVER_REFUSED_RESTART = -88,
   // A place on the globe that is not on the ego's path.
   HOLDOVER_REFUSED_OFF_ROUTE = -89,
-  // Not a refusal of a frame: a station went on overlooking the ego.
+  // Not a refusal of a frame: a station went on not heeding the ego.
   HOLDOVER_REFUSED_OVERLOOKED = -90,
 };
 #ifndef __cplusplus

@@ -59,7 +59,7 @@ pub enum Refusal {
     Restart = 24,
     /// A place on the globe that is not on the ego's path.
     OffRoute = 25,
-    /// A station that arrived later went on overlooking the ego, which then gave way to it.
+    /// A station that arrived later went on not heeding the ego, which then gave way to it.
     Overlooked = 26,
 }
 

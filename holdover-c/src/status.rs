@@ -127,7 +127,7 @@ pub enum Status {
     RefusedRestart = -88,
     /// A place on the globe that is not on the ego's path.
     RefusedOffRoute = -89,
-    /// Not a refusal of a frame: a station went on overlooking the ego.
+    /// Not a refusal of a frame: a station went on not heeding the ego.
     RefusedOverlooked = -90,
 }
 

@@ -31,7 +31,7 @@ fn worst_place(more: &str) -> Row {
 }
 
 #[test]
-fn the_shipped_time_gap_is_the_smallest_at_which_a_step_over_the_worst_link_is_damped() {
+fn a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_not_at_a_tenth_of_a_second_less() {
     let ratio = |row: &Row| row.holdover.as_ref().unwrap().ratio;
     // Of the first forty seeds 6 is the one whose losses are the worst at a tenth of a second less.
     let shipped = worst_place("--seed 5 --seeds 2");

@@ -268,7 +268,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
-    /// Reviews who is here. Gives whether the ego gave way to one that overlooked it.
+    /// Reviews who is here. Gives whether the ego gave way to one that did not heed it.
     pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
         self.at_once = false;
         self.due.set(match self.due.get() {

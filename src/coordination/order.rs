@@ -6,8 +6,8 @@
 //! number. A station that does not say when it arrived is let pass.
 //!
 //! Those who heard different stations do not agree, and it shows: one that arrived later than the ego and yet claims somebody
-//! from before the ego, or nobody, has not heard of the ego and heads for the ego's place. If that lasts, the ego gives way: it
-//! tells a new arrival, just after that one's. So a station only ever moves back, the order is that of the arrivals told
+//! from before the ego, or nobody, has not heard of the ego and heads for the ego's place; one that claims somebody who is not
+//! here, by what the ego has heard, may. If that lasts, the ego gives way: it tells a new arrival, just after that one's. So a station only ever moves back, the order is that of the arrivals told
 //! at all times, and as soon as everyone hears everyone again there is one order, whatever happened before.
 
 use core::cmp::Ordering;
@@ -89,7 +89,8 @@ impl Entry {
 pub enum Regard {
     /// It arrived before the ego, or goes after the ego or somebody who does.
     Heeds,
-    /// It arrived after the ego and claims somebody of whom the ego has not heard: one between the two, or one before the ego.
+    /// It arrived after the ego and claims somebody who is not at this crossing by what the ego has heard: one between the
+    /// two, or one before the ego.
     Unclear,
     /// It arrived after the ego and acts as if the ego were not there: it claims nobody, or somebody who was there before the ego.
     Overlooks,

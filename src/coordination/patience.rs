@@ -17,30 +17,51 @@ pub(crate) const UNCLEAR: Duration = Duration::from_millis(6_000);
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Patience {
-    /// Since when it has regarded the ego in the one same way that does not heed it.
-    since: Held<(Instant, Regard)>,
+    /// Since when it has not heeded the ego, in one way or the other.
+    unheeded: Held<Instant>,
+    /// Since when it has overlooked the ego.
+    overlooked: Held<Instant>,
 }
 
 impl Patience {
     /// Nothing to bear with.
-    pub(crate) const FULL: Self = Self { since: Held::Nothing };
+    pub(crate) const FULL: Self = Self { unheeded: Held::Nothing, overlooked: Held::Nothing };
 
     /// Whether a station has regarded the ego so for too long, by when it said so: what a silent one said last may be out of date.
     pub(crate) fn is_over(&mut self, heard: Instant, regard: Regard) -> bool {
-        let lasts = match regard {
-            Regard::Heeds => {
-                self.since.clear();
-                return false;
-            }
-            Regard::Unclear => UNCLEAR,
-            Regard::Overlooks => OVERLOOKED,
-        };
-        match self.since.get() {
-            Some((since, before)) if before == regard => heard.since(since) >= lasts,
-            _ => {
-                self.since.set((heard, regard));
-                false
-            }
-        }
+        let unheeded = lasts(&mut self.unheeded, regard != Regard::Heeds, heard);
+        let overlooked = lasts(&mut self.overlooked, regard == Regard::Overlooks, heard);
+        unheeded.is_some_and(|lasts| lasts >= UNCLEAR) || overlooked.is_some_and(|lasts| lasts >= OVERLOOKED)
+    }
+}
+
+/// For how long it has been so; `None`: it is not.
+fn lasts(since: &mut Held<Instant>, is_so: bool, heard: Instant) -> Option<Duration> {
+    if !is_so {
+        since.clear();
+        return None;
+    }
+    let begun = since.get().unwrap_or(heard);
+    since.set(begun);
+    Some(heard.since(begun))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// When patience is over with a station that is heard every 100 ms, in tenths of a second.
+    fn over_at(mut regard: impl FnMut(u64) -> Regard) -> Option<u64> {
+        let mut patience = Patience::FULL;
+        (0..200).find(|tick| patience.is_over(Instant::from_micros(tick * 100_000), regard(*tick)))
+    }
+
+    #[test]
+    fn it_is_over_after_a_second_of_being_overlooked_or_six_of_not_being_heeded_in_one_way_or_the_other() {
+        assert_eq!(over_at(|_| Regard::Overlooks), Some(10));
+        assert_eq!(over_at(|_| Regard::Unclear), Some(60));
+        assert_eq!(over_at(|tick| if tick % 5 == 0 { Regard::Unclear } else { Regard::Overlooks }), Some(60));
+        assert_eq!(over_at(|tick| if tick < 41 { Regard::Unclear } else { Regard::Overlooks }), Some(51));
+        assert_eq!(over_at(|tick| if tick % 9 == 0 { Regard::Heeds } else { Regard::Overlooks }), None);
     }
 }

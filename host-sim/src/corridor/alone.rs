@@ -6,9 +6,11 @@
 //!
 //! It minds whoever is just ahead of it in the order and whoever is just ahead on its leg, followed or not: far behind both it
 //! follows nobody, and would still have to give way to one that it does not hear. If only the link to the one on its leg is
-//! lost, it gives way to the other as it did before.
+//! lost, it gives way to the other as its unit does, which also follows the estimate of the one that it does not hear: that can
+//! only slow it down.
 
 use holdover::controller::Mode;
+use holdover::coordination::Choice;
 use holdover::time::Instant;
 
 use super::description::Traffic;
@@ -73,6 +75,13 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
     (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
 }
 
+/// The acceleration of one that drives by sight, but where it hears one that it gives way to no more than its unit asks for.
+#[must_use]
+pub fn still_given_way(lost: Lost, choice: &Choice, by_sight: f64, by_unit: f64) -> f64 {
+    let hears_one_that_crosses = !lost.crossing && choice.order.is_some() && choice.order != choice.lane;
+    if hears_one_that_crosses { by_sight.min(by_unit) } else { by_sight }
+}
+
 /// The same within what a vehicle has published that it can do, by which others know what is certain of it.
 #[must_use]
 pub fn published(wanted_mps2: f64, kind: Kind) -> f64 {
@@ -97,6 +106,19 @@ mod tests {
 
     use super::super::read::corridor;
     use super::*;
+
+    #[test]
+    fn it_gives_way_to_one_that_crosses_and_is_heard_and_does_not_follow_an_estimate_else() {
+        let [lane, crossing, both] =
+            [(true, false), (false, true), (true, true)].map(|(lane, crossing)| Lost { lane, crossing });
+        let choice = |order, lane| Choice { target: lane, order, lane, ..Choice::default() };
+        let wanted = |lost, choice: Choice| still_given_way(lost, &choice, 0.5, -2.0);
+        assert_eq!(wanted(lane, choice(Some(1), Some(0))), -2.0);
+        assert_eq!(wanted(lane, choice(None, Some(0))), 0.5);
+        assert_eq!(wanted(lane, choice(Some(0), Some(0))), 0.5);
+        assert_eq!(wanted(crossing, choice(Some(1), None)), 0.5);
+        assert_eq!(wanted(both, choice(Some(1), Some(0))), 0.5);
+    }
 
     #[test]
     fn it_stops_at_the_line_for_those_who_cross_and_for_nobody_else() {

@@ -115,7 +115,7 @@ pub struct Side {
     pub bound_violations: u64,
     /// Share of time in which an envelope changed the command.
     pub limited_share: f64,
-    /// Times that a unit made way for one that had overlooked it.
+    /// Times that a unit gave way to one that did not heed it.
     pub order_disagreements: u64,
     /// Everything that units refused, these included.
     pub refusals: u64,

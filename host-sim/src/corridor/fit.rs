@@ -1,12 +1,12 @@
 //! Whether the roads and intersections of a description fit together: it enters; what does not fit, of which of them, with cause
 //! and remedy, leaves. What fits, the units take as their map.
 
+use holdover::coordination::map::LEGS;
+
 use super::description::Corridor;
 use super::globe::Shift;
 use super::network::{Lane, Network, PASSES_WITHIN_M, cross};
-
-/// Legs of an intersection, at most; a message has three bits for them.
-const LEGS: usize = 8;
+use super::traffic::RUN_OUT_M;
 
 /// Ways that do not cross lie at least so far apart, in metres: as wide as a bus is.
 const LEAST_APART_M: f64 = 2.5;
@@ -78,7 +78,7 @@ fn intersection(corridor: &Corridor, network: &Network, place: usize) -> Result<
         let cause = format!("no road passes the intersection \"{}\" within {PASSES_WITHIN_M} m", plan.name);
         return Err(Misfit::new(part, cause, "move its `at`, or remove it"));
     }
-    if legs.len() > LEGS {
+    if legs.len() > usize::from(LEGS) {
         let cause = format!("{} roads pass the intersection \"{}\"", legs.len(), plan.name);
         return Err(Misfit::new(part, cause, format!("let at most {LEGS} pass it")));
     }
@@ -117,11 +117,13 @@ fn apart(corridor: &Corridor, (road, lane): (usize, &Lane), (other, others): (us
     let shared_m = |way_m: f64| {
         let (place, heading_deg) = lane.road.at(way_m);
         let (there_m, aside_m) = others.road.nearest(place);
-        let is_beside = (others.entry_m..=others.exit_m).contains(&there_m);
+        let is_beside = (others.entry_m..=others.exit_m + RUN_OUT_M).contains(&there_m);
         (is_beside && aside_m < LEAST_APART_M && !cross(heading_deg, others.road.at(there_m).1)).then_some(aside_m)
     };
     let ways = std::iter::successors(Some(lane.entry_m), |way_m| Some(way_m + EVERY_M));
-    let Some(aside_m) = ways.take_while(|way_m| *way_m <= lane.exit_m).find_map(shared_m) else { return Ok(()) };
+    let Some(aside_m) = ways.take_while(|way_m| *way_m <= lane.exit_m + RUN_OUT_M).find_map(shared_m) else {
+        return Ok(());
+    };
     let [name, others_name] = [road, other].map(|road| &corridor.roads[road].name);
     let cause = format!("the roads \"{name}\" and \"{others_name}\" lie on one another, {aside_m:.1} m apart");
     let remedy = format!("move one to the side (`right_m`) until they are {LEAST_APART_M} m apart, or remove one");

@@ -2,8 +2,8 @@
 //! unit's own code, agree on an order by radio, cross and leave; what happened to them leaves.
 //!
 //! ```text
-//! file -> read (fit: does it fit together) -> description -> network (roads, crossing points) -> trips (who comes when) -> traffic (the world)
-//!                                                     referee (collisions, gaps, stops), beliefs (errors) <-'
+//! file -> read, fit (does it fit together) -> description -> network (roads, crossing points) -> trips -> traffic (the world)
+//!                                               referee (collisions, gaps, stops), beliefs (errors) <-'
 //! ```
 
 pub mod alone;

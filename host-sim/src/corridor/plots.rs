@@ -96,13 +96,13 @@ fn errors_over_time(steps: &[(StepRow, Journal)]) -> Option<Plot> {
             Layer::line(Series::new(format!("δt {} s", row.step_s), points), tone)
         })
         .collect();
-    let dark = steps.first()?.1.dark?;
+    let dark = steps.first()?.1.dark;
     let title = "Error of the ego's estimate of its target over time";
     let caption = "Believed minus true position of the target on the virtual lane, at three prediction steps. Where it leaps, the \
                    ego follows someone else from then on."
         .to_owned();
     let axes = (Axis::linear("time", "s"), Axis::linear("position error", "m").including(0.0));
-    let shades = vec![Interval::new(dark.from_s, dark.to_s, "the ego is silent")];
+    let shades = dark.map(|dark| Interval::new(dark.from_s, dark.to_s, "the ego is silent")).into_iter().collect();
     Some(plot(title, caption, Chart { layers, shades, ..Chart::new(title, axes.0, axes.1) }))
 }
 

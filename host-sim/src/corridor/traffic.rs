@@ -95,7 +95,7 @@ pub struct Remains {
     pub unserved: usize,
     /// Refusals of all units.
     pub refusals: u64,
-    /// Times that a unit made way for one that had overlooked it.
+    /// Times that a unit gave way to one that did not heed it.
     pub disagreements: u64,
     /// Messages that found no slot.
     pub turned_away: u64,
@@ -277,8 +277,7 @@ impl<'a> Traffic<'a> {
             let Some(lost) = Lost::of(&vehicle.unit, vehicle.instant(at_s)) else { continue };
             let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, lost.crossing);
             let choice = vehicle.unit.coordination().choice();
-            let gives_way = !lost.crossing && choice.target.is_some() && choice.target != choice.lane;
-            vehicle.override_with(if gives_way { wanted.min(vehicle.command_mps2) } else { wanted });
+            vehicle.override_with(alone::still_given_way(lost, choice, wanted, vehicle.command_mps2));
         }
     }
 
@@ -332,4 +331,50 @@ impl<'a> Traffic<'a> {
 fn followed(vehicle: &Vehicle) -> Option<StationHash> {
     let target = vehicle.unit.coordination().choice().target?;
     vehicle.unit.peers().get(target.into())?.station()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::corridor::experiment::Experiment;
+    use crate::corridor::read::corridor;
+    use crate::plant::Kind;
+
+    /// The largest way of a vehicle on its way, and of one that has left.
+    #[derive(Default)]
+    struct Farthest {
+        on_way_m: f64,
+        beyond_m: f64,
+    }
+
+    fn farthest_m(sightings: &[Sighting]) -> f64 {
+        sightings.iter().map(|one| one.way_m).fold(0.0, f64::max)
+    }
+
+    impl Watch for Farthest {
+        fn beyond(&mut self, sightings: &[Sighting]) {
+            self.beyond_m = self.beyond_m.max(farthest_m(sightings));
+        }
+        fn tick(&mut self, _: f64, sightings: &[Sighting]) {
+            self.on_way_m = self.on_way_m.max(farthest_m(sightings));
+        }
+        fn left(&mut self, _: f64, _: usize) {}
+    }
+
+    #[test]
+    fn who_has_left_is_still_seen_until_it_vanishes() {
+        let text = include_str!("../../scenarios/corridor.toml");
+        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap());
+        let Experiment { corridor, network, itineraries } = &experiment;
+        let kind = Kind::Car;
+        let trips = [Trip { road: 2, at_s: 0.0, speed_mps: 10.0, kind, dark_after_s: 60.0, odometer_m: 0.0 }];
+        let mut traffic = Traffic::new(corridor, network, itineraries, &trips, Conditions::of(corridor), 1);
+        let mut farthest = Farthest::default();
+        traffic.advance(60.0, &mut [&mut farthest]).unwrap();
+        let exit_m = network.lanes[2].exit_m;
+        assert!((exit_m - 0.2..exit_m).contains(&farthest.on_way_m), "{}", farthest.on_way_m);
+        assert!((exit_m + RUN_OUT_M - 0.2..exit_m + RUN_OUT_M).contains(&farthest.beyond_m), "{}", farthest.beyond_m);
+    }
 }

@@ -1,4 +1,4 @@
-//! `--json` of every command: its keys are those that `docs` tells, no more and no less, and outside `timing` the same input is
+//! `--json` of every command: its keys are those that README tells, no more and no less, and outside `timing` the same input is
 //! the same bytes on any number of threads.
 
 mod documented;

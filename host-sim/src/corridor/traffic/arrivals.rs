@@ -8,7 +8,6 @@ use holdover::wire::Predecessor;
 use holdover::wire::ego_intent::EgoIntent;
 
 use super::{Traffic, Traveller};
-use crate::channel::Window;
 use crate::corridor::conditions::config;
 use crate::corridor::globe::Shift;
 use crate::corridor::map::number;
@@ -61,8 +60,7 @@ impl Traffic<'_> {
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
-        let was_silent = |dark: Window| dark.from_s.max(at_s - LISTENING_S) < dark.to_s.min(at_s);
-        let is_unheard = was_silent(last.dark) || last.is_dark(at_s) || last.is_dark(at_s + HEARD_S);
+        let is_unheard = last.dark.from_s <= at_s + HEARD_S && last.dark.to_s > at_s - LISTENING_S;
         if is_unheard && gap_m < UNHEARD_M {
             return false;
         }
