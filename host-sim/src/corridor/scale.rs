@@ -1,8 +1,8 @@
 //! How fast a corridor is simulated: a number of vehicles enters; how much faster than real time so many are leaves.
 //!
 //! So many vehicles under way at once take corridors side by side, with a seed each: as many as it takes until that many are
-//! under way on average in the time that is measured, and of the arrivals of all of them so many that it is that many, to within
-//! one. The corridors are dealt to the threads, the largest first, each to whom has the least. When the roads have filled, all threads wait
+//! under way on average in the time that is measured if nobody is held up, and of the arrivals of all of them so many that it is
+//! that many, to within one. The corridors are dealt to the threads, the largest first, each to whom has the least. When the roads have filled, all threads wait
 //! for one another, and what follows is timed. All that a run has is there: radio, buses, units, bodies, those who watch.
 //! Vehicles that have left and drive on out of sight are simulated too, but not counted.
 
@@ -17,6 +17,7 @@ use super::beliefs::Beliefs;
 use super::conditions::Conditions;
 use super::description::Corridor;
 use super::experiment::Experiment;
+use super::network::Network;
 use super::referee::Referee;
 use super::tally::Tally;
 use super::traffic::Traffic;
@@ -82,7 +83,7 @@ fn core_s() -> Option<f64> {
 pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f64) -> Result<Load, Error> {
     let fill_s = FILL * travel_s;
     let corridor = Corridor { duration_s: fill_s + SPAN_S, ..experiment.corridor.clone() };
-    let lots = lots(experiment, &corridor, seed, vehicles, travel_s);
+    let lots = lots(experiment, &corridor, seed, vehicles);
     let corridors = lots.len();
     let threads = rayon::current_num_threads().min(corridors);
     let full = Barrier::new(threads);
@@ -114,7 +115,8 @@ pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f6
     })
 }
 
-/// One corridor: who comes under a seed, and how many of them are under way on average in the time that is measured.
+/// One corridor: who comes under a seed, and how many of them are under way on average in the time that is measured if nobody is
+/// held up; a little more in truth.
 struct Lot {
     seed: u64,
     trips: Vec<Trip>,
@@ -122,9 +124,13 @@ struct Lot {
 }
 
 impl Lot {
-    fn new(seed: u64, trips: Vec<Trip>, corridor: &Corridor, travel_s: f64) -> Self {
+    fn new(seed: u64, trips: Vec<Trip>, corridor: &Corridor, network: &Network) -> Self {
         let to_s = corridor.duration_s;
-        let on_way_s = |trip: &Trip| ((trip.at_s + travel_s).min(to_s) - trip.at_s.max(to_s - SPAN_S)).max(0.0);
+        let leaves_s = |trip: &Trip| {
+            let lane = &network.lanes[trip.road];
+            trip.at_s + (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps
+        };
+        let on_way_s = |trip: &Trip| (leaves_s(trip).min(to_s) - trip.at_s.max(to_s - SPAN_S)).max(0.0);
         let under_way = trips.iter().map(on_way_s).sum::<f64>() / SPAN_S;
         Self { seed, trips, under_way }
     }
@@ -132,12 +138,13 @@ impl Lot {
 
 /// Corridors with so many vehicles under way: as many as it takes, and arrivals left out at even distances.
 #[allow(clippy::cast_precision_loss)] // a number of vehicles
-fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize, travel_s: f64) -> Vec<Lot> {
+fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize) -> Vec<Lot> {
+    let network = &experiment.network;
     let mut lots: Vec<Lot> = Vec::new();
     let mut under_way = 0.0;
     while under_way < vehicles as f64 && lots.len() < MOST_PER_VEHICLE * vehicles {
         let seed = seed.wrapping_add(lots.len() as u64);
-        lots.push(Lot::new(seed, trips(corridor, &experiment.network, seed), corridor, travel_s));
+        lots.push(Lot::new(seed, trips(corridor, network, seed), corridor, network));
         under_way = lots.iter().map(|lot| lot.under_way).sum();
     }
     let share = vehicles as f64 / under_way;
@@ -148,7 +155,7 @@ fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize
         owed -= f64::from(u8::from(stays));
         stays
     };
-    let thin = |lot: Lot| Lot::new(lot.seed, lot.trips.into_iter().filter(&mut stays).collect(), corridor, travel_s);
+    let thin = |lot: Lot| Lot::new(lot.seed, lot.trips.into_iter().filter(&mut stays).collect(), corridor, network);
     lots.into_iter().map(thin).collect()
 }
 
@@ -214,7 +221,7 @@ mod tests {
         let (experiment, corridor) = of_the_corridor(str::to_owned);
         for seed in [1, 77, u64::MAX] {
             for vehicles in [10, 30, 100, 300] {
-                let lots = lots(&experiment, &corridor, seed, vehicles, 29.0);
+                let lots = lots(&experiment, &corridor, seed, vehicles);
                 // One that is left out or not is at most one vehicle.
                 assert!((sum(&lots) - vehicles as f64).abs() < 1.0, "{seed} {vehicles} {}", sum(&lots));
             }
@@ -224,10 +231,10 @@ mod tests {
     #[test]
     fn the_threads_are_dealt_all_corridors_as_evenly_as_whole_ones_can_be() {
         let (experiment, corridor) = of_the_corridor(str::to_owned);
-        let lots = lots(&experiment, &corridor, 1, 100, 29.0);
+        let lots = lots(&experiment, &corridor, 1, 100);
         let (count, largest) = (lots.len(), lots.iter().map(|lot| lot.under_way).fold(0.0, f64::max));
         for threads in [1, 2, 3, 8] {
-            let hands = dealt(super::lots(&experiment, &corridor, 1, 100, 29.0), threads);
+            let hands = dealt(super::lots(&experiment, &corridor, 1, 100), threads);
             assert_eq!((hands.len(), hands.iter().map(Vec::len).sum::<usize>()), (threads, count));
             let loads = || hands.iter().map(|hand| sum(hand));
             assert!(loads().fold(0.0, f64::max) - loads().fold(f64::MAX, f64::min) <= largest, "{threads}");
@@ -238,6 +245,6 @@ mod tests {
     fn roads_by_which_nobody_comes_end_the_search() {
         let (experiment, corridor) =
             of_the_corridor(|text| text.replace("vehicles_per_min = ", "vehicles_per_min = 0 # "));
-        assert!(sum(&lots(&experiment, &corridor, 1, 3, 29.0)) == 0.0);
+        assert!(sum(&lots(&experiment, &corridor, 1, 3)) == 0.0);
     }
 }
