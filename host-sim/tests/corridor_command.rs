@@ -54,7 +54,7 @@ fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_s
     let folder = tempfile::tempdir().unwrap();
     // The ego is to come within the 20 s.
     let (of_second, of_harrison) = ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"");
-    let edits = [("ego_after_s = 60.0", "ego_after_s = 0.0"), (of_second, of_harrison)];
+    let edits = [("ego_after_s = 100.0", "ego_after_s = 0.0"), (of_second, of_harrison)];
     let file = short(folder.path(), &edits);
     let report = folder.path().join("report");
     let output = sim(&["run", &file, "--json", "--vehicles", "4,8", "--out", report.to_str().unwrap()]);
@@ -140,7 +140,7 @@ fn the_picture_has_the_papers_figures_and_ours_beside_others_and_is_the_same_for
     let (of_second, of_harrison) = ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"");
     let edits = [
         ("duration_s = 20.0", "duration_s = 10.0"),
-        ("ego_after_s = 60.0", "ego_after_s = 0.0"),
+        ("ego_after_s = 100.0", "ego_after_s = 0.0"),
         (of_second, of_harrison),
     ];
     let file = short(folder.path(), &edits);

@@ -74,7 +74,7 @@ fn of_run_on_a_corridor() {
     let folder = folder();
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
     let text =
-        text.replacen("duration_s = 600.0", "duration_s = 10.0", 1).replacen("after_s = 60.0", "after_s = 0.0", 1);
+        text.replacen("duration_s = 600.0", "duration_s = 10.0", 1).replacen("after_s = 100.0", "after_s = 0.0", 1);
     // The ego is to come within the ten seconds.
     let text = text.replacen("ego_road = \"2nd Street, northwest\"", "ego_road = \"Harrison Street, southwest\"", 1);
     std::fs::write(folder.path().join("short.toml"), text).unwrap();
