@@ -151,8 +151,8 @@ fn input_that_cannot_be_is_refused_with_its_cause_and_remedy() {
         ("--seeds 0", "--seeds: is 0; give a number from 1 to 10000"),
         ("--distance 0", "--distance: is 0; give metres from 1 to 1000000"),
         (
-            "--seed 18446744073709551615 --seeds 1",
-            "--seed: seeds from 18446744073709551615 on end before there are 1; give a smaller first seed",
+            "--seed 18446744073709551615 --seeds 2",
+            "--seed: from 18446744073709551615 on there are fewer than 2 seeds: the last one is 18446744073709551615; give a smaller first seed",
         ),
         ("no.toml", "no.toml: cannot be read (No such file or directory); check the path"),
         ("--out Cargo.toml", "--out: \"Cargo.toml\" is a file; name a folder for the report, or give --no-report"),

@@ -74,7 +74,7 @@ fn seeds_that_cannot_be_are_refused_with_option_cause_and_remedy() {
         ("--seeds 9223372036854775807", "--seeds: is 9223372036854775807; give a number from 1 to 10000"),
         (
             "--seed 18446744073709551615",
-            "--seed: seeds from 18446744073709551615 on end before there are 40; give a smaller first seed",
+            "--seed: from 18446744073709551615 on there are fewer than 40 seeds: the last one is 18446744073709551615; give a smaller first seed",
         ),
     ];
     for (arguments, message) in cases {

@@ -50,7 +50,7 @@ pub fn sides(results: &Results) -> [&Side; 4] {
 #[must_use]
 pub fn text(results: &Results) -> String {
     let mut text = String::new();
-    let last = results.seed + results.seeds as u64 - 1;
+    let last = results.seed + (results.seeds as u64 - 1);
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{}: seeds {} to {last}", results.scenario, results.seed);
     let _ = writeln!(text, "{:30}{:>14}{:>14}{:>14}{:>14}", "", SIDES[0], SIDES[1], SIDES[2], SIDES[3]);

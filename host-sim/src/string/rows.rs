@@ -87,7 +87,7 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
     let mut jobs = Vec::new();
     for (place, disturbances) in &places {
         for &(disturbance, seeds) in disturbances {
-            jobs.extend((options.seed..options.seed + seeds).map(|seed| (*place, disturbance, seed)));
+            jobs.extend((options.seed..=options.seed + (seeds - 1)).map(|seed| (*place, disturbance, seed)));
         }
     }
     let one = |&(place, disturbance, seed)| {

@@ -79,7 +79,7 @@ pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -
         outcome.map(|outcome| (seed, outcome))
     };
     // Collected in the order of seeds before anything is judged, so that the number of threads decides nothing.
-    let outcomes: Vec<Result<(u64, Outcome), Error>> = (seed..seed + seeds).into_par_iter().map(one).collect();
+    let outcomes: Vec<Result<(u64, Outcome), Error>> = (seed..=seed + (seeds - 1)).into_par_iter().map(one).collect();
     let (mut ours, mut paper, mut failures) = (Vec::new(), Vec::new(), Vec::new());
     for outcome in outcomes {
         let (seed, outcome) = outcome?;
