@@ -58,20 +58,25 @@ grep -q 'undefined symbol: the_firmware_can_panic' "$work/seeded.txt" || {
 }
 echo "  and with a panic put in, not linked"
 
+# A frame of ours that is too short; the unit has to count it, in the page of `Health` for cause 0.
+for_5_s() {
+    { sleep 1; printf 't480100\r'; sleep 4; } | seconds=5 emulate -M netduinoplus2 -serial stdio -kernel "$image" \
+        >"$work/serial.txt" 2>/dev/null || [ $? = 124 ]
+    tr '\r' '\n' <"$work/serial.txt" | awk '
+        /^t[0-9A-F]+$/ { frames++ }
+        # MotionCommand every 10 ms; Health every 100 ms, page after page, the cause in bits 12 to 19 and its count behind it.
+        /^t4828/ { commands++ }
+        /^t498/ && substr($0, 8, 1) == "0" && substr($0, 11, 1) == "0" && substr($0, 10, 1) == "1" { counted = 1 }
+        END {
+            printf "  %d frames, %d of them commands; the short frame is %s\n", frames, commands, counted ? "counted" : "not counted"
+            exit !(commands > 300 && commands < 560 && counted)
+        }'
+}
+
 echo "-- the image in the emulator, for 5 s"
 firmware # the one without features again
-# A frame of ours that is too short; the unit has to count it, in the page of `Health` for cause 0.
-{ sleep 1; printf 't480100\r'; sleep 4; } | seconds=5 emulate -M netduinoplus2 -serial stdio -kernel "$image" \
-    >"$work/serial.txt" 2>/dev/null || [ $? = 124 ]
-tr '\r' '\n' <"$work/serial.txt" | awk '
-    /^t[0-9A-F]+$/ { frames++ }
-    # MotionCommand every 10 ms; Health every 100 ms, page after page, the cause in bits 12 to 19 and its count behind it.
-    /^t4828/ { commands++ }
-    /^t498/ && substr($0, 8, 1) == "0" && substr($0, 11, 1) == "0" && substr($0, 10, 1) == "1" { counted = 1 }
-    END {
-        printf "  %d frames, %d of them commands; the short frame is %s\n", frames, commands, counted ? "counted" : "not counted"
-        exit !(commands > 300 && commands < 560 && counted)
-    }'
+# The emulator keeps to the wall clock: on a machine that is busy with something else it may get too little of it once.
+for_5_s || for_5_s || for_5_s
 
 echo "-- a log replayed, against this host"
 cd tests/embedded
