@@ -102,9 +102,7 @@ fn to_stop_line(own: &Sighting, network: &Network) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use super::super::read::corridor;
+    use super::super::example;
     use super::*;
 
     #[test]
@@ -122,24 +120,11 @@ mod tests {
 
     #[test]
     fn it_stops_at_the_line_for_those_who_cross_and_for_nobody_else() {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let corridor = example::corridor();
         let network = Network::of(&corridor);
         let stop = network.lanes[0].stops[0];
         let line_m = stop.at_m - network.junctions[stop.intersection].half_m - LINE_M;
-        let own = |before_m: f64| Sighting {
-            trip: 0,
-            road: 0,
-            way_m: line_m - before_m,
-            length_m: 4.8,
-            speed_mps: 10.0,
-            odometer_m: 0.0,
-            next: None,
-            followed: None,
-            belief: None,
-            limited: false,
-            dark: false,
-        };
+        let own = |before_m: f64| example::sighting(0, 0, line_m - before_m);
         let wanted = |before_m, waits| demand(&own(before_m), &[], &network, &corridor.traffic, waits);
         assert!(wanted(30.0, true) < -1.0 && wanted(30.0, false) > 0.0, "{}", wanted(30.0, true));
         // From 10 m/s with 4 m/s² it takes 12.5 m to stop.

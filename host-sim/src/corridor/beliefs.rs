@@ -181,35 +181,19 @@ impl Watch for Beliefs<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use super::super::read::corridor;
+    use super::super::example;
     use super::*;
     use crate::world::{Bounds, TargetBelief};
 
     fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
-        Sighting {
-            trip,
-            road,
-            way_m,
-            length_m: 4.8,
-            speed_mps: 10.0,
-            odometer_m: 500.0,
-            next: None,
-            followed: None,
-            belief: None,
-            limited: false,
-            dark: false,
-        }
+        Sighting { odometer_m: 500.0, ..example::sighting(trip, road, way_m) }
     }
 
     /// Ticks at which the bound did not hold the truth, of a unit on the one direction of a street that takes its stop of that
     /// number for the next, while its rear has just left the third; it follows one that comes the other way and is 10 m
     /// before the third, and is right about that.
     fn violations_with_next(stop: usize) -> u64 {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
-        let network = Network::of(&corridor);
+        let network = Network::of(&example::corridor());
         let (own_lane, lane) = (&network.lanes[0], &network.lanes[1]);
         let left = own_lane.stops[2];
         let met = lane.stops.iter().find(|stop| stop.intersection == left.intersection).unwrap();
@@ -240,9 +224,7 @@ mod tests {
     /// What becomes of an error at that time, in metres, about a target that began to follow somebody else at 10 s, by a unit
     /// on the same road that heard from it so long before.
     fn judged(errors: &[(f64, f64, f64)]) -> Judged {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
-        let network = Network::of(&corridor);
+        let network = Network::of(&example::corridor());
         let mut beliefs = Beliefs::new(&network, Some(0));
         let see = |beliefs: &mut Beliefs, at_s: f64, believed: Option<(f64, f64)>| {
             let target_m = 100.0 + 10.0 * at_s;

@@ -72,10 +72,8 @@ pub fn config(corridor: &Corridor, conditions: &Conditions, index: usize, kind: 
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::corridor::read::corridor;
+    use crate::corridor::example;
     use crate::vehicle::STEPS;
 
     #[test]
@@ -95,11 +93,11 @@ mod tests {
             ("speed_mps = 50.0", &["speed_mps = 1", "speed_mps = 65.534"]),
             ("margin_m = 0.5", &["margin_m = 0", "margin_m = 10"]),
         ];
-        let text = include_str!("../../scenarios/corridor.toml").replacen("engaged = false", "engaged = true", 1);
+        let text = example::TEXT.replacen("engaged = false", "engaged = true", 1);
         for (from, tos) in extremes {
             for to in tos {
                 let text = text.replacen(from, to, 1);
-                let corridor = corridor(Path::new("corridor.toml"), &text, &Default::default()).unwrap();
+                let corridor = example::of(&text);
                 for kind in [Kind::Car, Kind::Van, Kind::Bus] {
                     let config = config(&corridor, &Conditions::of(&corridor), 0, kind);
                     assert_eq!(config.check(STEPS), Ok(()), "{to}");
@@ -108,7 +106,7 @@ mod tests {
         }
         // A coarse step and a short horizon at once.
         let text = text.replacen("step_s = 0.01 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
-        let corridor = corridor(Path::new("corridor.toml"), &text, &Default::default()).unwrap();
+        let corridor = example::of(&text);
         assert_eq!(config(&corridor, &Conditions::of(&corridor), 0, Kind::Car).check(STEPS), Ok(()));
     }
 }

@@ -196,15 +196,15 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::corridor::example::TEXT;
     use crate::corridor::read::corridor;
     use crate::scenario::Overrides;
 
     #[test]
     fn a_side_is_what_it_is_called_whatever_the_scenario_does_with_the_envelope() {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let engaged = text.replacen("engaged = false", "engaged = true", 1);
+        let engaged = TEXT.replacen("engaged = false", "engaged = true", 1);
         let asked = Overrides { envelope: true, ..Overrides::default() };
-        for (text, overrides) in [(text, Overrides::default()), (text, asked), (&engaged, Overrides::default())] {
+        for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
             let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
             let four = four(&corridor);
             assert_eq!(four.map(|conditions| conditions.envelope.engaged), [false, false, false, true]);

@@ -12,6 +12,8 @@ pub mod command;
 pub mod conditions;
 pub mod cost;
 pub mod description;
+#[cfg(test)]
+mod example;
 pub mod experiment;
 pub mod figures;
 pub mod fit;

@@ -110,14 +110,11 @@ impl Network {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::corridor::read::corridor;
+    use crate::corridor::example;
 
     fn the_corridor() -> Network {
-        let text = include_str!("../../scenarios/corridor.toml");
-        Network::of(&corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap())
+        Network::of(&example::corridor())
     }
 
     #[test]

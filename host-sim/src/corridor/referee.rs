@@ -176,10 +176,8 @@ impl Watch for Referee<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::super::description::Corridor;
-    use super::super::read::corridor;
+    use super::super::example;
     use super::super::trips::trips;
     use super::*;
 
@@ -190,26 +188,13 @@ mod tests {
     const LENGTH_M: f64 = 5.0;
 
     fn the_corridor() -> (Corridor, Network) {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let corridor = corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap();
+        let corridor = example::corridor();
         let network = Network::of(&corridor);
         (corridor, network)
     }
 
     fn on_road(trip: usize, road: usize, way_m: f64) -> Sighting {
-        Sighting {
-            trip,
-            road,
-            way_m,
-            length_m: LENGTH_M,
-            speed_mps: 10.0,
-            odometer_m: 0.0,
-            next: None,
-            followed: None,
-            belief: None,
-            limited: false,
-            dark: false,
-        }
+        Sighting { length_m: LENGTH_M, ..example::sighting(trip, road, way_m) }
     }
 
     /// With its front so far beyond the crossing point of the first intersection.

@@ -200,14 +200,11 @@ fn drive(experiment: &Experiment, corridor: &Corridor, lots: &[Lot], fill_s: f64
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::corridor::read::corridor;
+    use crate::corridor::example;
 
     fn of_the_corridor(edit: impl Fn(&str) -> String) -> (Experiment, Corridor) {
-        let text = edit(include_str!("../../scenarios/corridor.toml"));
-        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), &text, &Default::default()).unwrap());
+        let experiment = Experiment::new(example::of(&edit(example::TEXT)));
         let corridor = Corridor { duration_s: 90.0, ..experiment.corridor.clone() };
         (experiment, corridor)
     }

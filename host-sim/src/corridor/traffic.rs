@@ -335,11 +335,9 @@ fn followed(vehicle: &Vehicle) -> Option<StationHash> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
+    use crate::corridor::example;
     use crate::corridor::experiment::Experiment;
-    use crate::corridor::read::corridor;
     use crate::plant::Kind;
 
     /// The largest way of a vehicle on its way, and of one that has left.
@@ -365,8 +363,7 @@ mod tests {
 
     #[test]
     fn who_has_left_is_still_seen_until_it_vanishes() {
-        let text = include_str!("../../scenarios/corridor.toml");
-        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap());
+        let experiment = Experiment::new(example::corridor());
         let Experiment { corridor, network, itineraries } = &experiment;
         let kind = Kind::Car;
         let trips = [Trip { road: 2, at_s: 0.0, speed_mps: 10.0, kind, dark_after_s: 60.0, odometer_m: 0.0 }];

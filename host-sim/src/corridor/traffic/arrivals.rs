@@ -129,12 +129,10 @@ fn refused(cause: &ConfigError) -> io::Error {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::corridor::conditions::Conditions;
+    use crate::corridor::example;
     use crate::corridor::experiment::Experiment;
-    use crate::corridor::read::corridor;
     use crate::corridor::watch::{Sighting, Watch};
     use crate::plant::Kind;
 
@@ -157,8 +155,7 @@ mod tests {
     /// Two on one road, each with its arrival and when it falls silent once it is there: when the second one appears, and for
     /// how long it is silent in the next 9 s.
     fn second_appears(first: (f64, f64), second: (f64, f64)) -> (f64, f64) {
-        let text = include_str!("../../../scenarios/corridor.toml");
-        let experiment = Experiment::new(corridor(Path::new("corridor.toml"), text, &Default::default()).unwrap());
+        let experiment = Experiment::new(example::corridor());
         let trip = |(at_s, dark_after_s)| Trip {
             road: 0,
             at_s,
