@@ -69,14 +69,14 @@ judge() {
     harness=("$sim" hil --bus "$bus" --station 1 "$@")
 }
 
-# conclude COMMAND...: the command's verdict. If there is none, because this machine was late itself, it is asked again, twice.
+# conclude COMMAND...: the command's verdict. If there is none, because this machine was late itself, it is asked again.
 conclude() {
     local attempt code
-    for attempt in 1 2 3; do
+    for attempt in {1..6}; do
         code=0
         "$@" || code=$?
         [ "$code" = 3 ] || return "$code"
-        echo "inconclusive, attempt $attempt of 3: the machine has too much else to do"
+        echo "inconclusive, attempt $attempt of 6: the machine has too much else to do"
     done
     return 3
 }

@@ -132,17 +132,49 @@ fn how_late_is_too_late_can_be_said() {
 #[test]
 fn a_late_harness_is_inconclusive_whatever_the_device_does() {
     let stall = (Duration::from_millis(4_000), Duration::from_millis(60));
-    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.stall = Some(stall));
+    let results = run(&setup(SHORT, &[]), |behaviour| behaviour.stalls = [stall].into());
     assert_eq!((results.verdict, results.code()), ("inconclusive", Verdict::Inconclusive));
     assert!(results.reasons[0].starts_with("the harness was 5"), "{:?}", results.reasons);
     assert!(results.timing.harness.lateness.max_ms.unwrap() > 50.0);
 }
 
 #[test]
+fn a_device_that_is_late_by_no_more_than_the_harness_has_not_failed() {
+    let stalls = |length: i64| {
+        let stall = |index: i64| (Duration::from_millis(1_000 + 300 * index), Duration::from_millis(length));
+        (0..16).map(stall).collect()
+    };
+    for (pause, stall, limit_ms, verdict) in [
+        (1, 19, 20.0, "passed"),
+        (15, 19, 20.0, "inconclusive"),
+        (15, 11, 20.0, "failed"),
+        (35, 19, 20.0, "failed"),
+        (1, 19, 3.0, "inconclusive"),
+        (1, 11, 3.0, "failed"),
+    ] {
+        let setup = Setup { latency_p99_ms: limit_ms, ..setup(SHORT, &[]) };
+        let results = run(&setup, |behaviour| {
+            behaviour.pause = Some((Duration::from_millis(310), Duration::from_millis(pause)));
+            behaviour.stalls = stalls(stall);
+        });
+        let what = format!("{pause} {stall} {limit_ms}: {:?} {:?}", results.reasons, results.timing);
+        assert_eq!(results.verdict, verdict, "{what}");
+        assert!(verdict == "passed" || results.reasons.iter().any(|reason| reason.starts_with("late: ")), "{what}");
+    }
+    // It does not hide what is wrong besides.
+    let results = run(&setup(SHORT, &[]), |behaviour| {
+        behaviour.pause = Some((Duration::from_millis(310), Duration::from_millis(15)));
+        behaviour.stalls = stalls(19);
+        behaviour.garble = one_step_too_much;
+    });
+    assert_eq!(results.verdict, "failed", "{:?}", results.reasons);
+}
+
+#[test]
 fn a_device_whose_process_ended_has_failed_however_late_the_harness_was() {
     let setup = setup(SHORT, &[]);
     let mut behaviour = Behaviour::good(setup.config, false);
-    behaviour.stall = Some((Duration::from_millis(1_500), Duration::from_millis(60)));
+    behaviour.stalls = [(Duration::from_millis(1_500), Duration::from_millis(60))].into();
     behaviour.dies_after = Some(Duration::from_millis(2_000));
     for (ended, verdict) in [(Some("exit status: 7"), Verdict::Failed), (None, Verdict::Inconclusive)] {
         let (port, rig) = bench(behaviour.clone());

@@ -1,7 +1,8 @@
 //! The judge: an outcome and the limits enter, figures and a verdict with its reasons leave.
 //!
-//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device. Only
-//! a device whose process has ended by itself has failed however late the harness was.
+//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device, and
+//! a device that is late by no more than the harness was has not been measured well enough. Only a device whose process has
+//! ended by itself has failed however late the harness was.
 
 use std::collections::BTreeMap;
 
@@ -133,8 +134,12 @@ pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
-    let own = inconclusive(outcome, &timing);
+    let mut own = inconclusive(outcome, &timing);
     let failed = failed(setup, outcome, &device, &deviation, &timing, &faults, &scenario);
+    let excuse = Excuse::of(setup, outcome, &timing);
+    if failed == late(setup, outcome, &timing, Excuse::default()) && late(setup, outcome, &timing, excuse) != failed {
+        own.push(excuse.said());
+    }
     let has_ended = outcome.cut.as_ref().is_some_and(Cut::has_ended);
     let (verdict, reasons) = match (own.is_empty() || has_ended, failed.is_empty()) {
         (false, _) => ("inconclusive", own.into_iter().chain(failed).collect()),
@@ -257,6 +262,48 @@ fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
     reasons
 }
 
+/// So much of the device's lateness may be the harness's: what keeps the one from its processor keeps a device that is a
+/// process, or that is emulated, from it too.
+#[derive(Clone, Copy, Default)]
+struct Excuse {
+    p99_ms: f64,
+    periods: i64,
+}
+
+impl Excuse {
+    fn of(setup: &Setup, outcome: &Outcome, timing: &Timing) -> Self {
+        let period = setup.config.period.as_micros();
+        let periods = outcome.lateness_us.iter().map(|late_us| ((*late_us).max(0) + period / 2) / period).sum();
+        Self { p99_ms: timing.harness.lateness.p99_ms.unwrap_or(0.0), periods }
+    }
+
+    fn said(&self) -> String {
+        let Self { p99_ms, periods } = self;
+        format!(
+            "the harness was {p99_ms:.1} ms late in one of 100 ticks, {periods} periods in all: the device may not be to blame"
+        )
+    }
+}
+
+/// What there is to say against the device's timing, in real time.
+fn late(setup: &Setup, outcome: &Outcome, timing: &Timing, excuse: Excuse) -> Vec<String> {
+    let mut reasons = Vec::new();
+    if outcome.steps.is_some() {
+        return reasons;
+    }
+    let limit = setup.latency_p99_ms;
+    if let Some(p99) = timing.latency.p99_ms.filter(|p99| *p99 - excuse.p99_ms > limit) {
+        reasons.push(format!("late: commands {p99:.1} ms after the motion in one of 100, of at most {limit} ms"));
+    }
+    let missed = timing.missed_periods;
+    #[allow(clippy::cast_precision_loss)] // counts
+    let share = (missed - excuse.periods) as f64 / (outcome.trace.times_s.len().max(1)) as f64;
+    if share > MISSED_SHARE {
+        reasons.push(format!("late: {missed} periods without a command"));
+    }
+    reasons
+}
+
 /// What there is to say against the device.
 fn failed(
     setup: &Setup,
@@ -270,24 +317,12 @@ fn failed(
     if let Some(cut) = &outcome.cut {
         return vec![said(cut)];
     }
-    let mut reasons = Vec::new();
+    let mut reasons = late(setup, outcome, timing, Excuse::default());
     let mut limit = |is_met: bool, reason: String| {
         if !is_met {
             reasons.push(reason);
         }
     };
-    if let Some(p99) = timing.latency.p99_ms.filter(|_| !deviation.lock_step) {
-        limit(
-            p99 <= setup.latency_p99_ms,
-            format!(
-                "late: commands {p99:.1} ms after the motion in one of 100, of at most {} ms",
-                setup.latency_p99_ms
-            ),
-        );
-    }
-    #[allow(clippy::cast_precision_loss)] // counts
-    let share = timing.missed_periods as f64 / (outcome.trace.times_s.len().max(1)) as f64;
-    limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
     limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));
     limit(device.restarts == 0, format!("it started anew {} times by itself", device.restarts));
     let first_s = outcome.deviation.unexplained_s.iter().find(|at_s| !setup.is_excused(**at_s)).unwrap_or(&0.0);

@@ -28,8 +28,8 @@ pub struct Behaviour {
     pub lock_step: bool,
     /// How long it takes to answer.
     pub latency: Duration,
-    /// When the harness stands still, from the beginning of the bus's time on, and for how long.
-    pub stall: Option<(Duration, Duration)>,
+    /// When the harness stands still, from the beginning of the bus's time on, and for how long; in this order.
+    pub stalls: VecDeque<(Duration, Duration)>,
     /// How often the device and its line stand still, and for how long: nothing is lost, and all of it is late.
     pub pause: Option<(Duration, Duration)>,
     /// When it dies for good, from the beginning of the bus's time on.
@@ -43,7 +43,15 @@ impl Behaviour {
     #[must_use]
     pub fn good(config: Config, lock_step: bool) -> Self {
         let latency = Duration::from_micros(300);
-        Self { config, lock_step, latency, stall: None, pause: None, dies_after: None, garble: |frame| frame }
+        Self {
+            config,
+            lock_step,
+            latency,
+            stalls: VecDeque::new(),
+            pause: None,
+            dies_after: None,
+            garble: |frame| frame,
+        }
     }
 }
 
@@ -175,7 +183,8 @@ impl Port for VirtualPort {
     fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>> {
         let shared = &mut *self.shared.borrow_mut();
         let now = shared.now;
-        if let Some((_, length)) = shared.behaviour.stall.take_if(|(after, _)| now.since(START) > *after) {
+        let stalls = &mut shared.behaviour.stalls;
+        if let Some((_, length)) = stalls.pop_front_if(|(after, _)| now.since(START) > *after) {
             let end = shared.now.plus(length);
             while shared.now < end {
                 shared.advance(end);
