@@ -19,8 +19,8 @@ use crate::world::{Tick, Trace};
 
 /// The harness may be so late in one tick: later, and the device rightly takes its vehicle's motion for lost.
 pub const LATE_MAX_MS: f64 = 40.0;
-/// And so late in one of a hundred: a period.
-pub const LATE_P99_MS: f64 = 10.0;
+/// And so late in one of a hundred: as late as a device may be.
+pub const LATE_P99_MS: f64 = LATENCY_P99_MS;
 /// So long the device may take from its vehicle's motion to its command, unless somebody says otherwise, but for one of a
 /// hundred: two periods, because it need not tick when its vehicle speaks.
 pub const LATENCY_P99_MS: f64 = 20.0;
