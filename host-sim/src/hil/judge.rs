@@ -1,13 +1,15 @@
 //! The judge: an outcome and the limits enter, figures and a verdict with its reasons leave.
 //!
-//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device, and
-//! a device that is late by no more than the harness was has not been measured well enough. Only a device whose process has
-//! ended by itself has failed however late the harness was.
+//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device. Only
+//! a device whose process has ended by itself has failed however late the harness was.
 
 use std::collections::BTreeMap;
 
+use holdover::time::Instant;
 use serde::Serialize;
 
+use super::lateness::{self, LATE_MAX_MS, LATE_P99_MS, Lateness};
+use super::monitor::Beat;
 use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
 use super::session::Setup;
@@ -17,10 +19,6 @@ use crate::run::mode_name;
 use crate::verdict::Verdict;
 use crate::world::{Tick, Trace};
 
-/// The harness may be so late in one tick: later, and the device rightly takes its vehicle's motion for lost.
-pub const LATE_MAX_MS: f64 = 40.0;
-/// And so late in one of a hundred: as late as a device may be.
-pub const LATE_P99_MS: f64 = LATENCY_P99_MS;
 /// So long the device may take from its vehicle's motion to its command, unless somebody says otherwise, but for one of a
 /// hundred: two periods, because it need not tick when its vehicle speaks.
 pub const LATENCY_P99_MS: f64 = 20.0;
@@ -76,8 +74,12 @@ pub struct DeviationFigures {
 pub struct Timing {
     /// From the vehicle's motion (in lock step: from the step) on the bus to the command that rests on it.
     pub latency: Spread,
-    /// Periods in which the device said nothing, but for those of the faults' aftermath.
+    /// Periods in which the device said nothing.
     pub missed_periods: i64,
+    /// Commands that are in these, which leaves out those of the faults' aftermath.
+    pub judged_commands: usize,
+    /// Commands that are not, because the harness was late around them.
+    pub disturbed_commands: usize,
     /// The harness's own.
     pub harness: HarnessTiming,
 }
@@ -134,12 +136,8 @@ pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
-    let mut own = inconclusive(outcome, &timing);
+    let own = inconclusive(outcome, &timing);
     let failed = failed(setup, outcome, &device, &deviation, &timing, &faults, &scenario);
-    let excuse = Excuse::of(setup, outcome, &timing);
-    if failed == late(setup, outcome, &timing, Excuse::default()) && late(setup, outcome, &timing, excuse) != failed {
-        own.push(excuse.said());
-    }
     let has_ended = outcome.cut.as_ref().is_some_and(Cut::has_ended);
     let (verdict, reasons) = match (own.is_empty() || has_ended, failed.is_empty()) {
         (false, _) => ("inconclusive", own.into_iter().chain(failed).collect()),
@@ -191,15 +189,20 @@ fn deviation(setup: &Setup, outcome: &Outcome) -> DeviationFigures {
 
 fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let monitor = &outcome.monitor;
-    let counts_from = |at_s: f64| at_s >= 0.0 && !setup.is_excused(at_s);
-    let judged = monitor.beats().iter().filter(|beat| counts_from(outcome.time_of(beat.at)));
-    let latencies: Vec<i64> = judged.filter_map(|beat| Some(beat.latency?.as_micros())).collect();
-    let missed = monitor.missed().into_iter();
-    let missed = missed.filter(|(at, _)| counts_from(outcome.time_of(*at)) && outcome.steps.is_none());
+    let lateness = Lateness::of(setup, outcome);
+    let counts = |at: Instant| (0.0..).contains(&outcome.time_of(at)) && !setup.is_excused(outcome.time_of(at));
+    let is_disturbed = |at: Instant| lateness.is_around(outcome.time_of(at));
+    let (disturbed, judged): (Vec<&Beat>, Vec<&Beat>) =
+        monitor.beats().iter().filter(|beat| counts(beat.at)).partition(|beat| is_disturbed(beat.at));
+    let latencies: Vec<i64> = judged.iter().filter_map(|beat| Some(beat.latency?.as_micros())).collect();
+    let missed = monitor.missed().into_iter().filter(|(at, _)| counts(*at) && !is_disturbed(*at));
+    let missed = missed.filter(|_| outcome.steps.is_none());
     let counts = outcome.counts;
     Timing {
         latency: Spread::of(&latencies),
         missed_periods: missed.map(|(_, periods)| periods).sum(),
+        judged_commands: judged.len(),
+        disturbed_commands: disturbed.len(),
         harness: HarnessTiming {
             frames: counts.sent,
             lost: counts.sent.saturating_sub(counts.confirmed + counts.refused),
@@ -209,17 +212,14 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     }
 }
 
-/// Ticks at which a target was outside its bound, but for the faults' aftermath, since who is lied to lies; and for ticks at
-/// which the harness was a period late or just had been, since what the device had said by then was heard later.
+/// Ticks at which a target was outside its bound, but for the faults' aftermath, since who is lied to lies; and for those
+/// around which the harness was late, since what the device had said by then was heard later.
 fn violations(setup: &Setup, outcome: &Outcome) -> usize {
     let trace = &outcome.trace;
-    let warm_up = outcome.lateness_us.len().saturating_sub(trace.times_s.len() + 1);
-    let was_late = |tick: usize| {
-        let around = outcome.lateness_us.iter().skip((warm_up + tick).saturating_sub(3)).take(5);
-        around.into_iter().any(|late_us| *late_us > setup.config.period.as_micros())
+    let lateness = Lateness::of(setup, outcome);
+    let is_judged = |tick: usize| {
+        trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s) && !lateness.is_around(*at_s))
     };
-    let is_judged =
-        |tick: usize| trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s)) && !was_late(tick);
     let judged = |ticks: &Vec<Tick>| {
         let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
         ticks.iter().enumerate().map(target).collect()
@@ -239,7 +239,7 @@ fn violations(setup: &Setup, outcome: &Outcome) -> usize {
 
 /// What the harness has to say against itself.
 fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
-    let mut reasons = Vec::new();
+    let mut reasons = Vec::from_iter(lateness::too_many(timing.disturbed_commands, timing.judged_commands));
     let lateness = timing.harness.lateness;
     if outcome.steps.is_none() {
         for (what, value, limit) in
@@ -262,48 +262,6 @@ fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
     reasons
 }
 
-/// So much of the device's lateness may be the harness's: what keeps the one from its processor keeps a device that is a
-/// process, or that is emulated, from it too.
-#[derive(Clone, Copy, Default)]
-struct Excuse {
-    p99_ms: f64,
-    periods: i64,
-}
-
-impl Excuse {
-    fn of(setup: &Setup, outcome: &Outcome, timing: &Timing) -> Self {
-        let period = setup.config.period.as_micros();
-        let periods = outcome.lateness_us.iter().map(|late_us| ((*late_us).max(0) + period / 2) / period).sum();
-        Self { p99_ms: timing.harness.lateness.p99_ms.unwrap_or(0.0), periods }
-    }
-
-    fn said(&self) -> String {
-        let Self { p99_ms, periods } = self;
-        format!(
-            "the harness was {p99_ms:.1} ms late in one of 100 ticks, {periods} periods in all: the device may not be to blame"
-        )
-    }
-}
-
-/// What there is to say against the device's timing, in real time.
-fn late(setup: &Setup, outcome: &Outcome, timing: &Timing, excuse: Excuse) -> Vec<String> {
-    let mut reasons = Vec::new();
-    if outcome.steps.is_some() {
-        return reasons;
-    }
-    let limit = setup.latency_p99_ms;
-    if let Some(p99) = timing.latency.p99_ms.filter(|p99| *p99 - excuse.p99_ms > limit) {
-        reasons.push(format!("late: commands {p99:.1} ms after the motion in one of 100, of at most {limit} ms"));
-    }
-    let missed = timing.missed_periods;
-    #[allow(clippy::cast_precision_loss)] // counts
-    let share = (missed - excuse.periods) as f64 / (outcome.trace.times_s.len().max(1)) as f64;
-    if share > MISSED_SHARE {
-        reasons.push(format!("late: {missed} periods without a command"));
-    }
-    reasons
-}
-
 /// What there is to say against the device.
 fn failed(
     setup: &Setup,
@@ -317,12 +275,24 @@ fn failed(
     if let Some(cut) = &outcome.cut {
         return vec![said(cut)];
     }
-    let mut reasons = late(setup, outcome, timing, Excuse::default());
+    let mut reasons = Vec::new();
     let mut limit = |is_met: bool, reason: String| {
         if !is_met {
             reasons.push(reason);
         }
     };
+    if let Some(p99) = timing.latency.p99_ms.filter(|_| !deviation.lock_step) {
+        limit(
+            p99 <= setup.latency_p99_ms,
+            format!(
+                "late: commands {p99:.1} ms after the motion in one of 100, of at most {} ms",
+                setup.latency_p99_ms
+            ),
+        );
+    }
+    #[allow(clippy::cast_precision_loss)] // counts
+    let share = timing.missed_periods as f64 / (outcome.trace.times_s.len().max(1)) as f64;
+    limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
     limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));
     limit(device.restarts == 0, format!("it started anew {} times by itself", device.restarts));
     let first_s = outcome.deviation.unexplained_s.iter().find(|at_s| !setup.is_excused(**at_s)).unwrap_or(&0.0);

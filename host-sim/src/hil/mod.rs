@@ -13,6 +13,7 @@ pub mod arguments;
 pub mod deviation;
 pub mod fault;
 pub mod judge;
+pub mod lateness;
 pub mod lock_step;
 pub mod monitor;
 pub mod options;

@@ -19,6 +19,7 @@ pub fn text(results: &Results) -> String {
     row("  by mode", modes.join(", "));
     row("  latency p50 / p99 / max, ms", spread(&timing.latency));
     row("  missed periods", timing.missed_periods.to_string());
+    row("  commands judged / disturbed", format!("{} / {}", timing.judged_commands, timing.disturbed_commands));
     row("  end-to-end errors", device.e2e_errors.to_string());
     let refused: Vec<String> = device.refusals.iter().map(|(cause, count)| format!("{cause} {count}")).collect();
     row("  refused by it", if refused.is_empty() { "nothing".into() } else { refused.join(", ") });
