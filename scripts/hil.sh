@@ -69,25 +69,50 @@ judge() {
     harness=("$sim" hil --bus "$bus" --station 1 "$@")
 }
 
-# conclude COMMAND...: the command's verdict. If there is none, because this machine was late itself, it is asked again.
+# Looks every 5 ms at how late it is woken, before all other programs where this user may say so, and writes down the largest
+# lateness in milliseconds when it is ended.
+look='use Time::HiRes "time"; my ($end, $largest) = (0, 0); $SIG{TERM} = sub { $end = 1 };
+    until ($end) {
+        my $due = time + 0.005;
+        select undef, undef, undef, 0.005;
+        $largest = time - $due if time - $due > $largest;
+    }
+    printf "%.0f\n", 1000 * $largest'
+
+# conclude COMMAND...: the verdict of a run in real time. Of a device that is a process or emulated, a failure says nothing if
+# this machine kept a processor from its programs for half a period: then it is asked again, as after a verdict of
+# "inconclusive".
 conclude() {
-    local attempt code
-    for attempt in {1..6}; do
+    local attempt code cpu withheld lookers first=()
+    ! chrt --rr 3 true 2>/dev/null || first=(chrt --rr 3)
+    for attempt in {1..8}; do
+        lookers=()
+        for cpu in $(seq 0 $(($(nproc) - 1))); do
+            taskset -c "$cpu" "${first[@]}" perl -e "$look" >"$work/withheld.$cpu" &
+            lookers+=($!)
+        done
         code=0
         "$@" || code=$?
-        [ "$code" = 3 ] || return "$code"
-        echo "inconclusive, attempt $attempt of 6: the machine has too much else to do"
+        kill "${lookers[@]}"
+        wait "${lookers[@]}"
+        withheld=$(sort -n "$work"/withheld.* | tail -1)
+        case $code in
+        3) ;;
+        1) [ "$withheld" -ge 5 ] || return 1 ;;
+        *) return $code ;;
+        esac
+        echo "attempt $attempt of 8 says nothing: this machine kept a processor from its programs for $withheld ms at once"
     done
     return 3
 }
 
 check_ecu() {
-    local mode
-    for mode in '' --lock-step; do
-        echo "-- a process of Linux, ${mode:-real time}"
-        judge vcan0 $mode
-        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $mode"
-    done
+    echo "-- a process of Linux, real time"
+    judge vcan0
+    conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1"
+    echo "-- a process of Linux, lock step"
+    judge vcan0 --lock-step
+    scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step"
 }
 
 check_m4() {
@@ -99,7 +124,7 @@ check_m4() {
     conclude scripts/device-m4.sh "$work/$target-real-time" -- "${harness[@]}"
     echo "-- an emulated Cortex-M4F over slcan, lock step"
     judge slcan0 --lock-step
-    conclude scripts/device-m4.sh "$work/$target-lock-step" -- "${harness[@]}"
+    scripts/device-m4.sh "$work/$target-lock-step" -- "${harness[@]}"
 }
 
 check_r5() {
@@ -111,7 +136,7 @@ check_r5() {
     conclude scripts/device-r5.sh "$work/$target-real-time" -- "${harness[@]}"
     echo "-- an emulated Cortex-R5F with a CAN controller on vcan0, lock step"
     judge vcan0 --lock-step
-    conclude scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
+    scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
 }
 
 checks=(kernel tests ecu m4 r5)
