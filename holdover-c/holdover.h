@@ -153,6 +153,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_OFF_ROUTE = -89,
   // Not a refusal of a frame: a station went on not heeding the ego.
   HOLDOVER_REFUSED_OVERLOOKED = -90,
+  // A synchronisation that was too long on its way.
+  HOLDOVER_REFUSED_SYNC_LATE = -91,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

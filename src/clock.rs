@@ -4,6 +4,10 @@
 //! The *reception* of `Sync` is the mark; `FollowUp` says when the mark was really sent. Two marks half a second apart
 //! bound the error by the clocks' relative drift (100 ppm · 0.5 s = 50 µs) and the reception's jitter, so that no rate is
 //! estimated.
+//!
+//! A mark can be late, where a gateway or the unit itself was busy, and never early. So one that says that less time has passed
+//! than the unit's own clock says is refused, and the mark before it holds. One that says that more time has passed shows that
+//! the one before it was late. Where GNSS time itself steps back, all marks are late from then on: the second in a row is believed.
 
 use crate::health::Refusal;
 use crate::time::{Duration, GnssTime, Instant, Stamp};
@@ -23,16 +27,20 @@ struct Fix {
 pub struct Clock {
     mark: Option<(Instant, Sync)>,
     fix: Option<Fix>,
+    /// Whether the last mark was refused as late.
+    is_doubted: bool,
 }
 
 /// How long after its mark a follow-up may come.
 const FOLLOW_UP_TIMEOUT: Duration = Duration::from_millis(250);
+/// A mark may be so late, which is 5 cm at urban speed: far more than what the clocks drift apart in half a second.
+const LATE: Duration = Duration::from_millis(5);
 
 impl Clock {
     /// Not synchronised.
     #[must_use]
     pub const fn new() -> Self {
-        Self { mark: None, fix: None }
+        Self { mark: None, fix: None, is_doubted: false }
     }
 
     /// First step.
@@ -43,15 +51,27 @@ impl Clock {
     /// Second step.
     ///
     /// # Errors
-    /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago.
+    /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago; [`Refusal::SyncLate`] if that
+    /// came too late.
     pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Refusal> {
         let (marked, sync) = self.mark.ok_or(Refusal::SyncSequence)?;
         if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
             return Err(Refusal::SyncSequence);
         }
         self.mark = None;
-        self.fix = Some(Fix { local: marked, gnss: follow_up.time_of(&sync) });
+        let gnss = follow_up.time_of(&sync);
+        self.is_doubted = !self.is_doubted && self.is_late(marked, gnss);
+        if self.is_doubted {
+            return Err(Refusal::SyncLate);
+        }
+        self.fix = Some(Fix { local: marked, gnss });
         Ok(())
+    }
+
+    /// Whether a mark that was sent at that time came at an instant at which, by the last one, it was already later.
+    fn is_late(&self, at: Instant, sent: GnssTime) -> bool {
+        let foretold = self.gnss(at).unwrap_or(sent);
+        foretold.as_micros().saturating_sub(sent.as_micros()) > LATE.as_micros().unsigned_abs()
     }
 
     /// Whether GNSS time is known at this instant, with a synchronisation no older than that.
@@ -132,6 +152,47 @@ mod tests {
             assert_eq!(clock.follow_up(Instant::from_micros(micros), FollowUp { sequence, micros: 0 }), refused);
             assert!(!clock.is_synchronised(at, Duration::MAX));
         }
+    }
+
+    /// A synchronisation every half second: how much later than sent each is marked, and whether it is taken.
+    fn marks(late_ms: &[(i64, bool)]) {
+        let mut clock = Clock::new();
+        for (number, (late_ms, is_taken)) in (0..).zip(late_ms) {
+            let sent = 10_000_000 + 500_000 * number;
+            let at = Instant::from_micros(sent).plus(Duration::from_millis(*late_ms));
+            let (sequence, micros) = ((number % 16) as u8, (sent % 1_000_000) as u32);
+            clock.sync(at, Sync { sequence, seconds: (sent / 1_000_000) as u32 });
+            let result = clock.follow_up(at, FollowUp { sequence, micros });
+            assert_eq!(result, if *is_taken { Ok(()) } else { Err(Refusal::SyncLate) }, "{number}");
+            if *is_taken {
+                assert_eq!(clock.gnss(at), Some(GnssTime::from_micros(sent)), "{number}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mark_that_was_too_long_on_its_way_is_refused() {
+        marks(&[
+            (0, true),
+            (5, true),
+            (11, false),
+            (10, true),
+            (3, true),
+            (4, true),
+            (40, false),
+            (8, true),
+            (14, false),
+        ]);
+    }
+
+    #[test]
+    fn a_first_mark_that_was_late_is_corrected_by_the_next_one() {
+        marks(&[(30, true), (0, true), (30, false), (0, true)]);
+    }
+
+    #[test]
+    fn a_time_that_steps_back_is_believed_from_the_second_mark_on() {
+        marks(&[(0, true), (100, false), (100, true), (100, true), (0, true), (30, false), (40, true), (0, true)]);
     }
 
     #[test]

@@ -61,6 +61,8 @@ pub enum Refusal {
     OffRoute = 25,
     /// A station that arrived later went on not heeding the ego, which then gave way to it.
     Overlooked = 26,
+    /// A synchronisation that was too long on its way ([`Clock`](crate::clock::Clock)).
+    SyncLate = 27,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -96,7 +98,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -124,6 +126,7 @@ impl Refusal {
         Self::Restart,
         Self::OffRoute,
         Self::Overlooked,
+        Self::SyncLate,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -157,6 +160,7 @@ impl Refusal {
             Self::Restart => "restart",
             Self::OffRoute => "off_route",
             Self::Overlooked => "overlooked",
+            Self::SyncLate => "sync_late",
         }
     }
 }

@@ -250,10 +250,21 @@ fn a_follow_up_without_its_sync_message() {
 }
 
 #[test]
+fn a_synchronisation_that_was_long_on_its_way() {
+    is_refused(Refusal::SyncLate, |unit, traffic| {
+        let now = traffic.now();
+        let frames = traffic.time_base();
+        let results = receive_all(unit, now.plus(Duration::from_micros(5_100)), &frames);
+        assert_eq!(results[0], Ok(Reception::Taken));
+        results[1]
+    });
+}
+
+#[test]
 fn a_follow_up_of_another_sync_message_which_does_not_spoil_the_right_one() {
     let (mut unit, mut traffic) = settled();
     let now = traffic.now();
-    let sync = traffic.frames(&Message::Sync(Sync { sequence: 14, seconds: 1_000_000_000 }))[0];
+    let sync = traffic.frames(&Message::Sync(Sync { sequence: 14, seconds: 1_500_000_000 }))[0];
     let wrong = traffic.frames(&Message::FollowUp(FollowUp { sequence: 15, micros: 7 }))[0];
     let right = traffic.frames(&Message::FollowUp(FollowUp { sequence: 14, micros: 7 }))[0];
     let results = receive_all(&mut unit, now, &[sync, wrong, right, right]);

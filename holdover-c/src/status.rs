@@ -129,6 +129,8 @@ pub enum Status {
     RefusedOffRoute = -89,
     /// Not a refusal of a frame: a station went on not heeding the ego.
     RefusedOverlooked = -90,
+    /// A synchronisation that was too long on its way.
+    RefusedSyncLate = -91,
 }
 
 impl From<ConfigError> for Status {
@@ -183,6 +185,7 @@ impl From<Refusal> for Status {
             Refusal::Restart => Self::RefusedRestart,
             Refusal::OffRoute => Self::RefusedOffRoute,
             Refusal::Overlooked => Self::RefusedOverlooked,
+            Refusal::SyncLate => Self::RefusedSyncLate,
         }
     }
 }
@@ -246,6 +249,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedRestart, c"refused: restart"),
     (Status::RefusedOffRoute, c"refused: off_route"),
     (Status::RefusedOverlooked, c"counted: overlooked"),
+    (Status::RefusedSyncLate, c"refused: sync_late"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.
