@@ -211,7 +211,7 @@ pub const fn saturate_i32(x: i64) -> i32 {
 }
 
 /// Quotient rounded to nearest, ties away from zero; 0 for a divisor of 0.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn divide_rounding(dividend: i64, divisor: i64) -> i64 {
     let half = divisor.saturating_abs() / 2;
     quotient(if dividend >= 0 { dividend.saturating_add(half) } else { dividend.saturating_sub(half) }, divisor)
@@ -265,7 +265,7 @@ const fn divide_by_bytes(dividend: u64, divisor: u64) -> u64 {
 /// `dividend / 10⁶` for a dividend below 2⁶³, by multiplying: `10⁶ = 2⁶·5⁶`, and a product with `⌈2⁷⁷/5⁶⌉`, which is off by
 /// less than 1, is off by less than `2⁵⁷/2⁷⁷` of a quotient whose fraction is at most `1 - 1/5⁶`.
 #[must_use]
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴
 pub const fn per_million(dividend: u64) -> u64 {
     const FACTOR: u128 = (1u128 << 77).div_ceil(15_625);

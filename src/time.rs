@@ -41,42 +41,42 @@ impl Duration {
 
     /// In whole milliseconds, towards zero.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn as_millis(self) -> i64 {
         quotient(self.0, 1000)
     }
 
     /// Sum, saturating.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn plus(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
 
     /// Difference, saturating.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn minus(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }
 
     /// A multiple, saturating.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn times(self, factor: i64) -> Self {
         Self(self.0.saturating_mul(factor))
     }
 
     /// As a factor for speeds, saturating at ±4 s.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn seconds(self) -> Seconds {
         Seconds::from_bits(word(self.0, SecondsFormat::FRAC_NBITS))
     }
 
     /// As a factor for accelerations, saturating at ±2 s.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn fine_seconds(self) -> FineSeconds {
         FineSeconds::from_bits(word(self.0, FineSecondsFormat::FRAC_NBITS))
     }
@@ -114,7 +114,7 @@ impl Instant {
 
     /// That much later (earlier if negative), saturating at the clock's start and end.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn plus(self, duration: Duration) -> Self {
         Self(self.0.saturating_add_signed(duration.0))
     }
@@ -127,7 +127,7 @@ impl Instant {
 
     /// How much later this instant is than the other (negative if it is earlier), saturating.
     #[must_use]
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn since(self, earlier: Self) -> Duration {
         Duration(if self.0 >= earlier.0 {
             saturate(self.0.wrapping_sub(earlier.0))

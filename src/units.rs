@@ -240,14 +240,14 @@ impl Position {
 
     /// The position that far ahead, saturating.
     #[must_use]
-    #[inline(never)] // as in `time`
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))] // as in `time`
     pub const fn ahead(self, distance: Distance) -> Self {
         Self::from_bits(self.to_bits().saturating_add(distance.to_bits() as i64))
     }
 
     /// How far this position is ahead of the other, saturating at ±2048 m.
     #[must_use]
-    #[inline(never)] // as in `time`
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))] // as in `time`
     pub const fn ahead_of(self, other: Self) -> Distance {
         Distance::from_bits(saturate_i32(self.to_bits().saturating_sub(other.to_bits())))
     }

@@ -210,7 +210,7 @@ fn micro_up(word: i32, fraction: u32) -> i64 {
     micro_up_64(i64::from(word), fraction)
 }
 
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn micro_up_64(word: i64, fraction: u32) -> i64 {
     word.saturating_neg().saturating_mul(MICRO).wrapping_shr(fraction).saturating_neg()
 }
@@ -225,7 +225,7 @@ fn micro_position(position: Position) -> (i64, i64) {
 }
 
 /// Millionths as a word with `fraction` bits, rounded down.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
     millionths(micros.saturating_mul(1i64.wrapping_shl(fraction)))
 }

@@ -210,7 +210,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// The predecessor at a step; nobody if it is out of reach.
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
         let ahead = self.ahead?;
         if let Some(delay) = self.delay {
@@ -254,7 +254,7 @@ impl<const STEPS: usize> Filling<'_, STEPS> {
 }
 
 /// The next run. Apart, because making one is large, and is asked for in two places.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
     runs.next()
 }

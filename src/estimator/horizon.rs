@@ -182,7 +182,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
     }
 
     /// Adds the next step at the far end; a full ring drops its first step.
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub fn push(&mut self, state: State) {
         if self.len == STEPS {
             self.drop_first();

@@ -307,7 +307,7 @@ fn rounded(speed: Speed) -> Speed {
 }
 
 /// A change of speed over a time, saturating.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 pub(super) fn slope(change: Speed, time: Duration) -> Acceleration {
     // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
     let change = i64::from(change.to_bits()).saturating_mul(4_000_000);

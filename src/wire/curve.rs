@@ -54,7 +54,7 @@ const fn over(word: i64, micros: i64) -> i64 {
 }
 
 /// A product, saturating; a call, because it stands in many places that are seldom come to.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn times(a: i64, b: i64) -> i64 {
     a.saturating_mul(b)
 }
@@ -116,7 +116,7 @@ impl Piece {
         Self { micros, origin: Distance::from_bits(saturate_i32(from.way)), way, speed }
     }
 
-    #[inline(never)]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     fn share_of(&self, micros: i64) -> i32 {
         let share = micros.min(self.micros).max(0) << SHARE_BITS;
         saturate_i32(quotient(share, self.micros))
@@ -272,7 +272,7 @@ impl Curve {
     }
 }
 
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn share_of(length: Duration, per_mille: u16) -> i64 {
     quotient(length.as_micros().saturating_mul(per_mille as i64), 1000)
 }

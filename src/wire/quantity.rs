@@ -33,7 +33,7 @@ fn word(steps: i64, per_unit: i64, fraction: u32) -> i32 {
 }
 
 /// How many `1/per_unit` a word with so many fraction bits is. Units have at most 10⁷ steps, so that 64 bits hold it.
-#[inline(never)]
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn steps(word: i32, per_unit: i64, fraction: u32) -> i64 {
     let product = i64::from(word).saturating_mul(per_unit);
     let half = 1i64.wrapping_shl(fraction.saturating_sub(1));
