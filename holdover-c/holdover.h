@@ -153,7 +153,7 @@ enum holdover_status_t
   HOLDOVER_REFUSED_OFF_ROUTE = -89,
   // Not a refusal of a frame: a station went on not heeding the ego.
   HOLDOVER_REFUSED_OVERLOOKED = -90,
-  // A synchronisation that was too long on its way.
+  // A synchronisation that came later than the unit's own clock allows.
   HOLDOVER_REFUSED_SYNC_LATE = -91,
 };
 #ifndef __cplusplus

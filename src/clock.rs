@@ -6,8 +6,9 @@
 //! estimated.
 //!
 //! A mark can be late, where a gateway or the unit itself was busy, and never early. So one that says that less time has passed
-//! than the unit's own clock says is refused, and the mark before it holds. One that says that more time has passed shows that
-//! the one before it was late. Where GNSS time itself steps back, all marks are late from then on: the second in a row is believed.
+//! than the unit's own clock says is refused, and the mark before it holds; one that says that more time has passed shows that the
+//! one before it was late. If GNSS time itself steps back, all marks are late from then on, by the same: the second in a row that
+//! is late by the same is believed. The price is half a second more of a wrong time wherever it was ahead.
 
 use crate::health::Refusal;
 use crate::time::{Duration, GnssTime, Instant, Stamp};
@@ -27,20 +28,35 @@ struct Fix {
 pub struct Clock {
     mark: Option<(Instant, Sync)>,
     fix: Option<Fix>,
-    /// Whether the last mark was refused as late.
-    is_doubted: bool,
+    /// The last mark, if it was refused as late.
+    doubted: Option<Fix>,
+}
+
+impl Fix {
+    fn gnss(&self, at: Instant) -> GnssTime {
+        GnssTime::from_micros(self.gnss.as_micros().saturating_add_signed(at.since(self.local).as_micros()))
+    }
+
+    /// How much later than by this mark a later one is; nothing is known of that after a long time.
+    fn lateness_of(&self, later: &Self) -> Option<Duration> {
+        let (foretold, said) = (self.gnss(later.local).as_micros(), later.gnss.as_micros());
+        let is_near = later.local.since(self.local) < MEMORY;
+        is_near.then(|| Instant::from_micros(foretold).since(Instant::from_micros(said)))
+    }
 }
 
 /// How long after its mark a follow-up may come.
 const FOLLOW_UP_TIMEOUT: Duration = Duration::from_millis(250);
-/// A mark may be so late, which is 5 cm at urban speed: far more than what the clocks drift apart in half a second.
+/// A mark may be so late, which is 5 cm at urban speed and far more than what the clocks drift apart while a mark is remembered.
 const LATE: Duration = Duration::from_millis(5);
+/// How long a mark says when others are late: 100 ppm of it are 0.5 ms.
+const MEMORY: Duration = Duration::from_millis(5_000);
 
 impl Clock {
     /// Not synchronised.
     #[must_use]
     pub const fn new() -> Self {
-        Self { mark: None, fix: None, is_doubted: false }
+        Self { mark: None, fix: None, doubted: None }
     }
 
     /// First step.
@@ -59,19 +75,16 @@ impl Clock {
             return Err(Refusal::SyncSequence);
         }
         self.mark = None;
-        let gnss = follow_up.time_of(&sync);
-        self.is_doubted = !self.is_doubted && self.is_late(marked, gnss);
-        if self.is_doubted {
+        let fix = Fix { local: marked, gnss: follow_up.time_of(&sync) };
+        let after = |earlier: Option<Fix>| earlier.and_then(|earlier| earlier.lateness_of(&fix));
+        let is_late = after(self.fix).is_some_and(|late| late > LATE);
+        let is_as_late = after(self.doubted).is_some_and(|late| late <= LATE && late >= Duration::ZERO.minus(LATE));
+        if is_late && !is_as_late {
+            self.doubted = Some(fix);
             return Err(Refusal::SyncLate);
         }
-        self.fix = Some(Fix { local: marked, gnss });
+        (self.fix, self.doubted) = (Some(fix), None);
         Ok(())
-    }
-
-    /// Whether a mark that was sent at that time came at an instant at which, by the last one, it was already later.
-    fn is_late(&self, at: Instant, sent: GnssTime) -> bool {
-        let foretold = self.gnss(at).unwrap_or(sent);
-        foretold.as_micros().saturating_sub(sent.as_micros()) > LATE.as_micros().unsigned_abs()
     }
 
     /// Whether GNSS time is known at this instant, with a synchronisation no older than that.
@@ -83,9 +96,7 @@ impl Clock {
     /// GNSS time at an instant, if there ever was a synchronisation.
     #[must_use]
     pub fn gnss(&self, at: Instant) -> Option<GnssTime> {
-        let fix = self.fix?;
-        let since = at.since(fix.local).as_micros();
-        Some(GnssTime::from_micros(fix.gnss.as_micros().saturating_add_signed(since)))
+        Some(self.fix?.gnss(at))
     }
 
     /// The instant of a stamp that was received at `at`, if there ever was a synchronisation.
@@ -154,13 +165,14 @@ mod tests {
         }
     }
 
-    /// A synchronisation every half second: how much later than sent each is marked, and whether it is taken.
-    fn marks(late_ms: &[(i64, bool)]) {
+    /// Synchronisations, each so many milliseconds after the first was sent: how much later than sent it is marked, and whether
+    /// it is taken.
+    fn marks(marks: &[(u64, i64, bool)]) {
         let mut clock = Clock::new();
-        for (number, (late_ms, is_taken)) in (0..).zip(late_ms) {
-            let sent = 10_000_000 + 500_000 * number;
+        for (number, (sent_ms, late_ms, is_taken)) in (0..).zip(marks) {
+            let sent = 10_000_000 + 1_000 * sent_ms;
             let at = Instant::from_micros(sent).plus(Duration::from_millis(*late_ms));
-            let (sequence, micros) = ((number % 16) as u8, (sent % 1_000_000) as u32);
+            let (sequence, micros) = (number % 16, (sent % 1_000_000) as u32);
             clock.sync(at, Sync { sequence, seconds: (sent / 1_000_000) as u32 });
             let result = clock.follow_up(at, FollowUp { sequence, micros });
             assert_eq!(result, if *is_taken { Ok(()) } else { Err(Refusal::SyncLate) }, "{number}");
@@ -173,26 +185,39 @@ mod tests {
     #[test]
     fn a_mark_that_was_too_long_on_its_way_is_refused() {
         marks(&[
-            (0, true),
-            (5, true),
-            (11, false),
-            (10, true),
-            (3, true),
-            (4, true),
-            (40, false),
-            (8, true),
-            (14, false),
+            (0, 0, true),
+            (500, 5, true),
+            (1_000, 11, false),
+            (1_500, 10, true),
+            (2_000, 3, true),
+            (2_500, 9, false),
         ]);
     }
 
     #[test]
     fn a_first_mark_that_was_late_is_corrected_by_the_next_one() {
-        marks(&[(30, true), (0, true), (30, false), (0, true)]);
+        marks(&[(0, 30, true), (500, 0, true), (1_000, 30, false), (1_500, 0, true)]);
+    }
+
+    #[test]
+    fn marks_that_are_late_by_this_and_that_are_all_refused_until_the_last_good_one_is_forgotten() {
+        let late =
+            [(500, 6), (1_000, 80), (1_500, 74), (2_000, 80), (2_500, 20), (3_000, 26), (3_500, 90), (4_900, 40)];
+        let late: Vec<_> = late.into_iter().map(|(sent_ms, late_ms)| (sent_ms, late_ms, false)).collect();
+        marks(&[&[(0, 0, true)], &late[..], &[(4_990, 30, true)]].concat());
     }
 
     #[test]
     fn a_time_that_steps_back_is_believed_from_the_second_mark_on() {
-        marks(&[(0, true), (100, false), (100, true), (100, true), (0, true), (30, false), (40, true), (0, true)]);
+        let back = [(500, 100, false), (1_000, 102, true), (1_500, 98, true), (2_000, 0, true), (2_500, 30, false)];
+        marks(&[&[(0, 0, true)], &back[..], &[(3_000, 25, true)]].concat());
+    }
+
+    #[test]
+    fn after_a_long_silence_the_first_mark_is_believed_and_an_old_doubt_is_none() {
+        marks(&[(0, 0, true), (60_000, 6, true)]);
+        marks(&[(0, 0, true), (4_000, 30, false), (4_900, 0, true), (5_400, 30, false)]);
+        marks(&[(0, 0, true), (500, 30, false), (4_800, 40, false)]);
     }
 
     #[test]

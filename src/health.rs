@@ -61,7 +61,7 @@ pub enum Refusal {
     OffRoute = 25,
     /// A station that arrived later went on not heeding the ego, which then gave way to it.
     Overlooked = 26,
-    /// A synchronisation that was too long on its way ([`Clock`](crate::clock::Clock)).
+    /// A synchronisation that came later than the unit's own clock allows ([`Clock`](crate::clock::Clock)).
     SyncLate = 27,
 }
 

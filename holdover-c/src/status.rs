@@ -129,7 +129,7 @@ pub enum Status {
     RefusedOffRoute = -89,
     /// Not a refusal of a frame: a station went on not heeding the ego.
     RefusedOverlooked = -90,
-    /// A synchronisation that was too long on its way.
+    /// A synchronisation that came later than the unit's own clock allows.
     RefusedSyncLate = -91,
 }
 

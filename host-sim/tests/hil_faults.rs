@@ -105,7 +105,7 @@ fn a_large_step_makes_the_unit_brake_because_its_own_motion_is_not_of_now_and_th
         let results = press(fault);
         let [recovery] = &results.faults[..] else { panic!("{fault}: {:?}", results.faults) };
         assert_eq!(recovery.worst, "fault", "{fault}");
-        // The second synchronisation that says that time has stepped back is believed.
+        // The second synchronisation by which time has stepped back is believed.
         assert!(recovery.recovered_after_s.unwrap() < 1.1, "{fault}: {recovery:?}");
         assert!(results.device.refusals[cause] > 100, "{fault}: {:?}", results.device.refusals);
         // A unit without its own motion cannot tell the others that it brakes, and no envelope is engaged.

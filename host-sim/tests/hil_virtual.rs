@@ -166,6 +166,19 @@ fn what_a_device_does_while_the_harness_is_late_is_not_put_down_to_it() {
 }
 
 #[test]
+fn a_short_lateness_of_the_harness_excuses_no_long_silence_of_the_device() {
+    for stalls in [VecDeque::new(), stalls(2, 3_390, 2_900, 14)] {
+        let results = run(&setup(SHORT, &[]), |behaviour| {
+            behaviour.pause = Some((Duration::from_millis(2_900), Duration::from_millis(500)));
+            behaviour.stalls = stalls.clone();
+        });
+        assert_eq!(results.verdict, "failed", "{:?}", results.timing);
+        assert!(results.timing.missed_periods > 80, "{stalls:?} {:?}", results.timing);
+        assert!(results.timing.latency.max_ms.unwrap() > 400.0, "{stalls:?} {:?}", results.timing);
+    }
+}
+
+#[test]
 fn a_harness_that_is_late_around_most_of_the_commands_judges_none() {
     for (apart, verdict) in [(120, "passed"), (90, "inconclusive")] {
         let results = run(&setup(SHORT, &[]), |behaviour| behaviour.stalls = stalls(70, 0, apart, 15));

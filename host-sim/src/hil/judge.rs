@@ -5,10 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use holdover::time::Instant;
 use serde::Serialize;
 
-use super::lateness::{self, LATE_MAX_MS, LATE_P99_MS, Lateness};
+use super::lateness::{self, LATE_MAX_MS, LATE_P99_MS};
 use super::monitor::Beat;
 use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
@@ -75,7 +74,7 @@ pub struct Timing {
     /// From the vehicle's motion (in lock step: from the step) on the bus to the command that rests on it.
     pub latency: Spread,
     /// Periods in which the device said nothing.
-    pub missed_periods: i64,
+    pub missed_periods: usize,
     /// Commands that are in these, which leaves out those of the faults' aftermath.
     pub judged_commands: usize,
     /// Commands that are not, because the harness was late around them.
@@ -189,25 +188,28 @@ fn deviation(setup: &Setup, outcome: &Outcome) -> DeviationFigures {
 
 fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let monitor = &outcome.monitor;
-    let lateness = Lateness::of(setup, outcome);
-    let counts = |at: Instant| (0.0..).contains(&outcome.time_of(at)) && !setup.is_excused(outcome.time_of(at));
-    let is_disturbed = |at: Instant| lateness.is_around(outcome.time_of(at));
+    let Outcome { lateness, .. } = outcome;
+    let is_of_device = |at_s: f64| at_s >= 0.0 && !setup.is_excused(at_s);
+    let is_disturbed =
+        |beat: &&Beat| lateness.excuses(outcome.time_of(beat.at), beat.latency.unwrap_or(setup.config.period));
     let (disturbed, judged): (Vec<&Beat>, Vec<&Beat>) =
-        monitor.beats().iter().filter(|beat| counts(beat.at)).partition(|beat| is_disturbed(beat.at));
+        monitor.beats().iter().filter(|beat| is_of_device(outcome.time_of(beat.at))).partition(is_disturbed);
     let latencies: Vec<i64> = judged.iter().filter_map(|beat| Some(beat.latency?.as_micros())).collect();
-    let missed = monitor.missed().into_iter().filter(|(at, _)| counts(*at) && !is_disturbed(*at));
-    let missed = missed.filter(|_| outcome.steps.is_none());
+    // Period by period: a lateness of the harness says nothing of those of the same silence that it is far from.
+    let missed = monitor.missed().into_iter().filter(|_| outcome.steps.is_none());
+    let missed = missed.flat_map(|(end, periods)| (1..=periods).map(move |back| (end, back)));
+    let missed = missed.map(|(end, back)| outcome.time_of(end.minus(setup.config.period.times(back))));
     let counts = outcome.counts;
     Timing {
         latency: Spread::of(&latencies),
-        missed_periods: missed.map(|(_, periods)| periods).sum(),
+        missed_periods: missed.filter(|at_s| is_of_device(*at_s) && !lateness.is_around(*at_s)).count(),
         judged_commands: judged.len(),
         disturbed_commands: disturbed.len(),
         harness: HarnessTiming {
             frames: counts.sent,
             lost: counts.sent.saturating_sub(counts.confirmed + counts.refused),
             refused: counts.refused,
-            lateness: Spread::of(&outcome.lateness_us),
+            lateness: lateness.spread(),
         },
     }
 }
@@ -216,9 +218,8 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
 /// around which the harness was late, since what the device had said by then was heard later.
 fn violations(setup: &Setup, outcome: &Outcome) -> usize {
     let trace = &outcome.trace;
-    let lateness = Lateness::of(setup, outcome);
     let is_judged = |tick: usize| {
-        trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s) && !lateness.is_around(*at_s))
+        trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s) && !outcome.lateness.is_around(*at_s))
     };
     let judged = |ticks: &Vec<Tick>| {
         let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
@@ -291,7 +292,7 @@ fn failed(
         );
     }
     #[allow(clippy::cast_precision_loss)] // counts
-    let share = timing.missed_periods as f64 / (outcome.trace.times_s.len().max(1)) as f64;
+    let share = timing.missed_periods as f64 / (timing.missed_periods + timing.judged_commands).max(1) as f64;
     limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
     limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));
     limit(device.restarts == 0, format!("it started anew {} times by itself", device.restarts));

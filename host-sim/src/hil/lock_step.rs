@@ -16,6 +16,7 @@ use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Sender};
 
 use super::deviation::Deviation;
+use super::lateness::Lateness;
 use super::monitor::Monitor;
 use super::outcome::{Cut, Outcome, Steps};
 use super::rig::Rig;
@@ -128,7 +129,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         monitor: bench.monitor,
         deviation: Deviation::default(),
         steps: Some(bench.steps),
-        lateness_us: Vec::new(),
+        lateness: Lateness::default(),
         counts: bench.talk.counts(),
         foreign: bench.foreign,
         bus_errors: bench.bus_errors,

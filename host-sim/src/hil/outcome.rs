@@ -4,6 +4,7 @@ use holdover::time::{Duration, Instant};
 
 use super::deviation::Deviation;
 use super::fault::Fault;
+use super::lateness::Lateness;
 use super::monitor::Monitor;
 use super::talk::Counts;
 use crate::world::Trace;
@@ -63,8 +64,8 @@ pub struct Outcome {
     pub deviation: Deviation,
     /// The device beside its twin, in lock step.
     pub steps: Option<Steps>,
-    /// How much too late the harness was, tick by tick, in microseconds.
-    pub lateness_us: Vec<i64>,
+    /// How much too late the harness was, tick by tick.
+    pub lateness: Lateness,
     /// The frames of the harness.
     pub counts: Counts,
     /// Frames on the vehicle's or the modem's identifiers that are not the harness's.

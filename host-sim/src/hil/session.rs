@@ -16,6 +16,7 @@ use holdover::{Config, ConfigError};
 
 use super::deviation::Deviation;
 use super::fault::Fault;
+use super::lateness::Lateness;
 use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
 use super::rig::Rig;
@@ -186,7 +187,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
     talk.begin_at(talk.now().plus(period.times(warm_up + 2)));
     let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
-    let mut lateness_us = Vec::new();
+    let mut lateness = Lateness::new(period, warm_up);
     for tick in -warm_up..=ticks {
         if cut.is_some() {
             break;
@@ -199,7 +200,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             let until = pause.map_or(due, |pause| due.min(talk.now().plus(pause)));
             listen(&mut talk, &mut ears, &world, scenario.ego, until)?;
         }
-        lateness_us.push(talk.now().since(due).as_micros());
+        lateness.note(talk.now().since(due));
         if villain.switch(at_s, rig) {
             ears.restart();
         }
@@ -240,7 +241,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         listen(&mut talk, &mut ears, &world, scenario.ego, pause)?;
     }
     villain.stop(rig);
-    finished(world, trace, &talk, ears, lateness_us, villain.played(), cut)
+    finished(world, trace, &talk, ears, lateness, villain.played(), cut)
 }
 
 fn finished<P: Port>(
@@ -248,7 +249,7 @@ fn finished<P: Port>(
     trace: Trace,
     talk: &Talk<P>,
     ears: Ears,
-    lateness_us: Vec<i64>,
+    lateness: Lateness,
     faults: Vec<(Fault, Option<String>)>,
     cut: Option<Cut>,
 ) -> io::Result<Outcome> {
@@ -257,7 +258,7 @@ fn finished<P: Port>(
         monitor: ears.monitor,
         deviation: ears.deviation,
         steps: None,
-        lateness_us,
+        lateness,
         counts: talk.counts(),
         foreign: ears.foreign,
         bus_errors: ears.bus_errors,
