@@ -1,6 +1,7 @@
 //! Time as an argument: instants of the unit's own clock, durations, GNSS time, and the rule that unwraps V2X stamps.
 //!
-//! The sums are not inlined: they saturate in 64 bits, stand in hundreds of places, and would be a tenth of an ECU's image.
+//! The sums are not inlined where words have 32 bits: they saturate in 64 bits, stand in hundreds of places, and would be a tenth
+//! of an ECU's image. Where words have 64 bits, each is an instruction or two.
 //!
 //! Nothing here reads a clock. [`Instant`] and [`GnssTime`] are microseconds in 64 bits and never wrap in practice;
 //! a [`Stamp`] is GNSS time modulo 2¹⁷ · 0.1 ms = 13.1072 s, and is unwrapped to the only instant inside

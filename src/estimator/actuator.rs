@@ -153,7 +153,7 @@ impl Actuator {
 /// What is left of an acceleration when a vehicle comes to rest. Apart, because it is rare: the step then has a branch
 /// that is not taken instead of computing this in vain.
 #[cold]
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+#[inline(never)]
 fn at_rest(acceleration: Acceleration) -> Acceleration {
     acceleration.max(Acceleration::ZERO)
 }
