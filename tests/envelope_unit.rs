@@ -80,6 +80,7 @@ fn in_steady_following_nothing_is_changed_until_the_age_is_the_time_gap_less_the
             config.law.time_gap = Seconds::from_millis(time_gap);
             let t_g = f64::from(time_gap) / 1e3;
             let mut road = Road::new(&config, speed, 2.0 + speed * t_g);
+            road.wants = speed;
             // The sample at 3.0 s is the last one: after this step its age is 0 and the next tick's is 10 ms.
             road.power_up();
             road.run(1.01);

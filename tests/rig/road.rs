@@ -2,8 +2,9 @@
 //! Switches enter; the ego's motion, its commands and the gap leave.
 
 use super::plant::{Body, Plant};
-use super::{Heard, LENGTH, Rig, TARGET, intent, mps2_of};
+use super::{Heard, LENGTH, Rig, TARGET, intent, mps, mps2_of};
 use holdover::Config;
+use holdover::wire::intent::Intent;
 use holdover::wire::{Predecessor, Said};
 
 /// What of the traffic gets through.
@@ -32,6 +33,8 @@ pub struct Road {
     pub wrong: f64,
     /// What the target says it can brake with.
     pub braking: f64,
+    /// The speed that the target says it wants.
+    pub wants: f64,
     pub now: i64,
     pub command: f64,
     pub commands: Vec<f64>,
@@ -54,6 +57,7 @@ impl Road {
             lie: (0.0, 0.0),
             wrong: 0.0,
             braking: 8.0,
+            wants: 30.0,
             now: 0,
             command: 0.0,
             commands: Vec::new(),
@@ -77,7 +81,8 @@ impl Road {
             let _ = self.rig.wish(now, self.engaged, self.predecessor);
         }
         if self.senses.v2x && now % 500_000 == 0 {
-            let _ = self.rig.target(now, Said::Intent(intent(2.5, self.braking)));
+            let intent = Intent { target_speed: mps(self.wants), ..intent(2.5, self.braking) };
+            let _ = self.rig.target(now, Said::Intent(intent));
         }
         if self.senses.v2x && now % 100_000 == 0 {
             let (position, speed) = (self.target.position + self.lie.0, self.target.speed + self.lie.1);
