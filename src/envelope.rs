@@ -65,8 +65,10 @@
 //! accuracies and `(b + j h)⁴/(8 j² b)`.
 
 mod distance;
+mod reckoning;
 
 pub use distance::{Ego, Obstacle, Spare, distance_cap, floor, is_safe, spare};
+pub use reckoning::{Reckoning, Start};
 
 use crate::config::Envelope;
 use crate::time::Duration;

@@ -31,6 +31,12 @@ pub struct Road {
     pub lie: (f64, f64),
     /// Added to what the range sensor says.
     pub wrong: f64,
+    /// Added to what the ego's sensors say of its acceleration.
+    pub acceleration_off: f64,
+    /// A command comes into force so many periods late.
+    pub late: usize,
+    /// Share of the hardest braking, 8 m/s², that the road allows.
+    pub grip: f64,
     /// What the target says it can brake with.
     pub braking: f64,
     /// The speed that the target says it wants.
@@ -56,6 +62,9 @@ impl Road {
             predecessor: Predecessor::Station(TARGET),
             lie: (0.0, 0.0),
             wrong: 0.0,
+            acceleration_off: 0.0,
+            late: 0,
+            grip: 1.0,
             braking: 8.0,
             wants: 30.0,
             now: 0,
@@ -75,7 +84,7 @@ impl Road {
             self.rig.synchronise(now, 0);
         }
         if self.senses.ego {
-            let _ = self.rig.ego(now, ego.position, ego.speed, ego.acceleration, self.command);
+            let _ = self.rig.ego(now, ego.position, ego.speed, ego.acceleration + self.acceleration_off, self.command);
         }
         if now % 100_000 == 0 {
             let _ = self.rig.wish(now, self.engaged, self.predecessor);
@@ -102,11 +111,24 @@ impl Road {
         let heard = self.rig.tick(self.now);
         self.command = mps2_of(heard.command.acceleration);
         self.commands.push(self.command);
-        let drives = if self.engaged { self.command } else { 0.0 };
+        self.drive();
+        heard
+    }
+
+    /// One period whose tick is missed: the command before stays in force.
+    pub fn miss(&mut self) {
+        self.speak();
+        self.commands.push(self.command);
+        self.drive();
+    }
+
+    /// Both vehicles 10 ms on.
+    fn drive(&mut self) {
+        let in_force = self.commands.len().checked_sub(1 + self.late).map_or(0.0, |index| self.commands[index]);
+        let drives = if self.engaged { in_force.max(-8.0 * self.grip) } else { 0.0 };
         self.ego.drive(drives, 0.01);
         self.target = self.target.after(self.acceleration, 0.01);
         self.now += PERIOD_US;
-        heard
     }
 
     /// Lets everything be heard for 2 s while both go on at their speeds, and then engages.
