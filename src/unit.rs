@@ -132,7 +132,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.is_started() {
             return Ok(Reception::Foreign);
         }
-        let result = match self.receiver.receive_as_unit(frame) {
+        let result = match self.receiver.receive_as_unit(at, frame) {
             Ok(Received::Foreign) => Ok(Reception::Foreign),
             Ok(Received::Pending) => Ok(Reception::Pending),
             Ok(Received::Whole(message)) => self.take(at, &message).map(|()| Reception::Taken),
