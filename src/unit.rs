@@ -18,6 +18,7 @@ use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
 
+mod admission;
 mod answer;
 mod caution;
 mod coordinate;

@@ -42,10 +42,21 @@ const MOST_STRIKES: u8 = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Belief {
+    /// It is older than one that is held: it fills the history, and says nothing of what is certain now.
+    Late,
     /// It agrees with what was certain.
     Agrees,
     /// It is the last of enough that agree with one another: what was certain is given up.
     Recovered,
+}
+
+/// What is made of a sample, before anything is changed by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Judgement {
+    /// What is certain, and the evidence, after it. If it is refused, nothing but the evidence differs.
+    pub certainty: Certainty,
+    /// Whether it is believed.
+    pub verdict: Result<Belief, Refusal>,
 }
 
 impl Certainty {
@@ -76,11 +87,15 @@ impl Certainty {
         }
     }
 
-    /// Judges a sample that is newer than all before, `last` being the one before it.
-    ///
-    /// # Errors
-    /// `Implausible`, `Jump` or `Stuck`; the evidence is kept.
-    pub fn judge(
+    /// Judges a sample that is newer than all before, `last` being the one before it: believed, or `Implausible`, `Jump` or
+    /// `Stuck`.
+    #[must_use]
+    pub fn judge(mut self, sample: &Sample, last: Option<&Sample>, doubt: &Doubt, reach: &Reach) -> Judgement {
+        let verdict = self.weigh(sample, last, doubt, reach);
+        Judgement { certainty: self, verdict }
+    }
+
+    fn weigh(
         &mut self,
         sample: &Sample,
         last: Option<&Sample>,

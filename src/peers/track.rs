@@ -3,9 +3,8 @@
 use heapless::Vec;
 
 use super::link::Link;
-use super::plausibility::{Belief, Certainty};
+use super::plausibility::{Belief, Certainty, Judgement};
 use super::sample::Sample;
-use crate::config::Link as Limits;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
@@ -138,63 +137,53 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.is_disputed = false;
     }
 
-    /// Takes a sample in, or refuses it by the first rule that it breaks:
+    /// Judges a sample of the slot's own station, by the first rule that it breaks:
     ///
-    /// 1. older than `limits.stale`: [`Refusal::Stale`];
-    /// 2. further in the future than `limits.future`: [`Refusal::Future`];
-    /// 3. of another station while this one was heard within `limits.slot_reuse`: [`Refusal::StationConflict`]; after
-    ///    that the slot starts anew;
-    /// 4. with a stamp that is held already: [`Refusal::Duplicate`];
-    /// 5. older than a full history: [`Refusal::OutOfOrder`];
-    /// 6. newer than all held, but contradicting what is certain of the station: see
+    /// 1. with a stamp that is held already: [`Refusal::Duplicate`];
+    /// 2. older than a full history: [`Refusal::OutOfOrder`];
+    /// 3. newer than all held, but contradicting what is certain of the station: see
     ///    [`plausibility`](super::plausibility).
-    ///
-    /// # Errors
-    /// As listed; nothing but the evidence of misbehaviour is changed then.
-    pub fn admit(&mut self, sample: Sample, doubt: &Doubt, limits: &Limits) -> Result<Admission, Refusal> {
-        let age = sample.received.since(sample.at);
-        if age > limits.stale {
-            return Err(Refusal::Stale);
-        }
-        if age < Duration::ZERO.minus(limits.future) {
-            return Err(Refusal::Future);
-        }
-        if self.station().is_some_and(|station| station != sample.station) {
-            if self.link.silence(sample.received).is_some_and(|silence| silence < limits.slot_reuse) {
-                return Err(Refusal::StationConflict);
-            }
-            *self = Self::new(limits.period);
-        }
-        if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, &sample)) {
-            return Err(Refusal::Duplicate);
+    #[must_use]
+    pub fn judge(&self, sample: &Sample, doubt: &Doubt) -> Judgement {
+        let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
+        if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
+            return verdict(Err(Refusal::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
-            let reach = self.reach();
-            if self.certainty.judge(&sample, self.samples.last(), doubt, &reach)? == Belief::Recovered {
-                self.samples.clear();
-            }
+            return self.certainty.judge(sample, self.newest(), doubt, &self.reach());
         }
-        let admission = self.insert(sample)?;
-        self.link.heard(sample.received, sample.at);
-        self.settle();
-        Ok(admission)
+        let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
+        verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })
     }
 
-    fn insert(&mut self, sample: Sample) -> Result<Admission, Refusal> {
+    /// Takes in a sample that was judged to be believed like this, and what is certain with it.
+    pub fn admit(&mut self, sample: Sample, certainty: Certainty, belief: Belief) -> Admission {
+        if belief == Belief::Recovered {
+            self.samples.clear();
+        }
+        self.certainty = certainty;
+        self.link.heard(sample.received, sample.at);
+        self.settle();
+        self.insert(sample)
+    }
+
+    /// Takes note of the evidence of a sample that was refused.
+    pub fn note(&mut self, certainty: Certainty) {
+        self.certainty = certainty;
+    }
+
+    fn insert(&mut self, sample: Sample) -> Admission {
         let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
         let is_news = older == self.samples.len();
         // The others make room one by one, so that nothing here can be out of bounds.
         let mut moved = sample;
         if self.samples.is_full() {
-            if older == 0 {
-                return Err(Refusal::OutOfOrder);
-            }
             self.samples.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
         } else {
             self.samples.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
             let _ = self.samples.push(moved); // it is not full
         }
-        Ok(if is_news { Admission::News } else { Admission::History })
+        if is_news { Admission::News } else { Admission::History }
     }
 
     /// Takes in what the station says of how it drives; whether that is new.
