@@ -23,7 +23,7 @@ fn at(millis: u64) -> Instant {
 /// Takes a sample in by all rules of a track.
 fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admission, Refusal> {
     timely(sample.at, sample.received, LIMITS.stale, LIMITS.future)?;
-    let judgement = track.judge(&sample, &DOUBT);
+    let judgement = track.judge(&sample, &DOUBT, LIMITS.period);
     match judgement.verdict {
         Ok(belief) => Ok(track.admit(sample, judgement.certainty, belief)),
         Err(cause) => {
@@ -111,13 +111,14 @@ fn a_stamp_is_too_old_or_too_new_beyond_its_limit_and_not_at_it() {
 }
 
 #[test]
-fn a_stamp_that_is_held_is_a_duplicate_only_within_its_own_turn() {
+fn a_stamp_that_is_held_is_a_duplicate_within_its_own_turn_and_that_of_the_newest_always() {
     let track = track([100, 200]);
     refuses(&track, sample(200, 260), Refusal::Duplicate);
     refuses(&track, sample(100, 260), Refusal::Duplicate);
     // The same stamp comes round after 13.1072 s.
-    let round = Sample { stamp: sample(200, 0).stamp, ..sample(13_307, 13_307) };
-    assert_eq!(admit(&mut track.clone(), round), Ok(Admission::News));
+    let round = |millis| Sample { stamp: sample(millis, 0).stamp, ..sample(millis + 13_107, millis + 13_107) };
+    assert_eq!(admit(&mut track.clone(), round(100)), Ok(Admission::News));
+    refuses(&track, round(200), Refusal::Duplicate);
 }
 
 #[test]

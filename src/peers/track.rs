@@ -139,18 +139,20 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Judges a sample of the slot's own station, by the first rule that it breaks:
     ///
-    /// 1. with a stamp that is held already: [`Refusal::Duplicate`];
+    /// 1. with a stamp that is held already, or was refused last: [`Refusal::Duplicate`]. A stamp comes round after 13.1 s, but
+    ///    that of the newest held is taken for frozen whenever it comes again: the one honest sample in 131,072 that has it is lost;
     /// 2. older than a full history: [`Refusal::OutOfOrder`];
     /// 3. newer than all held, but contradicting what is certain of the station: see
     ///    [`plausibility`](super::plausibility).
     #[must_use]
-    pub fn judge(&self, sample: &Sample, doubt: &Doubt) -> Judgement {
+    pub fn judge(&self, sample: &Sample, doubt: &Doubt, period: Duration) -> Judgement {
         let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
-        if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
+        let is_frozen = self.newest().is_some_and(|newest| newest.stamp == sample.stamp);
+        if is_frozen || self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
             return verdict(Err(Refusal::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
-            return self.certainty.judge(sample, self.newest(), doubt, &self.reach());
+            return self.certainty.judge(sample, self.newest(), doubt, &self.reach(), period);
         }
         let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
         verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })

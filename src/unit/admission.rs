@@ -135,16 +135,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if is_too_far {
             return Judgement { certainty: held, verdict: Err(Refusal::TooFar) };
         }
+        let period = self.config.link.period;
         let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link);
         match track {
             // On the axis as it was, on which everything is that is held.
             Some(track) if !placed.is_elsewhere() => {
                 let back = placed.moved.unwrap_or(Distance::ZERO).negated();
-                track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt)
+                track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt, period)
             }
             _ => {
                 let reach = track.map_or(Reach::WORST, Track::reach);
-                let judgement = Certainty::NONE.judge(sample, None, &doubt, &reach);
+                let judgement = Certainty::NONE.judge(sample, None, &doubt, &reach, period);
                 if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
             }
         }
