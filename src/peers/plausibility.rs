@@ -16,6 +16,7 @@
 //! forgiven, for 160 at the most, 16 s.
 
 use super::Sample;
+use super::limits::Limits;
 use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
@@ -92,6 +93,12 @@ impl Certainty {
         self.suspects = self.suspects.map(|held| Suspects { bound: held.bound.shifted(way), ..held });
     }
 
+    /// All of it is carried on to the instant from which on the limits of now hold.
+    pub fn settle(&mut self, limits: &Limits) {
+        self.bound = self.bound.map(|bound| limits.settled(&bound));
+        self.suspects = self.suspects.map(|held| Suspects { bound: limits.settled(&held.bound), ..held });
+    }
+
     /// Narrows the bound by something else that is certain; whether they agree.
     pub fn narrow(&mut self, other: &Bound, reach: &Reach) -> bool {
         let Some(bound) = self.bound.as_ref() else { return true };
@@ -104,18 +111,18 @@ impl Certainty {
         }
     }
 
-    /// Judges a sample that is newer than all before, `last` being the one before it, of messages that come with this period:
-    /// believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
+    /// Judges a sample that is newer than all before, `last` being the one before it, of messages that come with this period,
+    /// by what is certain `around` it: believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
     #[must_use]
     pub fn judge(
         mut self,
         sample: &Sample,
         last: Option<&Sample>,
-        doubt: &Doubt,
+        around: Bound,
         reach: &Reach,
         period: Duration,
     ) -> Judgement {
-        let verdict = self.weigh(sample, last, doubt, reach, period);
+        let verdict = self.weigh(sample, last, around, reach, period);
         Judgement { certainty: self, verdict }
     }
 
@@ -123,7 +130,7 @@ impl Certainty {
         &mut self,
         sample: &Sample,
         last: Option<&Sample>,
-        doubt: &Doubt,
+        around: Bound,
         reach: &Reach,
         period: Duration,
     ) -> Result<Belief, Refusal> {
@@ -134,7 +141,6 @@ impl Certainty {
         if sample.acceleration.magnitude() > hardest.plus(UNPUBLISHED_ACCELERATION_ACCURACY) {
             return Err(Refusal::Implausible);
         }
-        let around = Bound::around(sample.at, sample.position, sample.speed, doubt, reach);
         let Some(bound) = &self.bound else {
             self.bound = Some(around);
             return Ok(Belief::Agrees);

@@ -2,6 +2,7 @@
 
 use heapless::Vec;
 
+use super::limits::Limits;
 use super::link::Link;
 use super::plausibility::{Belief, Certainty, Judgement};
 use super::sample::Sample;
@@ -9,7 +10,7 @@ use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
-use crate::units::Distance;
+use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::horizon::Knots;
 use crate::wire::intent::Intent;
@@ -30,6 +31,7 @@ pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
     intent: Held<Intent>,
+    limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
     is_disputed: bool,
@@ -43,6 +45,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             samples: Vec::new(),
             certainty: Certainty::NONE,
             intent: Held::Nothing,
+            limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
             is_disputed: false,
@@ -79,10 +82,20 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.certainty.narrow(other, &reach)
     }
 
-    /// How fast it can change its speed: as published, or the worst there is.
+    /// How fast it can change its speed from the instant on that what is certain of it is of: as published (not by the last
+    /// message alone, if softer limits were published), or the worst there is.
     #[must_use]
     pub fn reach(&self) -> Reach {
-        self.intent.as_ref().map_or(Reach::WORST, |intent| Reach::published(&intent.limits))
+        self.limits.as_ref().map_or(Reach::WORST, Limits::now)
+    }
+
+    /// What is certain of it by a sample, or by what another sensor saw of it.
+    #[must_use]
+    pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
+        match self.limits.as_ref() {
+            Some(limits) => limits.around(at, position, speed, doubt),
+            None => Bound::around(at, position, speed, doubt, &Reach::WORST),
+        }
     }
 
     /// Everything that is held of its place moves that far ahead: its axis did.
@@ -152,7 +165,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             return verdict(Err(Refusal::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
-            return self.certainty.judge(sample, self.newest(), doubt, &self.reach(), period);
+            let around = self.around(sample.at, sample.position, sample.speed, doubt);
+            return self.certainty.judge(sample, self.newest(), around, &self.reach(), period);
         }
         let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
         verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })
@@ -188,8 +202,16 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if is_news { Admission::News } else { Admission::History }
     }
 
-    /// Takes in what the station says of how it drives; whether that is new.
-    pub fn intend(&mut self, intent: Intent) -> bool {
+    /// Takes in what the station says of how it drives, received at `at`; whether that is new. Nothing that is older than `stale`
+    /// comes after it.
+    pub fn intend(&mut self, at: Instant, intent: Intent, stale: Duration) -> bool {
+        let published = Reach::published(&intent.limits);
+        let limits = match self.limits.get() {
+            Some(held) => held.publish(at, published, stale),
+            None => Limits::first(at, published),
+        };
+        self.limits.set(limits);
+        self.certainty.settle(&limits);
         let is_new = self.intent.as_ref() != Some(&intent);
         self.intent.set(intent);
         is_new

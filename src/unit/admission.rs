@@ -6,7 +6,7 @@
 
 use super::OnboardUnit;
 use crate::coordination::Axis;
-use crate::estimator::bound::Reach;
+use crate::estimator::bound::{Bound, Reach};
 use crate::health::Refusal;
 use crate::parameters::REACH;
 use crate::peers::plausibility::{Certainty, Judgement, doubt};
@@ -144,8 +144,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt, period)
             }
             _ => {
-                let reach = track.map_or(Reach::WORST, Track::reach);
-                let judgement = Certainty::NONE.judge(sample, None, &doubt, &reach, period);
+                let (at, position, speed) = (sample.at, sample.position, sample.speed);
+                let (around, reach) = match track {
+                    Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
+                    None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
+                };
+                let judgement = Certainty::NONE.judge(sample, None, around, &reach, period);
                 if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
             }
         }

@@ -54,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let track = self.peers.get_mut(slot)?;
                 // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
                 let is_young = track.newest().is_some_and(|newest| at.since(newest.at) <= self.config.link.stale);
-                if track.intend(*intent) {
+                if track.intend(at, *intent, self.config.link.stale) {
                     self.estimator.note_change(&self.peers);
                     if is_young {
                         self.estimator.note_news(index);
