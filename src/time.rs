@@ -92,55 +92,50 @@ const fn word(micros: i64, fraction: u32) -> i32 {
     saturate_i32(if micros < 0 { word.wrapping_neg() } else { word })
 }
 
-/// An instant of the unit's own monotonic clock, in microseconds since it started.
+/// An instant of the unit's own monotonic clock, in microseconds since it started. One before the start is negative: what
+/// reaches a unit in its first seconds was sent before it ran.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Instant(u64);
+pub struct Instant(i64);
 
 impl Instant {
     /// The start of the clock.
     pub const ZERO: Self = Self(0);
 
-    /// From microseconds since the clock's start.
+    /// From microseconds since the clock's start, saturating at 2⁶³ - 1, which is after 292,000 years.
     #[must_use]
+    #[allow(clippy::cast_possible_wrap)] // checked
     pub const fn from_micros(micros: u64) -> Self {
-        Self(micros)
+        Self(if micros > i64::MAX as u64 { i64::MAX } else { micros as i64 })
     }
 
-    /// Microseconds since the clock's start.
+    /// Microseconds since the clock's start; 0 for what was before it. [`since`](Self::since) tells how long before.
     #[must_use]
+    #[allow(clippy::cast_sign_loss)] // checked
     pub const fn as_micros(self) -> u64 {
-        self.0
+        if self.0 < 0 { 0 } else { self.0 as u64 }
     }
 
-    /// That much later (earlier if negative), saturating at the clock's start and end.
+    /// That much later (earlier if negative), saturating.
     #[must_use]
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn plus(self, duration: Duration) -> Self {
-        Self(self.0.saturating_add_signed(duration.0))
+        Self(self.0.saturating_add(duration.0))
     }
 
-    /// That much earlier, saturating at the clock's start and end.
+    /// That much earlier, saturating.
     #[must_use]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn minus(self, duration: Duration) -> Self {
-        self.plus(Duration(duration.0.saturating_neg()))
+        Self(self.0.saturating_sub(duration.0))
     }
 
     /// How much later this instant is than the other (negative if it is earlier), saturating.
     #[must_use]
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     pub const fn since(self, earlier: Self) -> Duration {
-        Duration(if self.0 >= earlier.0 {
-            saturate(self.0.wrapping_sub(earlier.0))
-        } else {
-            saturate(earlier.0.wrapping_sub(self.0)).wrapping_neg()
-        })
+        Duration(self.0.saturating_sub(earlier.0))
     }
-}
-
-#[allow(clippy::cast_possible_wrap)] // checked
-const fn saturate(magnitude: u64) -> i64 {
-    if magnitude > i64::MAX as u64 { i64::MAX } else { magnitude as i64 }
 }
 
 /// GNSS time in microseconds since its epoch: the common clock of all stations.
@@ -232,8 +227,20 @@ mod tests {
     #[test]
     fn differences_of_instants_saturate_and_keep_their_sign() {
         let (a, b) = (Instant::from_micros(5), Instant::from_micros(u64::MAX));
-        assert_eq!(b.since(a), Duration::MAX);
-        assert_eq!(a.since(b), Duration::from_micros(-i64::MAX));
-        assert_eq!(a.minus(Duration::from_micros(10)), Instant::ZERO);
+        assert_eq!(b.since(a), Duration::from_micros(i64::MAX - 5));
+        assert_eq!(a.since(b), Duration::from_micros(5 - i64::MAX));
+        let before = a.minus(Duration::MAX).minus(Duration::MAX);
+        assert_eq!((b.since(before), before.since(b)), (Duration::MAX, Duration::from_micros(i64::MIN)));
+        assert_eq!(b.plus(Duration::MAX), b);
+    }
+
+    #[test]
+    fn an_instant_before_the_start_is_as_far_away_as_it_is() {
+        let (start, span) = (Instant::ZERO, Duration::from_micros(10));
+        let before = start.minus(span);
+        assert!(before < start);
+        assert_eq!((start.since(before), before.since(start)), (span, Duration::from_micros(-10)));
+        assert_eq!((before.plus(span), before.as_micros()), (start, 0));
+        assert_eq!(start.plus(Duration::from_micros(-10)), before);
     }
 }

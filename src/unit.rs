@@ -19,6 +19,7 @@ use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
 
+mod admission;
 mod answer;
 mod caution;
 mod coordinate;
@@ -137,7 +138,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !self.is_started() {
             return Ok(Reception::Foreign);
         }
-        let result = match self.receiver.receive_as_unit(frame) {
+        let result = match self.receiver.receive_as_unit(at, frame) {
             Ok(Received::Foreign) => Ok(Reception::Foreign),
             Ok(Received::Pending) => Ok(Reception::Pending),
             Ok(Received::Whole(message)) => self.take(at, &message).map(|()| Reception::Taken),

@@ -284,3 +284,73 @@ fn an_old_sample_that_comes_late_changes_neither_the_bound_nor_the_estimate() {
         assert_eq!(target.says(Lie::default()), Ok(()));
     }
 }
+
+#[test]
+fn copies_of_a_refused_sample_are_no_evidence() {
+    // Copies of one, and ones that say the same a moment later each.
+    for apart in [0, 1, 100, 1_000, 9_900] {
+        let mut target = Target::believed();
+        let mut verdicts = Vec::new();
+        for n in 0..5 * i64::from(RECOVERY_SAMPLES) {
+            let at = target.now + 5_000 + (n * apart).min(40_000);
+            let (ahead, speed) = (target.body.position + 200.0, target.body.speed);
+            let motion = target.rig.motion(TARGET, at, ahead, speed, 0.0, 0.0, ACCURACY);
+            verdicts.push(target.rig.target(at, Said::Motion(motion)));
+        }
+        assert_eq!(verdicts[0], Err(Refusal::Jump));
+        let named = |verdict: &Result<(), Refusal>| matches!(verdict, Err(Refusal::Jump | Refusal::Duplicate));
+        assert!(verdicts.iter().all(named), "{apart}: {verdicts:?}");
+        if apart == 0 {
+            assert!(verdicts[1..].iter().all(|verdict| *verdict == Err(Refusal::Duplicate)));
+        }
+        // Nothing honest is refused after it.
+        for n in 0..20 {
+            assert_eq!(target.says(Lie::default()), Ok(()), "{apart} {n}");
+        }
+        let estimate = target.estimate();
+        assert!((estimate - target.body.position).abs() < 0.1, "{apart}: {estimate}");
+    }
+}
+
+#[test]
+fn who_was_forged_for_long_enough_to_be_believed_is_believed_again_after_a_second() {
+    let mut target = Target::believed();
+    let forged = (1..).find(|_| target.says(Lie { position: 200.0, ..Lie::default() }).is_ok()).unwrap();
+    assert_eq!(forged, RECOVERY_SAMPLES);
+    let refused = (0..).find(|_| target.says(Lie::default()).is_ok()).unwrap();
+    assert_eq!(refused, 2 * RECOVERY_SAMPLES - 1);
+}
+
+#[test]
+fn a_stamp_that_stands_still_is_never_news_however_often_it_comes_round() {
+    let mut target = Target::believed();
+    let (frozen, body) = (target.now, target.body);
+    for n in 1..700 {
+        let now = frozen + n * 100_000;
+        if n % 5 == 0 {
+            target.rig.synchronise(now, 0);
+        }
+        let place = body.position + 1.5 * n as f64;
+        let motion = target.rig.motion(TARGET, frozen, place, body.speed, 0.0, 0.0, ACCURACY);
+        let taken = target.rig.target(now, Said::Motion(motion));
+        assert!(matches!(taken, Err(Refusal::Duplicate | Refusal::Stale | Refusal::Future)), "{n}: {taken:?}");
+    }
+}
+
+#[test]
+fn an_own_stamp_that_stands_still_is_never_news_however_often_it_comes_round() {
+    let mut rig = Rig::new(&rig::config());
+    rig.power_up(true, 0);
+    for at in [0, 10_000] {
+        let _ = rig.ego(at, 0.0, 10.0, 0.0, 0.0);
+    }
+    for n in 2..6_000 {
+        let now = n * 10_000;
+        if n % 50 == 0 {
+            rig.synchronise(now, 0);
+        }
+        let motion = rig.motion(rig::EGO, 10_000, 0.1 * n as f64, 10.0, 0.0, 0.0, ACCURACY);
+        let taken = rig.put(now, &holdover::wire::Message::Ego(Said::Motion(motion)));
+        assert!(matches!(taken, Err(Refusal::Duplicate | Refusal::Stale | Refusal::Future)), "{n}: {taken:?}");
+    }
+}

@@ -4,8 +4,10 @@
 mod traffic;
 
 use holdover::Reception;
+use holdover::controller::Mode;
 use holdover::health::Refusal;
-use holdover::time::{Duration, Instant};
+use holdover::time::{Duration, Instant, Stamp};
+use holdover::units::Acceleration;
 use holdover::wire::bits::Payload;
 use holdover::wire::motion::WirePosition;
 use holdover::wire::sync::{FollowUp, Sync};
@@ -229,6 +231,35 @@ fn another_station_in_the_slot_of_one_that_is_heard() {
     is_refused(Refusal::StationConflict, |unit, traffic| {
         motion(unit, traffic, |motion, _| motion.station = StationHash(77))
     });
+}
+
+#[test]
+fn another_station_that_is_refused_leaves_the_slot_to_the_one_that_is_silent() {
+    type Change = fn(&mut holdover::wire::motion::Motion);
+    let changes: [(Refusal, Change); 3] = [
+        (Refusal::TooFar, |motion| motion.position = WirePosition::from_mm(9_000_000)),
+        (Refusal::Implausible, |motion| motion.acceleration = Acceleration::from_mm_per_s2(-15_000)),
+        (Refusal::Stale, |motion| motion.stamp = Stamp::from_raw(motion.stamp.raw().wrapping_sub(110_000))),
+    ];
+    for (cause, change) in changes {
+        let (mut unit, mut traffic) = settled();
+        traffic.target = false;
+        let before = traffic.run(&mut unit, 250);
+        assert!(matches!(before.mode, Mode::Holdover { .. }));
+        let mut untouched = unit.clone();
+        let now = traffic.now();
+        let mut motion = traffic.motion(StationHash(77), 17_000, now);
+        change(&mut motion);
+        let frames = traffic.peer(0, Said::Motion(motion));
+        assert_eq!(last(&mut unit, now, &frames), Err(cause));
+        let track = unit.peers().get(0).expect("a slot");
+        assert_eq!((track.station(), track.intent().is_some()), (Some(traffic::TARGET), true), "{cause:?}");
+        let (mut after, mut expected) = (unit.clone(), untouched.clone());
+        let (after, expected) = (after.tick(now), expected.tick(now));
+        assert_eq!((after.mode, after.estimate), (expected.mode, expected.estimate), "{cause:?}");
+        assert!(matches!(after.mode, Mode::Holdover { .. }) && after.estimate.is_some(), "{cause:?}");
+        stay_the_same(&mut unit, &mut untouched, &mut traffic);
+    }
 }
 
 #[test]

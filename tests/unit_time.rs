@@ -5,7 +5,10 @@ mod traffic;
 
 use holdover::Config;
 use holdover::health::Refusal;
-use holdover::time::{Duration, Instant, Stamp};
+use holdover::time::{Duration, GnssTime, Instant, Stamp};
+use holdover::units::Speed;
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::{Said, StationHash};
 use traffic::{Traffic, Unit, pages, receive_all, settled};
 
 #[test]
@@ -21,7 +24,8 @@ fn where_the_unit_s_clock_started_does_not_matter() {
         (0..1_500).map(frames).collect::<Vec<_>>()
     };
     let reference = sent(1_000_000);
-    for offset in [1_000_001, 4_294_967_295, 123_456_789_012_345, 1 << 62] {
+    // From the first on, messages are from before the clock's start.
+    for offset in [0, 1, 33_299, 33_300, 33_301, 1_000_001, 4_294_967_295, 123_456_789_012_345, 1 << 62] {
         assert_eq!(sent(offset), reference, "{offset}");
     }
 }
@@ -90,4 +94,46 @@ fn a_message_delivered_late_by_the_bus_is_as_old_as_its_stamp_says() {
     receive_all(&mut unit, received, &frames);
     let answer = unit.tick(received);
     assert_eq!(answer.estimate.expect("the target spoke in this period").age, Duration::from_millis(7));
+}
+
+/// A unit whose clock starts at 0 hears a vehicle at 15 m/s from the first instant on, each message so late; how far the truth is
+/// outside the bound at the most, in metres.
+fn outside_the_bound(late_us: i64, is_synchronised: bool) -> f64 {
+    let mut unit = Unit::new(&Config::car(traffic::EGO)).expect("sound");
+    let mut traffic = Traffic { offset: Instant::ZERO, ..Traffic::new() };
+    let truth = |at_us: i64| 300.0 + 15.0 * at_us as f64 * 1e-6;
+    let (mut worst, mut checked) = (f64::MIN, 0);
+    for period in 0..400 {
+        traffic.period = period;
+        let (now, now_us) = (traffic.now(), period * 10_000);
+        let mut frames = if is_synchronised && period % 10 == 0 { traffic.time_base() } else { Vec::new() };
+        if period % 10 == 5 {
+            let stamped_us = now_us - late_us;
+            let motion = Motion {
+                position: WirePosition::from_mm((truth(stamped_us) * 1e3).round() as i64),
+                speed: Speed::from_mm_per_s(15_000),
+                stamp: GnssTime::from_micros(traffic::EPOCH.as_micros().saturating_add_signed(stamped_us)).stamp(),
+                ..traffic.motion(StationHash(7), 0, now)
+            };
+            frames.extend(traffic.peer(2, Said::Motion(motion)));
+        }
+        receive_all(&mut unit, now, &frames);
+        let Some(bound) = unit.bound(2, now) else { continue };
+        let metres = |position: holdover::units::Position| position.get().to_num::<f64>();
+        worst = worst.max(metres(bound.lowest_position()) - truth(now_us));
+        worst = worst.max(truth(now_us) - metres(bound.highest_position()));
+        checked += 1;
+    }
+    assert!(checked > 300);
+    worst
+}
+
+#[test]
+fn what_was_sent_before_the_clock_s_start_is_as_old_as_it_is() {
+    for millis in [0, 40, 500, 1_000, 1_999] {
+        for is_synchronised in [false, true] {
+            let outside = outside_the_bound(1_000 * millis, is_synchronised);
+            assert!(outside <= 0.0, "{millis} ms, {is_synchronised}: {outside} m");
+        }
+    }
 }

@@ -4,6 +4,7 @@ mod messages;
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Refusal;
+use holdover::time::Instant;
 use holdover::wire::catalogue::{CATALOGUE, data_id};
 use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
 use messages::{from_unit, geo, intent, knots, motion, to_unit};
@@ -25,7 +26,7 @@ fn acquainted<const PEERS: usize>(role: Role) -> (Sender<PEERS>, Receiver<PEERS>
         for slot in 0..if line.is_per_slot() { PEERS as u8 } else { 1 } {
             let offset = line.offset_for(Slot(slot));
             let frame = Frame { id: BASE.plus(offset), data: e2e::protect([0; 8], data_id(offset), 14) };
-            let heard = receiver.receive(&frame);
+            let heard = receiver.receive(Instant::ZERO, &frame);
             assert!(matches!(heard, Err(Refusal::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
         }
     }
@@ -38,9 +39,9 @@ fn sent_is_received(role: Role, sent: &[Message]) {
         let frames = frames_of(&mut sender, message);
         let (last, before) = frames.split_last().unwrap();
         for frame in before {
-            assert_eq!(receiver.receive(frame), Ok(Received::Pending));
+            assert_eq!(receiver.receive(Instant::ZERO, frame), Ok(Received::Pending));
         }
-        assert_eq!(receiver.receive(last), Ok(Received::Whole(*message)));
+        assert_eq!(receiver.receive(Instant::ZERO, last), Ok(Received::Whole(*message)));
     }
 }
 
@@ -108,7 +109,7 @@ proptest! {
         for frame in frames_of(&mut sender, &sent) {
             for odd in noise.by_ref().take(20) {
                 let before = receiver.clone();
-                match receiver.receive(odd) {
+                match receiver.receive(Instant::ZERO, odd) {
                     Ok(Received::Foreign) => prop_assert_eq!(&before, &receiver),
                     // one frame of noise in 256 has the right CRC; it may be trusted if its counter fits too
                     Ok(_) | Err(Refusal::Torn) => receiver = before,
@@ -119,7 +120,7 @@ proptest! {
                     Err(_) => receiver = before,
                 }
             }
-            whole = Some(receiver.receive(&frame));
+            whole = Some(receiver.receive(Instant::ZERO, &frame));
         }
         prop_assert_eq!(whole, Some(Ok(Received::Whole(sent))));
     }
@@ -134,10 +135,10 @@ proptest! {
         for word in words {
             let frame = Frame { id: BASE.plus(offset), data: e2e::protect(word, data_id(offset), counter) };
             counter = e2e::next(counter);
-            match receiver.receive(&frame) {
+            match receiver.receive(Instant::ZERO, &frame) {
                 Ok(Received::Whole(message)) => {
                     let (mut sender, mut other) = acquainted::<16>(role);
-                    let heard = frames_of(&mut sender, &message).iter().map(|frame| other.receive(frame)).last();
+                    let heard = frames_of(&mut sender, &message).iter().map(|frame| other.receive(Instant::ZERO, frame)).last();
                     prop_assert_eq!(heard, Some(Ok(Received::Whole(message))));
                 }
                 Ok(Received::Foreign | Received::Pending) => {}
@@ -157,7 +158,7 @@ proptest! {
         let mut frames = frames_of(&mut sender, &Message::Peer(Slot(3), Said::Horizon(first)));
         frames.remove(lost);
         frames.extend(frames_of(&mut sender, &Message::Peer(Slot(3), Said::Horizon(second))));
-        let heard: Vec<_> = frames.iter().map(|frame| receiver.receive(frame)).collect();
+        let heard: Vec<_> = frames.iter().map(|frame| receiver.receive(Instant::ZERO, frame)).collect();
         prop_assert_eq!(heard.iter().filter(|heard| **heard == Err(Refusal::Torn)).count(), 1);
         prop_assert_eq!(heard.last(), Some(&Ok(Received::Whole(Message::Peer(Slot(3), Said::Horizon(second))))));
     }
@@ -168,9 +169,9 @@ proptest! {
         let (mut sender, mut receiver) = acquainted::<8>(Role::Unit);
         let a = frames_of(&mut sender, &Message::Ego(Said::Motion(first)));
         let b = frames_of(&mut sender, &Message::Ego(Said::Motion(second)));
-        prop_assert_eq!(receiver.receive(&a[0]), Ok(Received::Pending));
-        prop_assert_eq!(receiver.receive(&b[1]), Err(Refusal::Torn));
-        prop_assert_eq!(receiver.receive(&b[0]), Ok(Received::Whole(Message::Ego(Said::Motion(second)))));
+        prop_assert_eq!(receiver.receive(Instant::ZERO, &a[0]), Ok(Received::Pending));
+        prop_assert_eq!(receiver.receive(Instant::ZERO, &b[1]), Err(Refusal::Torn));
+        prop_assert_eq!(receiver.receive(Instant::ZERO, &b[0]), Ok(Received::Whole(Message::Ego(Said::Motion(second)))));
     }
 
     #[test]
@@ -205,7 +206,7 @@ fn frames_that_are_not_ours_to_read_are_told_apart_from_bad_ones() {
     let id = |id| Id::Standard(StandardId::new(id).unwrap());
     let odd = |id, remote, length| Odd { id, remote, data: vec![0; length] };
     let mut receiver = Receiver::<2>::new(BASE, Role::Unit);
-    let mut heard = |frame: Odd| receiver.receive(&frame);
+    let mut heard = |frame: Odd| receiver.receive(Instant::ZERO, &frame);
     assert_eq!(heard(odd(id(0x47F), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x540), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x483), false, 8)), Ok(Received::Foreign), "an identifier without a line");

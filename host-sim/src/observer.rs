@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use holdover::time::Instant;
 use holdover::units::Position;
 use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
 
@@ -27,7 +28,8 @@ impl Observer {
     /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest intent from the same slot. `near` is a position to
     /// unwrap positions near.
     pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
-        match self.receiver.receive(frame) {
+        let at = Instant::from_micros(gnss(at_s).as_micros()); // which has no times before its start
+        match self.receiver.receive(at, frame) {
             Ok(Received::Whole(Message::Peer(slot, Said::Intent(intent)))) => {
                 let predecessor = match intent.predecessor {
                     Predecessor::Station(station) => index_of(station),

@@ -311,7 +311,7 @@ impl Vehicle {
         let now = self.instant(at_s);
         while let Some((at, frame)) = self.harness.receive(now)? {
             let at_s = self.time_of(at);
-            match self.listener.receive(&frame) {
+            match self.listener.receive(at, &frame) {
                 Ok(Received::Whole(Message::Own(said))) => {
                     self.transmitter.take(&said);
                     self.relay.take(&said);

@@ -1,7 +1,7 @@
 //! Whom a modem relays when more are heard than there are slots: a unit's way and what stations say of theirs enter; who is
 //! decoded on the unit's bus leaves.
 
-use holdover::time::Stamp;
+use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
@@ -52,7 +52,7 @@ impl Bus {
         self.relay.hear(at_s, message, &mut frames);
         let mut was_placed = false;
         for frame in &frames {
-            match self.receiver.receive(frame) {
+            match self.receiver.receive(Instant::ZERO, frame) {
                 Ok(Received::Whole(Message::Peer(_, Said::Route(_)))) => was_placed = true,
                 Ok(Received::Whole(Message::Peer(_, Said::Motion(_)))) => {
                     assert!(was_placed || message.route.is_none(), "the unit places a motion by the route before it");

@@ -219,6 +219,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
     }
 
     /// The axis of a slot.
+    pub(crate) fn axis(&self, index: usize) -> Option<&Axis> {
+        self.axes.get(index)
+    }
+
+    /// The axis of a slot, to be changed.
     pub(crate) fn axis_mut(&mut self, index: usize) -> Option<&mut Axis> {
         self.axes.get_mut(index)
     }

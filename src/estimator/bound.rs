@@ -38,6 +38,15 @@ impl Reach {
     pub const WORST: Self =
         Self { acceleration: Acceleration::from_mm_per_s2(6_000), braking: Acceleration::from_mm_per_s2(12_000) };
 
+    /// Nothing at all.
+    pub const NONE: Self = Self { acceleration: Acceleration::ZERO, braking: Acceleration::ZERO };
+
+    /// The harder of the two, each way.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { acceleration: self.acceleration.max(other.acceleration), braking: self.braking.max(other.braking) }
+    }
+
     /// As published; not less than 0.1 m/s² each, so that a rest takes finite time.
     #[must_use]
     pub fn published(limits: &Limits) -> Self {

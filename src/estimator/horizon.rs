@@ -47,7 +47,7 @@ impl Grid {
         self.at_or_before(at.plus(Duration::from_micros(self.step.as_micros() / 2)))
     }
 
-    /// When a step is; a step before the clock's start is at its start.
+    /// When a step is.
     #[must_use]
     pub fn time_of(&self, index: i64) -> Instant {
         self.origin.plus(self.step.times(index))

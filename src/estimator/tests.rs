@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::config::Config;
+use crate::peers::plausibility::{Belief, Certainty};
 use crate::time::Stamp;
 use crate::units::{Acceleration, FineSeconds, Gain, Jerk, Position, Seconds, Speed};
 use crate::wire::intent::{Intent, Limits};
@@ -159,9 +160,13 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     let mut peers = Peers::<2, 4>::idle();
     peers.start(config.link.period);
     let track = peers.get_mut(crate::wire::Slot(1)).unwrap();
-    let doubt = bound::Doubt::default();
-    assert!(track.admit(Sample { station: StationHash(2), ..sample(0, 10_000, -1_500) }, &doubt, &config.link).is_ok());
-    track.intend(Intent { predecessor: Predecessor::Station(StationHash(77)), ..leader() });
+    let braking = Sample { station: StationHash(2), ..sample(0, 10_000, -1_500) };
+    track.admit(braking, Certainty::NONE, Belief::Agrees);
+    track.intend(
+        GRID.origin,
+        Intent { predecessor: Predecessor::Station(StationHash(77)), ..leader() },
+        Duration::from_millis(10_000),
+    );
     estimator.note_change(&peers);
     estimator.note_news(1);
     estimator.update(GRID.origin, &peers);
@@ -183,7 +188,6 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
         estimator.start_grid(GRID.origin);
         let mut peers = Peers::<2, 4>::idle();
         peers.start(config.link.period);
-        let doubt = bound::Doubt::default();
         // The leader stands; the follower is 20 m behind it at 10 m/s, and brakes.
         let stands = Intent { target_speed: Speed::ZERO, ..leader() };
         let front_sample = sample(0, 0, 0);
@@ -191,8 +195,8 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
             Sample { station: StationHash(2), position: Position::from_mm(4_980_000), ..sample(0, 10_000, 0) };
         for (slot, sample, intent) in [(front, front_sample, stands), (back, back_sample, follower())] {
             let track = peers.get_mut(crate::wire::Slot(slot)).unwrap();
-            assert!(track.admit(sample, &doubt, &config.link).is_ok());
-            track.intend(intent);
+            track.admit(sample, Certainty::NONE, Belief::Agrees);
+            track.intend(GRID.origin, intent, Duration::from_millis(10_000));
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);

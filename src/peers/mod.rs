@@ -1,15 +1,17 @@
 //! The peers: messages from the slots enter, one track per slot leaves.
 //!
-//! A slot's samples are kept in the order of their stamps. What comes too late for that, twice, from the future, from
-//! another station or from too far away is refused by the rules of [`Track::admit`].
+//! A slot's samples are kept in the order of their stamps. What comes too late for that, twice or from the future is refused by
+//! [`timely`] and [`Track::judge`]; what comes from another station or from too far away, by the unit. Judging changes
+//! nothing; what is admitted is changed by [`Track::admit`] alone.
 
+mod limits;
 mod link;
 pub mod plausibility;
 mod sample;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
-pub use sample::Sample;
+pub use sample::{Sample, timely};
 pub use track::{Admission, Track};
 
 use crate::health::Refusal;
@@ -33,7 +35,7 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.iter_mut().for_each(|track| *track = Track::new(period));
     }
 
-    /// The track of a slot.
+    /// The track of a slot, to be changed.
     ///
     /// # Errors
     /// [`Refusal::UnknownSlot`] beyond the capacity.

@@ -8,11 +8,15 @@
 //! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
 //!
 //! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
-//! track starts anew from them. A liar whose lie takes longer than that to show would be believed again and again, so each
+//! track starts anew from them. Only what is stamped at least half a period after the last that counted counts, and a copy of a
+//! refused sample is a duplicate: a burst of copies is no evidence, and the next honest sample is believed at once. A liar whose lie takes longer than that to show would be believed again and again, so each
 //! recovery doubles the number that the next one takes, up to 2⁵ times; [`FORGIVEN_AFTER`] samples in a row that agree
-//! halve it again.
+//! halve it again. So who is forged for long enough to be believed, five samples over four half periods without an honest one
+//! between them, keeps the honest ones out for ten of theirs, 1 s at 10 Hz; if that is done again and again before it is
+//! forgiven, for 160 at the most, 16 s.
 
 use super::Sample;
+use super::limits::Limits;
 use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
@@ -20,7 +24,7 @@ use crate::parameters::{
     FORGIVEN_AFTER, POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY,
     UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
-use crate::time::Duration;
+use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
 
 /// What is certain of a peer, and the evidence against it.
@@ -28,11 +32,25 @@ use crate::units::Distance;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Certainty {
     bound: Option<Bound>,
-    suspects: Option<(Bound, u8)>,
+    suspects: Option<Suspects>,
     /// Recoveries that are not forgiven.
     strikes: u8,
     /// Samples in a row that agreed.
     agreed: u8,
+}
+
+/// Samples in a row that contradict the bound but not one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+struct Suspects {
+    /// What they agree on.
+    bound: Bound,
+    /// How many of them count.
+    count: u8,
+    /// When the last of them that counted was true.
+    counted: Instant,
+    /// The stamp of the last of them.
+    stamp: Stamp,
 }
 
 /// Beyond so many recoveries no further one counts: then it takes 160 samples.
@@ -42,10 +60,21 @@ const MOST_STRIKES: u8 = 5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Belief {
+    /// It is older than one that is held: it fills the history, and says nothing of what is certain now.
+    Late,
     /// It agrees with what was certain.
     Agrees,
     /// It is the last of enough that agree with one another: what was certain is given up.
     Recovered,
+}
+
+/// What is made of a sample, before anything is changed by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Judgement {
+    /// What is certain, and the evidence, after it. If it is refused, nothing but the evidence differs.
+    pub certainty: Certainty,
+    /// Whether it is believed.
+    pub verdict: Result<Belief, Refusal>,
 }
 
 impl Certainty {
@@ -61,7 +90,13 @@ impl Certainty {
     /// All of it moves that far ahead: the vehicle's axis did.
     pub fn shift(&mut self, way: Distance) {
         self.bound = self.bound.map(|bound| bound.shifted(way));
-        self.suspects = self.suspects.map(|(suspect, count)| (suspect.shifted(way), count));
+        self.suspects = self.suspects.map(|held| Suspects { bound: held.bound.shifted(way), ..held });
+    }
+
+    /// All of it is carried on to the instant from which on the limits of now hold.
+    pub fn settle(&mut self, limits: &Limits) {
+        self.bound = self.bound.map(|bound| limits.settled(&bound));
+        self.suspects = self.suspects.map(|held| Suspects { bound: limits.settled(&held.bound), ..held });
     }
 
     /// Narrows the bound by something else that is certain; whether they agree.
@@ -76,22 +111,36 @@ impl Certainty {
         }
     }
 
-    /// Judges a sample that is newer than all before, `last` being the one before it.
-    ///
-    /// # Errors
-    /// `Implausible`, `Jump` or `Stuck`; the evidence is kept.
+    /// Judges a sample that is newer than all before, `last` being the one before it, of messages that come with this period,
+    /// by what is certain `around` it: believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
+    #[must_use]
     pub fn judge(
+        mut self,
+        sample: &Sample,
+        last: Option<&Sample>,
+        around: Bound,
+        reach: &Reach,
+        period: Duration,
+    ) -> Judgement {
+        let verdict = self.weigh(sample, last, around, reach, period);
+        Judgement { certainty: self, verdict }
+    }
+
+    fn weigh(
         &mut self,
         sample: &Sample,
         last: Option<&Sample>,
-        doubt: &Doubt,
+        around: Bound,
         reach: &Reach,
+        period: Duration,
     ) -> Result<Belief, Refusal> {
+        if self.suspects.is_some_and(|suspects| suspects.stamp == sample.stamp) {
+            return Err(Refusal::Duplicate);
+        }
         let hardest = Reach::WORST.braking.max(reach.braking).max(reach.acceleration);
         if sample.acceleration.magnitude() > hardest.plus(UNPUBLISHED_ACCELERATION_ACCURACY) {
             return Err(Refusal::Implausible);
         }
-        let around = Bound::around(sample.at, sample.position, sample.speed, doubt, reach);
         let Some(bound) = &self.bound else {
             self.bound = Some(around);
             return Ok(Belief::Agrees);
@@ -102,19 +151,14 @@ impl Certainty {
         }
         self.agreed = 0;
         let refusal = name(bound, &around, sample, last, reach);
-        let (suspect, count) = match &self.suspects {
-            Some((suspect, count)) => match suspect.and(&around, reach) {
-                Some(both) => (both, count.saturating_add(1)),
-                None => (around, 1),
-            },
-            None => (around, 1),
-        };
-        if count >= RECOVERY_SAMPLES.wrapping_shl(self.strikes.into()) {
+        let first = Suspects { bound: around, count: 1, counted: sample.at, stamp: sample.stamp };
+        let suspects = self.suspects.and_then(|held| held.joined_by(&first, reach, period)).unwrap_or(first);
+        if suspects.count >= RECOVERY_SAMPLES.wrapping_shl(self.strikes.into()) {
             let strikes = self.strikes.saturating_add(1).min(MOST_STRIKES);
-            *self = Self { bound: Some(suspect), strikes, ..Self::NONE };
+            *self = Self { bound: Some(suspects.bound), strikes, ..Self::NONE };
             return Ok(Belief::Recovered);
         }
-        self.suspects = Some((suspect, count));
+        self.suspects = Some(suspects);
         Err(refusal)
     }
 
@@ -124,6 +168,17 @@ impl Certainty {
         if self.agreed >= FORGIVEN_AFTER {
             (self.strikes, self.agreed) = (self.strikes.saturating_sub(1), 0);
         }
+    }
+}
+
+impl Suspects {
+    /// With one more, if they agree. It counts if it is not a part of the same burst.
+    fn joined_by(self, one: &Self, reach: &Reach, period: Duration) -> Option<Self> {
+        let bound = self.bound.and(&one.bound, reach)?;
+        if one.counted.since(self.counted).times(2) < period {
+            return Some(Self { bound, stamp: one.stamp, ..self });
+        }
+        Some(Self { bound, count: self.count.saturating_add(1), ..*one })
     }
 }
 

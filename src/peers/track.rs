@@ -2,15 +2,15 @@
 
 use heapless::Vec;
 
+use super::limits::Limits;
 use super::link::Link;
-use super::plausibility::{Belief, Certainty};
+use super::plausibility::{Belief, Certainty, Judgement};
 use super::sample::Sample;
-use crate::config::Link as Limits;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
-use crate::units::Distance;
+use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::horizon::Knots;
 use crate::wire::intent::Intent;
@@ -31,6 +31,7 @@ pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
     intent: Held<Intent>,
+    limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
     is_disputed: bool,
@@ -44,6 +45,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             samples: Vec::new(),
             certainty: Certainty::NONE,
             intent: Held::Nothing,
+            limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
             is_disputed: false,
@@ -80,10 +82,20 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.certainty.narrow(other, &reach)
     }
 
-    /// How fast it can change its speed: as published, or the worst there is.
+    /// How fast it can change its speed from the instant on that what is certain of it is of: as published (not by the last
+    /// message alone, if softer limits were published), or the worst there is.
     #[must_use]
     pub fn reach(&self) -> Reach {
-        self.intent.as_ref().map_or(Reach::WORST, |intent| Reach::published(&intent.limits))
+        self.limits.as_ref().map_or(Reach::WORST, Limits::now)
+    }
+
+    /// What is certain of it by a sample, or by what another sensor saw of it.
+    #[must_use]
+    pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
+        match self.limits.as_ref() {
+            Some(limits) => limits.around(at, position, speed, doubt),
+            None => Bound::around(at, position, speed, doubt, &Reach::WORST),
+        }
     }
 
     /// Everything that is held of its place moves that far ahead: its axis did.
@@ -138,67 +150,68 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.is_disputed = false;
     }
 
-    /// Takes a sample in, or refuses it by the first rule that it breaks:
+    /// Judges a sample of the slot's own station, by the first rule that it breaks:
     ///
-    /// 1. older than `limits.stale`: [`Refusal::Stale`];
-    /// 2. further in the future than `limits.future`: [`Refusal::Future`];
-    /// 3. of another station while this one was heard within `limits.slot_reuse`: [`Refusal::StationConflict`]; after
-    ///    that the slot starts anew;
-    /// 4. with a stamp that is held already: [`Refusal::Duplicate`];
-    /// 5. older than a full history: [`Refusal::OutOfOrder`];
-    /// 6. newer than all held, but contradicting what is certain of the station: see
+    /// 1. with a stamp that is held already, or was refused last: [`Refusal::Duplicate`]. A stamp comes round after 13.1 s, but
+    ///    that of the newest held is taken for frozen whenever it comes again: the one honest sample in 131,072 that has it is lost;
+    /// 2. older than a full history: [`Refusal::OutOfOrder`];
+    /// 3. newer than all held, but contradicting what is certain of the station: see
     ///    [`plausibility`](super::plausibility).
-    ///
-    /// # Errors
-    /// As listed; nothing but the evidence of misbehaviour is changed then.
-    pub fn admit(&mut self, sample: Sample, doubt: &Doubt, limits: &Limits) -> Result<Admission, Refusal> {
-        let age = sample.received.since(sample.at);
-        if age > limits.stale {
-            return Err(Refusal::Stale);
-        }
-        if age < Duration::ZERO.minus(limits.future) {
-            return Err(Refusal::Future);
-        }
-        if self.station().is_some_and(|station| station != sample.station) {
-            if self.link.silence(sample.received).is_some_and(|silence| silence < limits.slot_reuse) {
-                return Err(Refusal::StationConflict);
-            }
-            *self = Self::new(limits.period);
-        }
-        if self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, &sample)) {
-            return Err(Refusal::Duplicate);
+    #[must_use]
+    pub fn judge(&self, sample: &Sample, doubt: &Doubt, period: Duration) -> Judgement {
+        let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
+        let is_frozen = self.newest().is_some_and(|newest| newest.stamp == sample.stamp);
+        if is_frozen || self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
+            return verdict(Err(Refusal::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
-            let reach = self.reach();
-            if self.certainty.judge(&sample, self.samples.last(), doubt, &reach)? == Belief::Recovered {
-                self.samples.clear();
-            }
+            let around = self.around(sample.at, sample.position, sample.speed, doubt);
+            return self.certainty.judge(sample, self.newest(), around, &self.reach(), period);
         }
-        let admission = self.insert(sample)?;
-        self.link.heard(sample.received, sample.at);
-        self.settle();
-        Ok(admission)
+        let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
+        verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })
     }
 
-    fn insert(&mut self, sample: Sample) -> Result<Admission, Refusal> {
+    /// Takes in a sample that was judged to be believed like this, and what is certain with it.
+    pub fn admit(&mut self, sample: Sample, certainty: Certainty, belief: Belief) -> Admission {
+        if belief == Belief::Recovered {
+            self.samples.clear();
+        }
+        self.certainty = certainty;
+        self.link.heard(sample.received, sample.at);
+        self.settle();
+        self.insert(sample)
+    }
+
+    /// Takes note of the evidence of a sample that was refused.
+    pub fn note(&mut self, certainty: Certainty) {
+        self.certainty = certainty;
+    }
+
+    fn insert(&mut self, sample: Sample) -> Admission {
         let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
         let is_news = older == self.samples.len();
         // The others make room one by one, so that nothing here can be out of bounds.
         let mut moved = sample;
         if self.samples.is_full() {
-            if older == 0 {
-                return Err(Refusal::OutOfOrder);
-            }
             self.samples.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
         } else {
             self.samples.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
             let _ = self.samples.push(moved); // it is not full
         }
-        Ok(if is_news { Admission::News } else { Admission::History })
+        if is_news { Admission::News } else { Admission::History }
     }
 
-    /// Takes in what the station says of how it drives; whether that is new.
-    pub fn intend(&mut self, intent: Intent) -> bool {
+    /// Takes in what the station says of how it drives, received at `at`; whether that is new. Nothing that is older than `stale`
+    /// comes after it.
+    pub fn intend(&mut self, at: Instant, intent: Intent, stale: Duration) -> bool {
+        let published = Reach::published(&intent.limits);
+        let limits = match self.limits.get() {
+            Some(held) => held.publish(at, published, stale),
+            None => Limits::first(at, published),
+        };
+        self.limits.set(limits);
+        self.certainty.settle(&limits);
         let is_new = self.intent.as_ref() != Some(&intent);
         self.intent.set(intent);
         is_new

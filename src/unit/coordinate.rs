@@ -5,7 +5,7 @@ use heapless::Vec;
 
 use super::OnboardUnit;
 use crate::coordination::{
-    Arrival, Crossing, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
+    Arrival, Axis, Crossing, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
 };
 use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
@@ -14,7 +14,6 @@ use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Gain, Position, Seconds, Speed};
 use crate::wire::geo::GeoPosition;
-use crate::wire::motion::Motion;
 use crate::wire::route::Route;
 use crate::wire::{Predecessor, Slot};
 
@@ -64,16 +63,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Ok(())
     }
 
-    /// A peer's motion on the ego's axis; `None` while its axis is not known.
-    pub(super) fn translate(&mut self, index: usize, motion: &Motion) -> Option<Motion> {
-        if self.coordination.itinerary().is_none() {
-            return Some(*motion);
-        }
+    /// A peer's axis is this one from now on, and moved so far by that.
+    pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>) {
         let before = self.coordination.standing(index).copied();
-        let (translated, moved) = self.coordination.axis_mut(index)?.translate(motion);
+        if let Some(held) = self.coordination.axis_mut(index) {
+            *held = axis;
+        }
         self.move_axis(index, moved);
         self.note_moving_on(index, before);
-        translated
     }
 
     /// Takes in what a peer says of its way to a crossing point.

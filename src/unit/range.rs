@@ -124,7 +124,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let front = sight.rear.ahead(length);
         let reach = track.reach();
         let before = track.certainty().bound().map(|bound| bound.after(sight.at, &reach));
-        if !track.narrow(&Bound::around(sight.at, front, sight.speed, &sight.doubt, &reach)) {
+        let around = track.around(sight.at, front, sight.speed, &sight.doubt);
+        if !track.narrow(&around) {
             self.ranging.contradictions = self.ranging.contradictions.saturating_add(1);
             return false;
         }

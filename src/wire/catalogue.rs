@@ -167,6 +167,8 @@ pub struct Line {
     pub timeout_ms: u16,
     /// Frames on this identifier in every cycle.
     pub frames: u8,
+    /// All frames of one message come within this; 0 where it has but one.
+    pub within_ms: u16,
     /// The fields of all its frames.
     pub fields: &'static [Field],
     /// Rules for readers of the DBC.
@@ -207,7 +209,8 @@ pub const fn data_id(offset: u16) -> u16 {
 
 const fn line(name: &'static str, offset: u16, content: Content, sender: Node, fields: &'static [Field]) -> Line {
     let (cycle_ms, timeout_ms, frames) = timing(content);
-    Line { name, content, offset, sender, cycle_ms, timeout_ms, frames, fields, comment: comment(content) }
+    let (within_ms, comment) = (within(content), comment(content));
+    Line { name, content, offset, sender, cycle_ms, timeout_ms, frames, within_ms, fields, comment }
 }
 
 /// Cycle, timeout and frames per cycle. A timeout is 5 cycles of what comes every 10 ms, else 3.
@@ -227,6 +230,22 @@ const fn timing(content: Content) -> (u16, u16, u8) {
     }
 }
 
+/// How far apart the frames of one message may come: half of what a tag takes to come round, four cycles, where the cycle is
+/// 10 ms, and half a cycle, which is more than a bus ever holds them back, where it is longer.
+const fn within(content: Content) -> u16 {
+    match content {
+        Content::Sync
+        | Content::FollowUp
+        | Content::Command
+        | Content::EgoIntent
+        | Content::Range
+        | Content::Status => 0,
+        Content::EstimateA | Content::EstimateB => 20,
+        Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => 20,
+        Content::Said(..) => 50,
+    }
+}
+
 const fn comment(content: Content) -> &'static str {
     match content {
         Content::Sync => "First step of the time synchronisation: its reception is the instant that FollowUp dates.",
@@ -237,25 +256,31 @@ const fn comment(content: Content) -> &'static str {
         Content::EgoIntent => "What the driver or the planner wants.",
         Content::Range => "Not sent while nothing is measured ahead, or worse than the accuracies can say.",
         Content::EstimateA | Content::EstimateB => {
-            "TargetEstimateA and B make one message: use both only if their Tag is the same. The bound has all four ends \
+            "TargetEstimateA and B make one message: use both only if their Tag is the same and they come within 20 ms. The bound has all four ends \
              or none; ends are distances from the estimate, rounded up."
         }
         Content::Status => "A page per cause of refusal, one after the other.",
+        Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => {
+            "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 20 ms. \
+             Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms."
+        }
         Content::Said(_, About::MotionA | About::MotionB) => {
-            "MotionA and MotionB make one message: use both only if their Tag is the same. Position is modulo 2^25 mm: \
-             take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms."
+            "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 50 ms. \
+             Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms."
         }
         Content::Said(_, About::Horizon) => {
-            "5 frames of one Tag make one message; Tag is that of the Motion it starts from. Part n is the state after \
+            "5 frames of one Tag within 50 ms make one message; Tag is that of the Motion it starts from. Part n is the state after \
              0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see Intent) after that Motion's Stamp; between them the way is a \
              quintic through position, speed and acceleration, plus Bow midway (64*Bow*s^3*(1-s)^3). At Speed 0 \
              Acceleration b tells when the vehicle came to rest: t = 12*D / (3*v + sqrt(9*v^2 + 12*(a-b)*D)) after part \
              n-1, whose speed and acceleration are v and a, on the way D between the two."
         }
-        Content::Said(_, About::Intent) => "3 frames of one Tag make one message. All limits are magnitudes.",
-        Content::Said(_, About::Geo) => "2 frames of one Tag make one message.",
+        Content::Said(_, About::Intent) => {
+            "3 frames of one Tag within 50 ms make one message. All limits are magnitudes."
+        }
+        Content::Said(_, About::Geo) => "2 frames of one Tag within 50 ms make one message.",
         Content::Said(_, About::Route) => {
-            "2 frames of one Tag make one message. Arrival is GNSS time modulo 2^20 of 10 ms."
+            "2 frames of one Tag within 50 ms make one message. Arrival is GNSS time modulo 2^20 of 10 ms."
         }
     }
 }
@@ -318,6 +343,15 @@ mod tests {
         assert!(find(0x46).is_none());
         assert!(find(0x03).is_none());
         assert_eq!((BaseId::new(0x740).map(BaseId::get), BaseId::new(0x741)), (Some(0x740), None));
+    }
+
+    #[test]
+    fn the_parts_of_a_message_come_together_well_before_its_tag_comes_round() {
+        for line in &CATALOGUE {
+            let has_parts = line.frames > 1 || line.fields.iter().any(|field| field.name == "Tag");
+            assert_eq!(line.within_ms > 0, has_parts, "{}", line.name);
+            assert!(2 * line.within_ms <= 4 * line.cycle_ms, "{}", line.name);
+        }
     }
 
     #[test]

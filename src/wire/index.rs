@@ -7,6 +7,7 @@ use super::bits::Payload;
 use super::catalogue::{ABOUTS, CATALOGUE, Content, LINES, Node, PEERS_OFFSET, SLOT_STRIDE, Speaker};
 use super::field::{Field, Place};
 use crate::health::Refusal;
+use crate::time::Duration;
 
 /// One line of the catalogue.
 #[derive(Clone, Copy)]
@@ -17,6 +18,8 @@ pub(super) struct Entry {
     pub(super) offset: u16,
     /// Who sends it.
     pub(super) sender: Node,
+    /// The parts of a message come within this.
+    pub(super) within: Duration,
     /// First bit and bits of the field that tells the parts of the message apart; no bits where there is one part.
     selector: (u8, u8),
     /// From and to in [`RULES`].
@@ -102,7 +105,8 @@ const _: () = assert!(COUNT < 256 && LINES < NOWHERE as usize);
 #[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // in const
 const MADE: ([Entry; LINES], [Rule; COUNT]) = {
     let first = &CATALOGUE[0];
-    let entry = Entry { content: first.content, offset: 0, sender: first.sender, selector: (0, 0), rules: (0, 0) };
+    let (content, sender, within) = (first.content, first.sender, Duration::ZERO);
+    let entry = Entry { content, offset: 0, sender, within, selector: (0, 0), rules: (0, 0) };
     let mut entries = [entry; LINES];
     let mut rules = [Rule { start: 0, length: 0, signed: false, part: EVERY, min: 0, max: 0, none: 0 }; COUNT];
     let (mut count, mut line) = (0, 0);
@@ -121,7 +125,8 @@ const MADE: ([Entry; LINES], [Rule; COUNT]) = {
             field += 1;
         }
         let rules = (from as u8, count as u8);
-        entries[line] = Entry { content: of.content, offset: of.offset, sender: of.sender, selector, rules };
+        let within = Duration::from_millis(of.within_ms as i64);
+        entries[line] = Entry { content: of.content, offset: of.offset, sender: of.sender, within, selector, rules };
         line += 1;
     }
     (entries, rules)

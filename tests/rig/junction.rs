@@ -48,7 +48,7 @@ static SECOND: Intersection = Intersection {
         Approach { leg: 1, path: &FAR_EASTWARD, crossing: Position::from_mm(400_000), conflicts: 0b01 },
     ],
 };
-static WAYS: [Itinerary; 3] = [
+pub static WAYS: [Itinerary; 3] = [
     Itinerary {
         path: &NORTHWARD,
         crossings: &[

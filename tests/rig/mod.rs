@@ -177,7 +177,7 @@ impl Rig {
         let answer = self.unit.tick(instant(at));
         let mut all = Vec::new();
         for frame in &answer.frames {
-            if let Ok(Received::Whole(message)) = self.listener.receive(frame) {
+            if let Ok(Received::Whole(message)) = self.listener.receive(instant(at), frame) {
                 all.push(message);
             }
         }

@@ -218,7 +218,7 @@ pub fn pages(frames: &[Frame]) -> Vec<Status> {
     thread_local!(static MODEM: std::cell::RefCell<Receiver<0>> = const {
         std::cell::RefCell::new(Receiver::new(BaseId::DEFAULT, Role::Modem))
     });
-    let decode = |frame: &Frame| match MODEM.with_borrow_mut(|modem| modem.receive(frame)) {
+    let decode = |frame: &Frame| match MODEM.with_borrow_mut(|modem| modem.receive(Instant::ZERO, frame)) {
         Ok(Received::Whole(Message::Status(status))) => Some(status),
         _ => None,
     };

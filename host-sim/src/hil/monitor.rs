@@ -92,7 +92,7 @@ impl Monitor {
     /// A frame of the device was on the bus.
     pub fn hear(&mut self, at: Instant, frame: &Frame) -> News {
         self.frames += 1;
-        match self.receiver.receive(frame) {
+        match self.receiver.receive(at, frame) {
             Ok(Received::Whole(Message::Command(command))) => self.command(at, command),
             Ok(Received::Whole(Message::Estimate(estimate))) => News::Estimate(estimate),
             Ok(Received::Whole(Message::Status(status))) => {

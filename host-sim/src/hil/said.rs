@@ -1,5 +1,6 @@
 //! What a unit says in one tick, of what two units can be compared by: frames enter, its command and estimate leave.
 
+use holdover::time::Instant;
 use holdover::wire::command::Command;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role};
@@ -21,7 +22,7 @@ pub fn said(base: BaseId, frames: &[Frame]) -> Option<Said> {
     let mut receiver = Receiver::<1>::new(base, Role::Modem);
     for round in 0..2 {
         for frame in frames {
-            match receiver.receive(&counted(base, frame, round)) {
+            match receiver.receive(Instant::ZERO, &counted(base, frame, round)) {
                 Ok(Received::Whole(Message::Command(said))) => command = Some(said),
                 Ok(Received::Whole(Message::Estimate(said))) => estimate = Some(said),
                 _ => {}

@@ -1,7 +1,7 @@
 //! The modem alone: messages enter, and what a unit decodes from what is relayed is held against the rules.
 
 use super::*;
-use holdover::time::Stamp;
+use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 use holdover::wire::intent::Limits;
 use holdover::wire::motion::WirePosition;
@@ -65,7 +65,7 @@ impl Unit {
         self.relay.hear(at_s, message, &mut frames);
         let (mut motions, mut intents) = (Vec::new(), 0);
         for frame in &frames {
-            match self.receiver.receive(frame) {
+            match self.receiver.receive(Instant::ZERO, frame) {
                 Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
                     motions.push((slot.0, motion.station.0));
                 }

@@ -1,0 +1,128 @@
+//! How hard a station can change its speed, over time: the limits that it publishes enter; those that hold now, and those that
+//! held before, leave.
+//!
+//! * *Harder* limits hold at once, and for the past too. What this assumes of use: a station publishes harder limits at least
+//!   `stale`, 10 s as shipped, before it uses them, and one that nobody has heard for longer keeps to what it published last.
+//! * *Softer* limits never hold for the past. They hold from the first message on that publishes them when for `stale` nothing
+//!   harder has been published: until then a message may come that was overtaken, of which no stamp tells, or a sample from before.
+//!   From then on what is certain is carried on by the softer ones, and what is from before up to that instant by the harder.
+//! * Before anything is published, the worst there is held.
+
+use crate::estimator::bound::{Bound, Doubt, Reach};
+use crate::time::{Duration, Instant};
+use crate::units::{Position, Speed};
+
+/// The limits of one station.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Limits {
+    now: Reach,
+    /// Before `since`; nowhere softer than `now`.
+    before: Reach,
+    /// Since when `now` holds.
+    since: Instant,
+    /// The hardest published after `held`, while all of that was softer than `now` in one way or other.
+    softer: Reach,
+    /// When limits were published last that are as hard as `now`.
+    held: Instant,
+}
+
+impl Limits {
+    /// Of a station that has published them for the first time.
+    #[must_use]
+    pub fn first(at: Instant, published: Reach) -> Self {
+        Self { now: published, before: Reach::WORST.or(published), since: at, softer: Reach::NONE, held: at }
+    }
+
+    /// Of a station that publishes these, received at `at`.
+    #[must_use]
+    pub fn publish(self, at: Instant, published: Reach, stale: Duration) -> Self {
+        let now = self.now.or(published);
+        let harder = Self { now, before: self.before.or(published), ..self };
+        if published == now {
+            return Self { softer: Reach::NONE, held: at, ..harder };
+        }
+        let softer = self.softer.or(published);
+        if at.since(self.held) < stale {
+            return Self { softer, ..harder };
+        }
+        Self { now: softer, before: now, since: at, softer: Reach::NONE, held: at }
+    }
+
+    /// Those that hold from [`since`](Self::since) on.
+    #[must_use]
+    pub const fn now(&self) -> Reach {
+        self.now
+    }
+
+    /// What is certain, carried on to the instant from which on the limits of now hold, if it is from before.
+    #[must_use]
+    pub fn settled(&self, bound: &Bound) -> Bound {
+        bound.after(self.since, &self.before)
+    }
+
+    /// What is certain by a sample or a sight, of the instant from which on the limits of now hold or a later one.
+    #[must_use]
+    pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
+        let is_before = at.minus(doubt.earlier) < self.since;
+        let reach = if is_before { &self.before } else { &self.now };
+        self.settled(&Bound::around(at, position, speed, doubt, reach))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Acceleration;
+
+    const STALE: Duration = Duration::from_millis(10_000);
+
+    fn reach(acceleration: i32, braking: i32) -> Reach {
+        let of = |mps2| Acceleration::from_mm_per_s2(1_000 * mps2);
+        Reach { acceleration: of(acceleration), braking: of(braking) }
+    }
+
+    fn at(millis: u64) -> Instant {
+        Instant::from_micros(millis * 1_000)
+    }
+
+    /// Publishes one after the other; what holds after each.
+    fn publish(messages: &[(u64, Reach, Reach)]) -> Limits {
+        let mut limits = Limits::first(at(messages[0].0), messages[0].1);
+        for (millis, published, expected) in messages {
+            limits = limits.publish(at(*millis), *published, STALE);
+            assert_eq!(limits.now(), *expected, "{millis}");
+        }
+        limits
+    }
+
+    #[test]
+    fn harder_limits_hold_at_once_and_softer_ones_when_nothing_harder_was_published_for_long() {
+        let (hard, soft) = (reach(2, 8), reach(2, 2));
+        let limits = publish(&[
+            (0, soft, soft),
+            (100, hard, hard),
+            (600, soft, hard),
+            (10_099, soft, hard),
+            (10_100, soft, soft),
+        ]);
+        assert_eq!((limits.before, limits.since), (hard, at(10_100)));
+        // One that was overtaken starts the time anew, and so does a silence in which nothing is published.
+        publish(&[(0, hard, hard), (500, soft, hard), (9_999, hard, hard), (10_500, soft, hard), (19_999, soft, soft)]);
+    }
+
+    #[test]
+    fn each_way_is_as_hard_as_the_hardest_and_what_lies_between_is_taken_in_turn() {
+        let (one, other) = (reach(1, 8), reach(4, 3));
+        publish(&[(0, one, one), (500, other, reach(4, 8)), (9_999, other, reach(4, 8)), (10_000, other, other)]);
+        let steps =
+            [(0, reach(2, 8), reach(2, 8)), (9_000, reach(2, 6), reach(2, 8)), (10_000, reach(2, 2), reach(2, 6))];
+        publish(&[&steps[..], &[(19_999, reach(2, 2), reach(2, 6)), (20_000, reach(2, 2), reach(2, 2))]].concat());
+    }
+
+    #[test]
+    fn before_anything_was_published_the_worst_held() {
+        assert_eq!(Limits::first(at(7), reach(2, 8)).before, Reach::WORST);
+        assert_eq!(Limits::first(at(7), reach(2, 14)).before, Reach { braking: reach(2, 14).braking, ..Reach::WORST });
+    }
+}

@@ -1,0 +1,211 @@
+//! A peer's motion: a motion enters; what it would change leaves, or the cause for which it is refused; then that is changed, all
+//! of it or nothing. So a motion that is refused cannot harm what is held of anybody.
+//!
+//! The checks in their order: the slot; whose it is; the age; twice or too late; the place on the ego's axis; too far; and
+//! whether it can be.
+
+use super::OnboardUnit;
+use crate::coordination::Axis;
+use crate::estimator::bound::{Bound, Reach};
+use crate::health::Refusal;
+use crate::parameters::REACH;
+use crate::peers::plausibility::{Certainty, Judgement, doubt};
+use crate::peers::{Admission, Sample, Track, timely};
+use crate::time::Instant;
+use crate::units::Distance;
+use crate::wire::motion::Motion;
+use crate::wire::{Slot, StationHash};
+
+/// Whose the slot is, and was.
+#[derive(Clone, Copy)]
+struct Seat {
+    /// It is another station's so far, whose time is over.
+    is_taken_over: bool,
+    /// The slot in which the station was.
+    left: Option<usize>,
+}
+
+/// Where a motion is on the ego's axis.
+#[derive(Clone, Copy)]
+struct Placed {
+    /// The peer's axis with it; `None` where there are no intersections.
+    axis: Option<Axis>,
+    /// How far that moved, and everything that is held of the peer with it.
+    moved: Option<Distance>,
+    /// The motion there; `None` while the axis is not known.
+    motion: Option<Motion>,
+}
+
+impl Placed {
+    /// Whether nothing that is held of the peer's place is on this axis.
+    fn is_elsewhere(&self) -> bool {
+        self.moved.is_some_and(|moved| moved.magnitude() > REACH)
+    }
+}
+
+/// What is made of a motion, before anything is changed by it.
+struct Plan {
+    seat: Seat,
+    placed: Placed,
+    /// The sample, and what is made of it, on the axis as it was; `None` while the peer's axis is not known.
+    sample: Option<(Sample, Judgement)>,
+}
+
+impl Plan {
+    fn verdict(&self) -> Result<(), Refusal> {
+        self.sample.as_ref().map_or(Ok(()), |(_, judgement)| judgement.verdict.map(|_| ()))
+    }
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// Takes in a peer's motion.
+    ///
+    /// # Errors
+    /// The first cause for which it is refused. Nothing is changed then but the evidence: of misbehaviour, and of whose what else
+    /// is said in the slot may be.
+    pub(super) fn take_motion(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<(), Refusal> {
+        let index = usize::from(slot.0);
+        let holder = self.peers.get(index).ok_or(Refusal::UnknownSlot)?.station();
+        let plan = self.plan(at, index, holder, motion);
+        let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
+        match (verdict, plan) {
+            (Ok(()), Ok(plan)) => self.carry_out(index, &plan),
+            (_, plan) => self.note_refused(index, holder == Some(motion.station), plan.ok()),
+        }
+        verdict
+    }
+
+    fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Refusal> {
+        let link = &self.config.link;
+        let seat = self.seat(at, index, holder, motion.station)?;
+        let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
+        timely(stamped, at, link.stale, link.future)?;
+        let placed = self.place_motion(index, motion);
+        let track = self.peers.get(index).filter(|_| !seat.is_taken_over);
+        let sample = placed.motion.map(|motion| {
+            let moved = placed.moved.unwrap_or(Distance::ZERO);
+            let newest = || Some(track?.newest()?.position.ahead(moved));
+            let ego = self.ego.as_ref().map(|ego| ego.position);
+            let sample = Sample::of(&motion, stamped, at, ego.or_else(newest));
+            (sample, self.judge(track, &sample, &placed))
+        });
+        Ok(Plan { seat, placed, sample })
+    }
+
+    /// A station speaks in one slot at a time, and a slot is one station's. If it was another one's, that one's time is over.
+    ///
+    /// # Errors
+    /// [`Refusal::StationConflict`]: the other station was heard in the slot, or the station in another slot, within
+    /// `slot_reuse`. Or else whoever takes its name could end what is certain of it, and with that the check of whether what is
+    /// said of it can be.
+    fn seat(
+        &self,
+        at: Instant,
+        index: usize,
+        holder: Option<StationHash>,
+        station: StationHash,
+    ) -> Result<Seat, Refusal> {
+        if holder == Some(station) {
+            return Ok(Seat { is_taken_over: false, left: None });
+        }
+        let left = self.peers.index_of(station);
+        let is_heard = |index: usize| {
+            let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+            silence.is_some_and(|silence| silence < self.config.link.slot_reuse)
+        };
+        if holder.is_some() && is_heard(index) || left.is_some_and(is_heard) {
+            return Err(Refusal::StationConflict);
+        }
+        Ok(Seat { is_taken_over: holder.is_some(), left })
+    }
+
+    /// A motion on the ego's axis.
+    fn place_motion(&self, index: usize, motion: &Motion) -> Placed {
+        let axis = self.coordination.itinerary().and(self.coordination.axis(index));
+        let Some(mut axis) = axis.copied() else { return Placed { axis: None, moved: None, motion: Some(*motion) } };
+        let (motion, moved) = axis.translate(motion);
+        Placed { axis: Some(axis), moved, motion }
+    }
+
+    /// Judges a sample by what is held of its station, if anything is.
+    fn judge(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
+        let held = track.map_or(Certainty::NONE, |track| *track.certainty());
+        let is_too_far =
+            self.ego.as_ref().is_some_and(|ego| sample.position.ahead_of(ego.position).magnitude() > REACH);
+        if is_too_far {
+            return Judgement { certainty: held, verdict: Err(Refusal::TooFar) };
+        }
+        let period = self.config.link.period;
+        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link);
+        match track {
+            // On the axis as it was, on which everything is that is held.
+            Some(track) if !placed.is_elsewhere() => {
+                let back = placed.moved.unwrap_or(Distance::ZERO).negated();
+                track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt, period)
+            }
+            _ => {
+                let (at, position, speed) = (sample.at, sample.position, sample.speed);
+                let (around, reach) = match track {
+                    Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
+                    None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
+                };
+                let judgement = Certainty::NONE.judge(sample, None, around, &reach, period);
+                if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
+            }
+        }
+    }
+
+    /// Changes all that a motion changes.
+    fn carry_out(&mut self, index: usize, plan: &Plan) {
+        if plan.seat.is_taken_over {
+            self.vacate(index);
+        }
+        if let Some(axis) = plan.placed.axis {
+            self.place_on(index, axis, plan.placed.moved);
+        }
+        let Some(track) = self.peers.get_index_mut(index) else { return };
+        // Its motion is taken only when its place is known, and that only if what else it says is.
+        track.settle();
+        let Some((sample, Judgement { mut certainty, verdict: Ok(belief) })) = plan.sample else { return };
+        if let Some(moved) = plan.placed.moved.filter(|_| !plan.placed.is_elsewhere()) {
+            certainty.shift(moved);
+        }
+        let is_first = track.station().is_none();
+        let admission = track.admit(sample, certainty, belief);
+        if is_first {
+            self.estimator.note_change(&self.peers);
+        }
+        if let Some(left) = plan.seat.left {
+            self.vacate(left);
+        }
+        if admission == Admission::News {
+            self.estimator.note_news(index);
+        }
+    }
+
+    /// Takes note of the evidence in a motion that is refused. After another station's, what else is said in the slot may be that
+    /// one's.
+    fn note_refused(&mut self, index: usize, is_own: bool, plan: Option<Plan>) {
+        let Some(track) = self.peers.get_index_mut(index) else { return };
+        if is_own {
+            if let Some((_, judgement)) = plan.and_then(|plan| plan.sample) {
+                track.note(judgement.certainty);
+            }
+            return;
+        }
+        track.dispute();
+        if let Some(axis) = self.coordination.axis_mut(index) {
+            axis.dispute();
+        }
+    }
+
+    /// What was known of a station in a slot that it has left is from before, and ends.
+    fn vacate(&mut self, index: usize) {
+        if let Some(track) = self.peers.get_index_mut(index) {
+            *track = Track::new(self.config.link.period);
+        }
+        self.estimator.forget(index);
+        self.estimator.note_change(&self.peers);
+        self.coordination.vacate(index);
+    }
+}
