@@ -23,6 +23,7 @@ pub mod motions;
 pub mod observer;
 pub mod options;
 pub mod output;
+pub mod parallel;
 pub mod plant;
 pub mod price;
 pub mod recording;

@@ -12,7 +12,7 @@ use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
-use holdover::{Config, ConfigError, OnboardUnit};
+use holdover::{Config, ConfigError};
 
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
@@ -27,19 +27,19 @@ pub mod alias;
 mod quantities;
 mod station;
 mod time;
+mod unit;
 mod warm_up;
 
 pub use alias::Alias;
 pub use quantities::{acceleration, distance, duration, fine_seconds, metres, seconds, speed};
 pub use station::{index_of, station, wish};
 pub use time::{EPOCH_US, gnss, micros};
+pub use unit::Unit;
 
 /// Samples that they hold of each peer.
 pub const SAMPLES: usize = 8;
 /// Steps of their horizons.
 pub const STEPS: usize = 1082;
-/// The simulated unit: the same core as on the ECU, with room for more peers and longer horizons.
-pub type Unit = OnboardUnit<PEERS, SAMPLES, STEPS>;
 
 /// Cycle of the time base, in seconds.
 const SYNC_EVERY_S: f64 = 0.5;

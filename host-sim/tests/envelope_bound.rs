@@ -2,9 +2,9 @@
 //! wrong, with and without the envelope and the range sensor.
 
 use holdover_sim::figures::Summary;
+use holdover_sim::parallel;
 use holdover_sim::run::simulate;
 use holdover_sim::scenario::{Overrides, Scenario};
-use rayon::prelude::*;
 use std::path::Path;
 
 /// What is promised of a hundred runs.
@@ -25,7 +25,7 @@ fn paper(of_all: &str, of_followers: &str, rest: &str) -> Scenario {
 /// The figures of every seed's run.
 fn runs(scenario: &Scenario, seeds: u64) -> Vec<Summary> {
     let run = |seed| simulate(scenario, seed, None, |_| {}).unwrap().1;
-    (1..=seeds).into_par_iter().map(run).collect()
+    parallel::each(1..=seeds, run)
 }
 
 fn hold(scenario: &Scenario, seeds: u64) -> Vec<Summary> {

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use holdover_sim::figures::{Errors, Summary, Timing};
+use holdover_sim::parallel;
 use holdover_sim::run::simulate;
 use holdover_sim::scenario::{Overrides, Scenario};
-use rayon::prelude::*;
 
 const SEEDS: u64 = 100;
 /// Half as long again as the 0.3 s that every vehicle publishes.
@@ -46,7 +46,7 @@ fn worst_over_all_seeds(scenario: &Scenario) -> f64 {
         assert!(summary.min_gap_m > Some(0.0), "seed {seed}: {summary:?}");
         summary.ours.max_position_error_m.unwrap_or_else(|| panic!("seed {seed}: the ego was never estimated"))
     };
-    (1..=SEEDS).into_par_iter().map(worst).reduce(|| 0.0, f64::max)
+    parallel::each(1..=SEEDS, worst).into_iter().fold(0.0, f64::max)
 }
 
 #[test]

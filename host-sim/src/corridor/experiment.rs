@@ -4,7 +4,6 @@
 use std::io;
 
 use holdover::coordination::Itinerary;
-use rayon::prelude::*;
 
 use super::beliefs::Beliefs;
 use super::conditions::{Conditions, WhenLost};
@@ -18,6 +17,7 @@ use super::traffic::Traffic;
 use super::trips::{Trip, trips};
 use super::watch::Watch;
 use crate::error::Error;
+use crate::parallel;
 use crate::scenario::Envelope;
 
 /// Prediction steps of the figures over `δt`.
@@ -144,7 +144,7 @@ impl Experiment {
             done();
             Ok((StepRow { step_s: *step_s, side: Side::of(&[&outcome]) }, journal))
         };
-        STEPS_S.par_iter().map(one).collect::<Vec<_>>().into_iter().collect()
+        parallel::each(&STEPS_S, one).into_iter().collect()
     }
 
     /// The configuration and the way of the ego's unit, for measuring what it costs.
@@ -173,7 +173,7 @@ impl Experiment {
             done();
             outcome
         };
-        jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect()
+        parallel::each(jobs, one).into_iter().collect()
     }
 }
 

@@ -7,7 +7,6 @@
 //! more as the recording's sample was already at `t`.
 
 use holdover::ConfigError;
-use rayon::prelude::*;
 
 use super::listener::{Deaf, Listener};
 use super::options::Recording;
@@ -16,6 +15,7 @@ use super::sample::{Outcome, Sample};
 use super::timeline::{Timeline, seconds};
 use crate::baseline::Estimate;
 use crate::modem::V2xMessage;
+use crate::parallel;
 use crate::recording::Motion;
 use crate::vehicle::{metres, micros};
 
@@ -31,7 +31,8 @@ struct Start {
     listener: Deaf,
 }
 
-/// Compares at the end of every silence; `advance` is told of every second of the recording that has been done.
+/// Compares at the end of every silence, silences in parallel; `advance` is told of every second of the recording that has been
+/// done.
 ///
 /// # Errors
 /// What the unit finds wrong with its configuration.
@@ -39,7 +40,7 @@ pub fn evaluate(
     recording: &Recording,
     lengths_s: &[f64],
     step_s: f64,
-    advance: &(dyn Fn(f64) + Sync),
+    advance: &dyn Fn(f64),
 ) -> Result<Outcome, ConfigError> {
     let motion = &recording.motion;
     let timeline = Timeline::from(motion.start_s(), step_s);
@@ -86,9 +87,7 @@ fn fall_silent(
     end_us: i64,
     outcome: &mut Outcome,
 ) {
-    let silences: Vec<(Vec<Sample>, u64)> =
-        std::mem::take(starts).into_par_iter().map(|start| start.last(motion, timeline, lengths_s, end_us)).collect();
-    for (samples, ticks) in silences {
+    for (samples, ticks) in parallel::each(starts.drain(..), |start| start.last(motion, timeline, lengths_s, end_us)) {
         outcome.samples.extend(samples);
         outcome.unit_ticks += ticks;
     }

@@ -21,15 +21,16 @@ mod trace;
 
 use std::time::Instant;
 
+use holdover::ConfigError;
 use indicatif::ProgressBar;
-use rayon::prelude::*;
 
 use crate::error::Error;
 use crate::output;
+use crate::parallel;
 use crate::run::write_report;
 use crate::verdict::Verdict;
 use figures::{Results, Timing};
-use options::{EvaluateOptions, Impairment, Recording};
+use options::{EvaluateOptions, Impairment};
 use sample::Outcome;
 
 /// Evaluates what the options name and writes all that they ask for.
@@ -62,22 +63,22 @@ pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// Every recording, in parallel, in the order of the command line.
+/// Every recording, in the order of the command line: in parallel over a link, one after the other with its silences in
+/// parallel.
 fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
     let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
     let bar = ProgressBar::new((total_s * 10.0) as u64);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
     let advance = |seconds: f64| bar.inc((seconds * 10.0) as u64);
-    let evaluate = |recording: &Recording| {
-        let outcome = match &options.impairment {
-            Impairment::Channel(_, link) => over_link::evaluate(recording, link, options.step_s, &advance),
-            Impairment::Outages(lengths_s) => in_silence::evaluate(recording, lengths_s, options.step_s, &advance),
-        };
-        outcome
-            .map_err(|cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step"))
+    let (recordings, step_s) = (&options.recordings, options.step_s);
+    let over_link = |link, recording| over_link::evaluate(recording, link, step_s, &advance);
+    let in_silence = |lengths_s, recording| in_silence::evaluate(recording, lengths_s, step_s, &advance);
+    let outcomes: Vec<Result<Outcome, ConfigError>> = match &options.impairment {
+        Impairment::Channel(_, link) => parallel::each(recordings, |recording| over_link(link, recording)),
+        Impairment::Outages(lengths_s) => recordings.iter().map(|recording| in_silence(lengths_s, recording)).collect(),
     };
-    let outcomes = options.recordings.par_iter().map(evaluate).collect();
     bar.finish_and_clear();
-    outcomes
+    let refused = |cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step");
+    outcomes.into_iter().map(|outcome| outcome.map_err(refused)).collect()
 }

@@ -4,11 +4,10 @@
 //! curve through its middle, the cells say where on it, and whatever is interpolated is on it too: the whole of it is
 //! proved, thousandth by thousandth. Curve and cells are chosen at one time gap, and [proved](super::proof) at more.
 
-use rayon::prelude::*;
-
 use super::approach::Situation;
 use super::cell::Cell;
 use super::linear::{DESIGN_TIME_GAP_S, Pair};
+use crate::parallel;
 
 /// Speeds, own and target's: so many, from 0, in steps of this many m/s.
 pub const SPEEDS: usize = 8;
@@ -90,5 +89,5 @@ pub fn cells(curve: &[u32]) -> Vec<Cell> {
     let last = CURVE_FIRST_MILLI + (POINTS - 1) * CURVE_STEP_MILLI;
     let tried = (CURVE_FIRST_MILLI..=last).step_by(TRIED_EVERY_MILLI as usize);
     let pairs: Vec<Pair> = tried.map(|gain| on_curve(curve, gain)).collect();
-    situations().into_par_iter().filter_map(|situation| Cell::best(situation, &pairs)).collect()
+    parallel::each(situations(), |situation| Cell::best(situation, &pairs)).into_iter().flatten().collect()
 }

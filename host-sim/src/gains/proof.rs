@@ -1,11 +1,11 @@
 //! The proof of the table at one time gap: curve and cells enter, the worst figures and whatever does not hold leave.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::cell::{Asked, Cell, Judged, settled_by_s};
 use super::grid;
 use super::linear::{CAR_S, LAZIEST_S, Law};
+use crate::parallel;
 
 /// The worst figures at one time gap.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -44,18 +44,15 @@ impl Proof {
     #[must_use]
     pub fn at(time_gap_s: f64, curve: &[u32], cells: &[Cell]) -> Self {
         let laws: Vec<Law> = grid::pairs(curve).into_iter().map(|pair| pair.at(time_gap_s)).collect();
-        let unsound: Vec<String> = laws
-            .par_iter()
-            .filter(|law| !law.is_sound())
-            .map(|law| {
-                format!("k = {:.3} 1/s² on the curve is not sound at a time gap of {time_gap_s} s", law.pair.gain)
-            })
-            .collect();
+        let sound = parallel::each(&laws, |law| law.is_sound());
+        let unsound = laws.iter().zip(sound).filter(|(_, is_sound)| !is_sound).map(|(law, _)| {
+            format!("k = {:.3} 1/s² on the curve is not sound at a time gap of {time_gap_s} s", law.pair.gain)
+        });
         let margins: Vec<_> = laws.iter().map(|law| law.margins(LAZIEST_S)).collect();
         let least = |of: fn(&(f64, f64)) -> f64| margins.iter().map(of).fold(f64::INFINITY, f64::min);
         let amplification = |lag_s| laws.iter().map(|law| law.largest_gain(lag_s)).fold(0.0, f64::max);
 
-        let judged: Vec<Judged> = cells.par_iter().map(|cell| cell.at(time_gap_s)).collect();
+        let judged: Vec<Judged> = parallel::each(cells, |cell| cell.at(time_gap_s));
         let wrong = cells.iter().zip(&judged).filter(|(_, judged)| !judged.holds).map(|(cell, judged)| {
             let situation = &cell.situation;
             format!(
@@ -78,7 +75,7 @@ impl Proof {
             largest_overshoot_m: largest(&mut of(Asked::Everything).map(|approach| approach.overshoot_m)),
             hardest_braking_mps2: largest(&mut of(Asked::Everything).map(|approach| approach.braking_mps2)),
             smallest_gap_m: of(Asked::NoCollision).map(|approach| approach.least_gap_m).reduce(f64::min),
-            failures: unsound.into_iter().chain(wrong).collect(),
+            failures: unsound.chain(wrong).collect(),
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The figures: silences enter, for each motion and each method its errors leave.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::motion::{PHASES, SILENCE_S, TargetMotion};
 use super::silence::{self, Errors, METHODS, NAMES};
 use crate::error::Error;
 use crate::metrics::{ErrorStatistics, rms};
+use crate::parallel;
 
 /// Width of a class of [`MethodFigures::growth`].
 const CLASS_S: f64 = 0.25;
@@ -85,8 +85,7 @@ pub fn run(seed: u64, silences: u32, done: impl Fn() + Sync) -> Result<Vec<Row>,
         errors
     };
     let of_motion = |motion| {
-        // Collected in order before anything is added up, so that the number of threads decides nothing.
-        let errors: Vec<_> = (0..silences).into_par_iter().map(|number| one(motion, number)).collect();
+        let errors = parallel::each(0..silences, |number| one(motion, number));
         let errors: Vec<Vec<Errors>> = errors.into_iter().collect::<Result<_, _>>()?;
         row(motion, silences, &errors.concat())
             .ok_or_else(|| Error::new(format!("{motion}: nobody ever heard the target"), "report this"))

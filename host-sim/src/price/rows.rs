@@ -1,10 +1,10 @@
 //! The runs of one silence: a scenario and seeds enter, the figures without and with the envelope leave.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::figures::{impaired_followers, limited_share};
+use crate::parallel;
 use crate::run::simulate;
 use crate::scenario::Scenario;
 use crate::world::Trace;
@@ -71,9 +71,7 @@ pub fn run(
         done();
         outcome
     };
-    // Collected in the order of seeds before anything is added up, so that the number of threads decides nothing.
-    let outcomes: Vec<Outcome> =
-        (0..2 * seeds).into_par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
+    let outcomes: Vec<Outcome> = parallel::each(0..2 * seeds, one).into_iter().collect::<Result<_, _>>()?;
     let side = |first: usize| Side::of(&outcomes.iter().skip(first).step_by(2).collect::<Vec<_>>());
     Ok(Row { silence_s: *silence_s, seeds, distance_m, off: side(0), on: side(1) })
 }

@@ -4,7 +4,6 @@
 use std::path::Path;
 
 use holdover::wire::command::ModeCode;
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::amplification::{Speeds, Worst};
@@ -12,6 +11,7 @@ use super::disturbance::{CRUISE_MPS, Disturbance};
 use super::options::StringOptions;
 use super::uncompensated::{self, Reading};
 use crate::error::Error;
+use crate::parallel;
 use crate::run::simulate;
 use crate::scenario::{MAX_VEHICLES, Overrides, Scenario};
 use crate::world::{Tick, Trace};
@@ -95,8 +95,7 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
         done();
         outcome
     };
-    // Collected in order before anything is compared, so that the number of threads decides nothing.
-    let outcomes: Vec<Outcome> = jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
+    let outcomes: Vec<Outcome> = parallel::each(&jobs, one).into_iter().collect::<Result<_, _>>()?;
     let mut outcomes = outcomes.into_iter();
     let mut all_seeds = |&(_, seeds): &(_, u64)| (0..seeds).filter_map(|_| outcomes.next()).collect();
     let of_place = |(place, disturbances): &(Place, Vec<_>)| {

@@ -1,12 +1,12 @@
 //! The runs of one step: a scenario and seeds enter, the figures of all of them together leave.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::timing::Timing;
 use crate::error::Error;
 use crate::figures::{errors, failures, ours, papers};
 use crate::metrics::{max_abs, percentile_abs};
+use crate::parallel;
 use crate::run::simulate;
 use crate::scenario::Scenario;
 
@@ -78,10 +78,8 @@ pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -
         done();
         outcome.map(|outcome| (seed, outcome))
     };
-    // Collected in the order of seeds before anything is judged, so that the number of threads decides nothing.
-    let outcomes: Vec<Result<(u64, Outcome), Error>> = (seed..=seed + (seeds - 1)).into_par_iter().map(one).collect();
     let (mut ours, mut paper, mut failures) = (Vec::new(), Vec::new(), Vec::new());
-    for outcome in outcomes {
+    for outcome in parallel::each(seed..=seed + (seeds - 1), one) {
         let (seed, outcome) = outcome?;
         ours.extend(outcome.ours);
         paper.extend(outcome.paper);
