@@ -131,6 +131,8 @@ pub enum Status {
     RefusedOverlooked = -90,
     /// A synchronisation that came later than the unit's own clock allows.
     RefusedSyncLate = -91,
+    /// A synchronisation that came earlier than the unit's own clock allows.
+    RefusedSyncEarly = -92,
 }
 
 impl From<ConfigError> for Status {
@@ -186,6 +188,7 @@ impl From<Refusal> for Status {
             Refusal::OffRoute => Self::RefusedOffRoute,
             Refusal::Overlooked => Self::RefusedOverlooked,
             Refusal::SyncLate => Self::RefusedSyncLate,
+            Refusal::SyncEarly => Self::RefusedSyncEarly,
         }
     }
 }
@@ -250,6 +253,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedOffRoute, c"refused: off_route"),
     (Status::RefusedOverlooked, c"counted: overlooked"),
     (Status::RefusedSyncLate, c"refused: sync_late"),
+    (Status::RefusedSyncEarly, c"refused: sync_early"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.
