@@ -4,6 +4,7 @@
 //! [`timely`] and [`Track::judge`]; what comes from another station or from too far away, by the unit. Judging changes
 //! nothing; what is admitted is changed by [`Track::admit`] alone.
 
+mod drift;
 mod limits;
 mod link;
 pub mod plausibility;

@@ -4,7 +4,7 @@ use heapless::Vec;
 
 use super::limits::Limits;
 use super::link::Link;
-use super::plausibility::{Belief, Certainty, Judgement};
+use super::plausibility::{Belief, Certainty, Grounds, Judgement};
 use super::sample::Sample;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
@@ -89,6 +89,16 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.limits.as_ref().map_or(Reach::WORST, Limits::now)
     }
 
+    /// What a sample is judged by.
+    #[must_use]
+    pub fn grounds(&self, around: Bound, doubt: Doubt, period: Duration) -> Grounds {
+        let from_last = match (self.limits.as_ref(), self.newest()) {
+            (Some(limits), Some(last)) => limits.from(last.at.minus(doubt.earlier)),
+            _ => self.reach(),
+        };
+        Grounds { around, doubt, reach: self.reach(), from_last, period }
+    }
+
     /// What is certain of it by a sample, or by what another sensor saw of it.
     #[must_use]
     pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
@@ -166,7 +176,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
             let around = self.around(sample.at, sample.position, sample.speed, doubt);
-            return self.certainty.judge(sample, self.newest(), around, &self.reach(), period);
+            return self.certainty.judge(sample, self.newest(), &self.grounds(around, *doubt, period));
         }
         let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
         verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })

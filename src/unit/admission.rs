@@ -9,7 +9,7 @@ use crate::coordination::Axis;
 use crate::estimator::bound::{Bound, Reach};
 use crate::health::Refusal;
 use crate::parameters::REACH;
-use crate::peers::plausibility::{Certainty, Judgement, doubt};
+use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
 use crate::peers::{Admission, Sample, Track, timely};
 use crate::time::Instant;
 use crate::units::Distance;
@@ -128,15 +128,27 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Judges a sample by what is held of its station, if anything is.
+    ///
+    /// One that is too far away is refused, and nobody is driven by; but where a station is that was near is known by it all the
+    /// same, if it agrees with what is certain: or else who is long gone would be taken to stand where it was heard last.
     fn judge(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
         let held = track.map_or(Certainty::NONE, |track| *track.certainty());
-        let is_too_far =
-            self.ego.as_ref().is_some_and(|ego| sample.position.ahead_of(ego.position).magnitude() > REACH);
-        if is_too_far {
-            return Judgement { certainty: held, verdict: Err(Refusal::TooFar) };
+        let judgement = self.weigh(track, sample, placed);
+        let ego = self.ego.as_ref().map(|ego| ego.position);
+        if ego.is_none_or(|ego| sample.position.ahead_of(ego).magnitude() <= REACH) {
+            return judgement;
         }
-        let period = self.config.link.period;
+        let is_known = !placed.is_elsewhere() && track.is_some_and(|track| track.newest().is_some());
+        let certainty = match judgement.verdict {
+            Ok(Belief::Agrees) if is_known => judgement.certainty,
+            _ => held,
+        };
+        Judgement { certainty, verdict: Err(Refusal::TooFar) }
+    }
+
+    fn weigh(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
         let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link);
+        let period = self.config.link.period;
         match track {
             // On the axis as it was, on which everything is that is held.
             Some(track) if !placed.is_elsewhere() => {
@@ -149,7 +161,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                     Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
                     None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
                 };
-                let judgement = Certainty::NONE.judge(sample, None, around, &reach, period);
+                let grounds = Grounds { around, doubt, reach, from_last: reach, period };
+                let judgement = Certainty::NONE.judge(sample, None, &grounds);
+                let held = track.map_or(Certainty::NONE, |track| *track.certainty());
                 if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
             }
         }
