@@ -133,6 +133,8 @@ pub enum Status {
     RefusedSyncLate = -91,
     /// A synchronisation that came earlier than the unit's own clock allows.
     RefusedSyncEarly = -92,
+    /// Not a refusal of a frame: a peer's clock is off.
+    RefusedPeerClock = -93,
 }
 
 impl From<ConfigError> for Status {
@@ -189,6 +191,7 @@ impl From<Refusal> for Status {
             Refusal::Overlooked => Self::RefusedOverlooked,
             Refusal::SyncLate => Self::RefusedSyncLate,
             Refusal::SyncEarly => Self::RefusedSyncEarly,
+            Refusal::PeerClock => Self::RefusedPeerClock,
         }
     }
 }
@@ -254,6 +257,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedOverlooked, c"counted: overlooked"),
     (Status::RefusedSyncLate, c"refused: sync_late"),
     (Status::RefusedSyncEarly, c"refused: sync_early"),
+    (Status::RefusedPeerClock, c"counted: peer_clock"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

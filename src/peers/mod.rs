@@ -9,10 +9,12 @@ mod limits;
 mod link;
 pub mod plausibility;
 mod sample;
+mod sender_clock;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
 pub use sample::{Sample, timely};
+pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
 use crate::health::Refusal;

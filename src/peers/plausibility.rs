@@ -19,6 +19,7 @@
 use super::Sample;
 use super::drift::Course;
 use super::limits::Limits;
+use super::sender_clock::Off;
 use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
@@ -119,6 +120,11 @@ impl Certainty {
         self.suspects = self.suspects.map(|held| Suspects { bound: limits.settled(&held.bound), ..held });
     }
 
+    /// This alone is certain.
+    pub fn restart(&mut self, bound: Bound) {
+        (self.bound, self.suspects, self.course) = (Some(bound), None, None);
+    }
+
     /// Narrows the bound by something else that is certain; whether they agree.
     pub fn narrow(&mut self, other: &Bound, reach: &Reach) -> bool {
         let Some(bound) = self.bound.as_ref() else { return true };
@@ -207,12 +213,13 @@ fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, r
     }
 }
 
-/// What is uncertain about a sample.
+/// What is uncertain about a sample of a sender whose clock is that far off.
 #[must_use]
-pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link) -> Doubt {
+pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link, off: Off) -> Doubt {
     let (earlier, later) = if is_synchronised {
         // However the clocks are off, it was taken before it was received.
-        (link.clock_error, link.clock_error.min(sample.received.since(sample.at)))
+        let (earlier, later) = off.doubt();
+        (link.clock_error.plus(earlier), link.clock_error.plus(later).min(sample.received.since(sample.at)))
     } else {
         // It was taken for as old as the assumed delay, and may be of any age up to the largest.
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)

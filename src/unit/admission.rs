@@ -10,7 +10,7 @@ use crate::estimator::bound::{Bound, Reach};
 use crate::health::Refusal;
 use crate::parameters::REACH;
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
-use crate::peers::{Admission, Sample, Track, timely};
+use crate::peers::{Admission, Off, Sample, Track, timely};
 use crate::time::Instant;
 use crate::units::Distance;
 use crate::wire::motion::Motion;
@@ -68,9 +68,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let holder = self.peers.get(index).ok_or(Refusal::UnknownSlot)?.station();
         let plan = self.plan(at, index, holder, motion);
         let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
+        let is_own = holder == Some(motion.station);
         match (verdict, plan) {
             (Ok(()), Ok(plan)) => self.carry_out(index, &plan),
-            (_, plan) => self.note_refused(index, holder == Some(motion.station), plan.ok()),
+            (_, plan) => self.note_refused(index, is_own, plan.ok()),
+        }
+        // Who is ahead is refused before it has a slot of its own.
+        if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Refusal::Future)) {
+            self.note_clock(at, index, motion);
         }
         verdict
     }
@@ -79,6 +84,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let link = &self.config.link;
         let seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
+        let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
+        let off = own.filter(|_| self.is_synchronised(at)).map_or(Off::No, Track::clock_off);
+        let stamped = off.corrected(stamped);
         timely(stamped, at, link.stale, link.future)?;
         let placed = self.place_motion(index, motion);
         let track = self.peers.get(index).filter(|_| !seat.is_taken_over);
@@ -147,7 +155,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn weigh(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
-        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link);
+        let off = track.map_or(Off::No, Track::clock_off);
+        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link, off);
         let period = self.config.link.period;
         match track {
             // On the axis as it was, on which everything is that is held.
@@ -210,6 +219,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         track.dispute();
         if let Some(axis) = self.coordination.axis_mut(index) {
             axis.dispute();
+        }
+    }
+
+    /// Takes note of what a motion says of its sender's clock.
+    fn note_clock(&mut self, at: Instant, index: usize, motion: &Motion) {
+        let Some(stamped) = self.instant_of(motion.stamp, at) else { return };
+        let Some(track) = self.peers.get_index_mut(index) else { return };
+        if track.hear_clock(at, stamped, &self.config.link) {
+            self.health.count(Refusal::PeerClock);
         }
     }
 
