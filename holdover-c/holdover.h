@@ -155,6 +155,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_OVERLOOKED = -90,
   // A synchronisation that came later than the unit's own clock allows.
   HOLDOVER_REFUSED_SYNC_LATE = -91,
+  // A synchronisation that came earlier than the unit's own clock allows.
+  HOLDOVER_REFUSED_SYNC_EARLY = -92,
+  // Not a refusal of a frame: a peer's clock is off.
+  HOLDOVER_REFUSED_PEER_CLOCK = -93,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

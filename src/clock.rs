@@ -5,10 +5,11 @@
 //! bound the error by the clocks' relative drift (100 ppm · 0.5 s = 50 µs) and the reception's jitter, so that no rate is
 //! estimated.
 //!
-//! A mark can be late, where a gateway or the unit itself was busy, and never early. So one that says that less time has passed
-//! than the unit's own clock says is refused, and the mark before it holds; one that says that more time has passed shows that the
-//! one before it was late. If GNSS time itself steps back, all marks are late from then on, by the same: the second in a row that
-//! is late by the same is believed. The price is half a second more of a wrong time wherever it was ahead.
+//! A mark can be late, where a gateway or the unit itself was busy, and what a follow-up says can be wrong. So one that says that
+//! less time has passed than the unit's own clock says is doubted as late, and one that says that more has passed as early: it is
+//! refused, and the mark before it holds. If GNSS time itself steps, or the mark before was the one that was late, all marks are
+//! off from then on, by the same: the second in a row that is off by the same is believed. The price is half a second more of a
+//! wrong time.
 
 use crate::health::Refusal;
 use crate::time::{Duration, GnssTime, Instant, Stamp};
@@ -28,7 +29,7 @@ struct Fix {
 pub struct Clock {
     mark: Option<(Instant, Sync)>,
     fix: Option<Fix>,
-    /// The last mark, if it was refused as late.
+    /// The last mark, if it was refused as late or early.
     doubted: Option<Fix>,
 }
 
@@ -47,7 +48,7 @@ impl Fix {
 
 /// How long after its mark a follow-up may come.
 const FOLLOW_UP_TIMEOUT: Duration = Duration::from_millis(250);
-/// A mark may be so late, which is 5 cm at urban speed and far more than what the clocks drift apart while a mark is remembered.
+/// A mark may be so late, or so early, which is 5 cm at urban speed and far more than what the clocks drift apart while a mark is remembered.
 const LATE: Duration = Duration::from_millis(5);
 /// How long a mark says when others are late: 100 ppm of it are 0.5 ms.
 const MEMORY: Duration = Duration::from_millis(5_000);
@@ -68,7 +69,7 @@ impl Clock {
     ///
     /// # Errors
     /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago; [`Refusal::SyncLate`] if that
-    /// came too late.
+    /// came too late, by what the unit's own clock says, and [`Refusal::SyncEarly`] if too early.
     pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Refusal> {
         let (marked, sync) = self.mark.ok_or(Refusal::SyncSequence)?;
         if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
@@ -77,11 +78,12 @@ impl Clock {
         self.mark = None;
         let fix = Fix { local: marked, gnss: follow_up.time_of(&sync) };
         let after = |earlier: Option<Fix>| earlier.and_then(|earlier| earlier.lateness_of(&fix));
-        let is_late = after(self.fix).is_some_and(|late| late > LATE);
-        let is_as_late = after(self.doubted).is_some_and(|late| late <= LATE && late >= Duration::ZERO.minus(LATE));
-        if is_late && !is_as_late {
+        let late = after(self.fix).unwrap_or(Duration::ZERO);
+        let is_off = |late: Duration| late > LATE || late < Duration::ZERO.minus(LATE);
+        let is_off_by_the_same = after(self.doubted).is_some_and(|late| !is_off(late));
+        if is_off(late) && !is_off_by_the_same {
             self.doubted = Some(fix);
-            return Err(Refusal::SyncLate);
+            return Err(if late > Duration::ZERO { Refusal::SyncLate } else { Refusal::SyncEarly });
         }
         (self.fix, self.doubted) = (Some(fix), None);
         Ok(())
@@ -165,18 +167,22 @@ mod tests {
         }
     }
 
-    /// Synchronisations, each so many milliseconds after the first was sent: how much later than sent it is marked, and whether
-    /// it is taken.
-    fn marks(marks: &[(u64, i64, bool)]) {
+    const TAKEN: Result<(), Refusal> = Ok(());
+    const LATER: Result<(), Refusal> = Err(Refusal::SyncLate);
+    const EARLY: Result<(), Refusal> = Err(Refusal::SyncEarly);
+
+    /// Synchronisations, each so many milliseconds after the first was sent: how much later than sent it is marked, and what
+    /// becomes of it.
+    fn marks(marks: &[(u64, i64, Result<(), Refusal>)]) {
         let mut clock = Clock::new();
-        for (number, (sent_ms, late_ms, is_taken)) in (0..).zip(marks) {
+        for (number, (sent_ms, late_ms, expected)) in (0..).zip(marks) {
             let sent = 10_000_000 + 1_000 * sent_ms;
             let at = Instant::from_micros(sent).plus(Duration::from_millis(*late_ms));
             let (sequence, micros) = (number % 16, (sent % 1_000_000) as u32);
             clock.sync(at, Sync { sequence, seconds: (sent / 1_000_000) as u32 });
             let result = clock.follow_up(at, FollowUp { sequence, micros });
-            assert_eq!(result, if *is_taken { Ok(()) } else { Err(Refusal::SyncLate) }, "{number}");
-            if *is_taken {
+            assert_eq!(result, *expected, "{number}");
+            if result.is_ok() {
                 assert_eq!(clock.gnss(at), Some(GnssTime::from_micros(sent)), "{number}");
             }
         }
@@ -185,39 +191,51 @@ mod tests {
     #[test]
     fn a_mark_that_was_too_long_on_its_way_is_refused() {
         marks(&[
-            (0, 0, true),
-            (500, 5, true),
-            (1_000, 11, false),
-            (1_500, 10, true),
-            (2_000, 3, true),
-            (2_500, 9, false),
+            (0, 0, TAKEN),
+            (500, 5, TAKEN),
+            (1_000, 11, LATER),
+            (1_500, 10, TAKEN),
+            (2_000, 5, TAKEN),
+            (2_500, 11, LATER),
         ]);
     }
 
     #[test]
-    fn a_first_mark_that_was_late_is_corrected_by_the_next_one() {
-        marks(&[(0, 30, true), (500, 0, true), (1_000, 30, false), (1_500, 0, true)]);
+    fn a_first_mark_that_was_late_is_corrected_by_the_next_two() {
+        // By one alone it is not known which of the two is wrong.
+        marks(&[(0, 30, TAKEN), (500, 0, EARLY), (1_000, 0, TAKEN), (1_500, 30, LATER), (2_000, 0, TAKEN)]);
+    }
+
+    #[test]
+    fn a_mark_that_is_early_is_refused_and_the_one_before_it_holds() {
+        marks(&[(0, 0, TAKEN), (500, -60, EARLY), (1_000, 0, TAKEN), (1_500, -6, EARLY), (2_000, -5, TAKEN)]);
+        marks(&[(0, 0, TAKEN), (500, -60, EARLY), (1_000, 60, LATER), (1_500, -30, EARLY), (2_000, 0, TAKEN)]);
+    }
+
+    #[test]
+    fn a_time_that_steps_ahead_is_believed_from_the_second_mark_on() {
+        marks(&[(0, 0, TAKEN), (500, -100, EARLY), (1_000, -102, TAKEN), (1_500, -98, TAKEN), (2_000, 0, LATER)]);
     }
 
     #[test]
     fn marks_that_are_late_by_this_and_that_are_all_refused_until_the_last_good_one_is_forgotten() {
         let late =
             [(500, 6), (1_000, 80), (1_500, 74), (2_000, 80), (2_500, 20), (3_000, 26), (3_500, 90), (4_900, 40)];
-        let late: Vec<_> = late.into_iter().map(|(sent_ms, late_ms)| (sent_ms, late_ms, false)).collect();
-        marks(&[&[(0, 0, true)], &late[..], &[(4_990, 30, true)]].concat());
+        let late: Vec<_> = late.into_iter().map(|(sent_ms, late_ms)| (sent_ms, late_ms, LATER)).collect();
+        marks(&[&[(0, 0, TAKEN)], &late[..], &[(4_990, 30, TAKEN)]].concat());
     }
 
     #[test]
     fn a_time_that_steps_back_is_believed_from_the_second_mark_on() {
-        let back = [(500, 100, false), (1_000, 102, true), (1_500, 98, true), (2_000, 0, true), (2_500, 30, false)];
-        marks(&[&[(0, 0, true)], &back[..], &[(3_000, 25, true)]].concat());
+        let back = [(500, 100, LATER), (1_000, 102, TAKEN), (1_500, 98, TAKEN), (2_000, 0, EARLY), (2_500, 0, TAKEN)];
+        marks(&[&[(0, 0, TAKEN)], &back[..], &[(3_000, 30, LATER), (3_500, 25, TAKEN)]].concat());
     }
 
     #[test]
     fn after_a_long_silence_the_first_mark_is_believed_and_an_old_doubt_is_none() {
-        marks(&[(0, 0, true), (60_000, 6, true)]);
-        marks(&[(0, 0, true), (4_000, 30, false), (4_900, 0, true), (5_400, 30, false)]);
-        marks(&[(0, 0, true), (500, 30, false), (4_800, 40, false)]);
+        marks(&[(0, 0, TAKEN), (60_000, 6, TAKEN)]);
+        marks(&[(0, 0, TAKEN), (4_000, 30, LATER), (4_900, 0, TAKEN), (5_400, 30, LATER)]);
+        marks(&[(0, 0, TAKEN), (500, 30, LATER), (4_800, 40, LATER)]);
     }
 
     #[test]

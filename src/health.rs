@@ -63,6 +63,10 @@ pub enum Refusal {
     Overlooked = 26,
     /// A synchronisation that came later than the unit's own clock allows ([`Clock`](crate::clock::Clock)).
     SyncLate = 27,
+    /// A synchronisation that came earlier than the unit's own clock allows ([`Clock`](crate::clock::Clock)).
+    SyncEarly = 28,
+    /// Not a refusal of a message: a peer's clock that is ahead of GNSS time, or perhaps behind it; once for every 5 s.
+    PeerClock = 29,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -98,7 +102,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 30] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -127,6 +131,8 @@ impl Refusal {
         Self::OffRoute,
         Self::Overlooked,
         Self::SyncLate,
+        Self::SyncEarly,
+        Self::PeerClock,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -161,6 +167,8 @@ impl Refusal {
             Self::OffRoute => "off_route",
             Self::Overlooked => "overlooked",
             Self::SyncLate => "sync_late",
+            Self::SyncEarly => "sync_early",
+            Self::PeerClock => "peer_clock",
         }
     }
 }

@@ -292,12 +292,28 @@ fn a_synchronisation_that_was_long_on_its_way() {
 }
 
 #[test]
+fn a_synchronisation_that_is_ahead() {
+    is_refused(Refusal::SyncEarly, |unit, traffic| {
+        let before = Traffic { offset: traffic.offset.minus(Duration::from_micros(60_000)), ..traffic.clone() };
+        let (now, sequence) = (traffic.now(), traffic.sequence);
+        let ahead = before.gnss(now).as_micros();
+        let sync = Sync { sequence, seconds: u32::try_from(ahead / 1_000_000).expect("before 2116") };
+        let follow_up = FollowUp { sequence, micros: (ahead % 1_000_000) as u32 };
+        let frames = [traffic.frames(&Message::Sync(sync)), traffic.frames(&Message::FollowUp(follow_up))].concat();
+        let results = receive_all(unit, now, &frames);
+        assert_eq!(results[0], Ok(Reception::Taken));
+        results[1]
+    });
+}
+
+#[test]
 fn a_follow_up_of_another_sync_message_which_does_not_spoil_the_right_one() {
     let (mut unit, mut traffic) = settled();
-    let now = traffic.now();
-    let sync = traffic.frames(&Message::Sync(Sync { sequence: 14, seconds: 1_500_000_000 }))[0];
+    let (now, time) = (traffic.now(), traffic.gnss(traffic.now()).as_micros());
+    let (seconds, micros) = (u32::try_from(time / 1_000_000).expect("before 2116"), (time % 1_000_000) as u32);
+    let sync = traffic.frames(&Message::Sync(Sync { sequence: 14, seconds }))[0];
     let wrong = traffic.frames(&Message::FollowUp(FollowUp { sequence: 15, micros: 7 }))[0];
-    let right = traffic.frames(&Message::FollowUp(FollowUp { sequence: 14, micros: 7 }))[0];
+    let right = traffic.frames(&Message::FollowUp(FollowUp { sequence: 14, micros }))[0];
     let results = receive_all(&mut unit, now, &[sync, wrong, right, right]);
     let taken = Ok(Reception::Taken);
     assert_eq!(results, [taken, Err(Refusal::SyncSequence), taken, Err(Refusal::Repeated)]);

@@ -19,7 +19,7 @@ use rig::{EGO, Rig, Unit, instant, mps, mps2};
 
 /// What a refusal may change: the receiver has the end-to-end state and the parts under way, a suspect is evidence, and so is
 /// whose a slot may be, with what was said of a place that no motion has confirmed.
-const MAY_CHANGE: [&str; 5] = ["receiver", "health", "suspects", "agreed", "is_disputed"];
+const MAY_CHANGE: [&str; 6] = ["receiver", "health", "suspects", "agreed", "is_disputed", "sender_clock"];
 
 /// All that a unit holds, as text, without what a refusal may change.
 fn snapshot(unit: &Unit, cause: Refusal) -> String {
@@ -40,7 +40,8 @@ fn snapshot(unit: &Unit, cause: Refusal) -> String {
         // Of a synchronisation in two steps the first is used up by the second, and the doubt is the evidence.
         let is_doubt_of_time = cause.name().starts_with("sync_") && ["mark", "doubted"].contains(&name);
         // Who is too far away to be driven by is known to be there all the same.
-        let is_far = cause == Refusal::TooFar && name == "bound";
+        // By a sender's clock that is found to be ahead less is certain.
+        let is_far = matches!(cause, Refusal::TooFar | Refusal::Future) && ["bound", "course"].contains(&name);
         let is_waiting = axes.is_some() && name == "tie";
         if MAY_CHANGE.contains(&name) || is_doubt_of_time || is_far || is_waiting {
             skipped = line.ends_with(['{', '(', '[']).then_some(depth);

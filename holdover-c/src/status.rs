@@ -131,6 +131,10 @@ pub enum Status {
     RefusedOverlooked = -90,
     /// A synchronisation that came later than the unit's own clock allows.
     RefusedSyncLate = -91,
+    /// A synchronisation that came earlier than the unit's own clock allows.
+    RefusedSyncEarly = -92,
+    /// Not a refusal of a frame: a peer's clock is off.
+    RefusedPeerClock = -93,
 }
 
 impl From<ConfigError> for Status {
@@ -186,6 +190,8 @@ impl From<Refusal> for Status {
             Refusal::OffRoute => Self::RefusedOffRoute,
             Refusal::Overlooked => Self::RefusedOverlooked,
             Refusal::SyncLate => Self::RefusedSyncLate,
+            Refusal::SyncEarly => Self::RefusedSyncEarly,
+            Refusal::PeerClock => Self::RefusedPeerClock,
         }
     }
 }
@@ -250,6 +256,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedOffRoute, c"refused: off_route"),
     (Status::RefusedOverlooked, c"counted: overlooked"),
     (Status::RefusedSyncLate, c"refused: sync_late"),
+    (Status::RefusedSyncEarly, c"refused: sync_early"),
+    (Status::RefusedPeerClock, c"counted: peer_clock"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

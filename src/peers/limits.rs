@@ -64,9 +64,14 @@ impl Limits {
     /// What is certain by a sample or a sight, of the instant from which on the limits of now hold or a later one.
     #[must_use]
     pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
-        let is_before = at.minus(doubt.earlier) < self.since;
-        let reach = if is_before { &self.before } else { &self.now };
-        self.settled(&Bound::around(at, position, speed, doubt, reach))
+        let reach = self.from(at.minus(doubt.earlier));
+        self.settled(&Bound::around(at, position, speed, doubt, &reach))
+    }
+
+    /// The hardest that hold from an instant on.
+    #[must_use]
+    pub fn from(&self, at: Instant) -> Reach {
+        if at < self.since { self.before } else { self.now }
     }
 }
 

@@ -4,14 +4,17 @@
 //! [`timely`] and [`Track::judge`]; what comes from another station or from too far away, by the unit. Judging changes
 //! nothing; what is admitted is changed by [`Track::admit`] alone.
 
+mod drift;
 mod limits;
 mod link;
 pub mod plausibility;
 mod sample;
+mod sender_clock;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
 pub use sample::{Sample, timely};
+pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
 use crate::health::Refusal;

@@ -3,8 +3,9 @@
 //!
 //! What is certain is the [`Bound`] carried on from all believed samples. A sample that contradicts it cannot come from a
 //! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Refusal::Jump`], or
-//! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). So a speed that does not
-//! fit the positions is found as soon as they have drifted apart by more than the published accuracies. An acceleration
+//! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). A speed that does not fit the
+//! positions over many samples is implausible too, as soon as they have drifted apart by more than the published accuracies
+//! ([`Course`]); for half a second at most, as after that the course begins anew. An acceleration
 //! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
 //!
 //! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
@@ -16,7 +17,9 @@
 //! forgiven, for 160 at the most, 16 s.
 
 use super::Sample;
+use super::drift::Course;
 use super::limits::Limits;
+use super::sender_clock::Off;
 use crate::config::Link;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
@@ -33,6 +36,8 @@ use crate::units::Distance;
 pub struct Certainty {
     bound: Option<Bound>,
     suspects: Option<Suspects>,
+    /// Where it is by all its positions and speeds.
+    course: Option<Course>,
     /// Recoveries that are not forgiven.
     strikes: u8,
     /// Samples in a row that agreed.
@@ -68,6 +73,21 @@ pub enum Belief {
     Recovered,
 }
 
+/// What a sample is judged by.
+#[derive(Clone, Copy, Debug)]
+pub struct Grounds {
+    /// What is certain of its sender by it alone.
+    pub around: Bound,
+    /// What is uncertain about it.
+    pub doubt: Doubt,
+    /// How fast its sender can change its speed.
+    pub reach: Reach,
+    /// The hardest that it could since the sample before.
+    pub from_last: Reach,
+    /// With which messages come.
+    pub period: Duration,
+}
+
 /// What is made of a sample, before anything is changed by it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
@@ -79,7 +99,7 @@ pub struct Judgement {
 
 impl Certainty {
     /// Nothing is certain.
-    pub const NONE: Self = Self { bound: None, suspects: None, strikes: 0, agreed: 0 };
+    pub const NONE: Self = Self { bound: None, suspects: None, course: None, strikes: 0, agreed: 0 };
 
     /// The bound, if there is one.
     #[must_use]
@@ -91,12 +111,18 @@ impl Certainty {
     pub fn shift(&mut self, way: Distance) {
         self.bound = self.bound.map(|bound| bound.shifted(way));
         self.suspects = self.suspects.map(|held| Suspects { bound: held.bound.shifted(way), ..held });
+        self.course = self.course.map(|course| course.shifted(way));
     }
 
     /// All of it is carried on to the instant from which on the limits of now hold.
     pub fn settle(&mut self, limits: &Limits) {
         self.bound = self.bound.map(|bound| limits.settled(&bound));
         self.suspects = self.suspects.map(|held| Suspects { bound: limits.settled(&held.bound), ..held });
+    }
+
+    /// This alone is certain.
+    pub fn restart(&mut self, bound: Bound) {
+        (self.bound, self.suspects, self.course) = (Some(bound), None, None);
     }
 
     /// Narrows the bound by something else that is certain; whether they agree.
@@ -111,29 +137,15 @@ impl Certainty {
         }
     }
 
-    /// Judges a sample that is newer than all before, `last` being the one before it, of messages that come with this period,
-    /// by what is certain `around` it: believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
+    /// Judges a sample that is newer than all before, `last` being the one before it: believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
     #[must_use]
-    pub fn judge(
-        mut self,
-        sample: &Sample,
-        last: Option<&Sample>,
-        around: Bound,
-        reach: &Reach,
-        period: Duration,
-    ) -> Judgement {
-        let verdict = self.weigh(sample, last, around, reach, period);
+    pub fn judge(mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Judgement {
+        let verdict = self.weigh(sample, last, grounds);
         Judgement { certainty: self, verdict }
     }
 
-    fn weigh(
-        &mut self,
-        sample: &Sample,
-        last: Option<&Sample>,
-        around: Bound,
-        reach: &Reach,
-        period: Duration,
-    ) -> Result<Belief, Refusal> {
+    fn weigh(&mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Result<Belief, Refusal> {
+        let Grounds { around, doubt, reach, from_last, period } = grounds;
         if self.suspects.is_some_and(|suspects| suspects.stamp == sample.stamp) {
             return Err(Refusal::Duplicate);
         }
@@ -142,17 +154,20 @@ impl Certainty {
             return Err(Refusal::Implausible);
         }
         let Some(bound) = &self.bound else {
-            self.bound = Some(around);
+            self.bound = Some(*around);
+            self.course = Course::after(None, None, sample, doubt, reach).unwrap_or_default();
             return Ok(Belief::Agrees);
         };
-        if let Some(both) = bound.and(&around, reach) {
+        if let Some(both) = bound.and(around, reach) {
+            // Its place is certain all the same, so that this is no evidence of another one.
+            self.course = Course::after(self.course.as_ref(), last, sample, doubt, from_last)?;
             self.agree(both);
             return Ok(Belief::Agrees);
         }
         self.agreed = 0;
-        let refusal = name(bound, &around, sample, last, reach);
-        let first = Suspects { bound: around, count: 1, counted: sample.at, stamp: sample.stamp };
-        let suspects = self.suspects.and_then(|held| held.joined_by(&first, reach, period)).unwrap_or(first);
+        let refusal = name(bound, around, sample, last, reach);
+        let first = Suspects { bound: *around, count: 1, counted: sample.at, stamp: sample.stamp };
+        let suspects = self.suspects.and_then(|held| held.joined_by(&first, reach, *period)).unwrap_or(first);
         if suspects.count >= RECOVERY_SAMPLES.wrapping_shl(self.strikes.into()) {
             let strikes = self.strikes.saturating_add(1).min(MOST_STRIKES);
             *self = Self { bound: Some(suspects.bound), strikes, ..Self::NONE };
@@ -198,12 +213,13 @@ fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, r
     }
 }
 
-/// What is uncertain about a sample.
+/// What is uncertain about a sample of a sender whose clock is that far off.
 #[must_use]
-pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link) -> Doubt {
+pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link, off: Off) -> Doubt {
     let (earlier, later) = if is_synchronised {
         // However the clocks are off, it was taken before it was received.
-        (link.clock_error, link.clock_error.min(sample.received.since(sample.at)))
+        let (earlier, later) = off.doubt();
+        (link.clock_error.plus(earlier), link.clock_error.plus(later).min(sample.received.since(sample.at)))
     } else {
         // It was taken for as old as the assumed delay, and may be of any age up to the largest.
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)

@@ -4,8 +4,10 @@ use heapless::Vec;
 
 use super::limits::Limits;
 use super::link::Link;
-use super::plausibility::{Belief, Certainty, Judgement};
+use super::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
 use super::sample::Sample;
+use super::sender_clock::{Off, SenderClock};
+use crate::config::Link as Settings;
 use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::held::Held;
@@ -34,6 +36,7 @@ pub struct Track<const SAMPLES: usize> {
     limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
+    sender_clock: SenderClock,
     is_disputed: bool,
 }
 
@@ -48,6 +51,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
+            sender_clock: SenderClock::NEW,
             is_disputed: false,
         }
     }
@@ -87,6 +91,16 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub fn reach(&self) -> Reach {
         self.limits.as_ref().map_or(Reach::WORST, Limits::now)
+    }
+
+    /// What a sample is judged by.
+    #[must_use]
+    pub fn grounds(&self, around: Bound, doubt: Doubt, period: Duration) -> Grounds {
+        let from_last = match (self.limits.as_ref(), self.newest()) {
+            (Some(limits), Some(last)) => limits.from(last.at.minus(doubt.earlier)),
+            _ => self.reach(),
+        };
+        Grounds { around, doubt, reach: self.reach(), from_last, period }
     }
 
     /// What is certain of it by a sample, or by what another sensor saw of it.
@@ -133,6 +147,30 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.link
     }
 
+    /// How far its clock is off.
+    #[must_use]
+    pub fn clock_off(&self) -> Off {
+        self.sender_clock.off()
+    }
+
+    /// Takes note of when a motion of the station was received and stamped, on clocks that are off by `limits.clock_error` at the
+    /// most; whether its clock is found to be off, once for each window. What was certain by stamps that were believed too much is
+    /// so no more.
+    pub fn hear_clock(&mut self, received: Instant, stamped: Instant, limits: &Settings) -> bool {
+        let before = self.clock_off();
+        let begins = self.sender_clock.hear(received, stamped, limits.clock_error, limits.period);
+        let off = self.clock_off();
+        let ((earlier, later), (earlier_before, later_before)) = (off.doubt(), before.doubt());
+        if (earlier > earlier_before || later > later_before)
+            && let Some(newest) = self.newest().copied()
+        {
+            let newest = Sample { at: off.corrected(newest.at), ..newest };
+            let doubt = doubt(&newest, true, limits, off);
+            self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &doubt));
+        }
+        off != Off::No && (begins || before == Off::No)
+    }
+
     /// Whether another station spoke last in the slot, and was refused. Motions alone name their station: what else comes in the
     /// slot is not this one's then.
     #[must_use]
@@ -166,7 +204,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
             let around = self.around(sample.at, sample.position, sample.speed, doubt);
-            return self.certainty.judge(sample, self.newest(), around, &self.reach(), period);
+            return self.certainty.judge(sample, self.newest(), &self.grounds(around, *doubt, period));
         }
         let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
         verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })

@@ -9,8 +9,8 @@ use crate::coordination::Axis;
 use crate::estimator::bound::{Bound, Reach};
 use crate::health::Refusal;
 use crate::parameters::REACH;
-use crate::peers::plausibility::{Certainty, Judgement, doubt};
-use crate::peers::{Admission, Sample, Track, timely};
+use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
+use crate::peers::{Admission, Off, Sample, Track, timely};
 use crate::time::Instant;
 use crate::units::Distance;
 use crate::wire::motion::Motion;
@@ -68,9 +68,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let holder = self.peers.get(index).ok_or(Refusal::UnknownSlot)?.station();
         let plan = self.plan(at, index, holder, motion);
         let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
+        let is_own = holder == Some(motion.station);
         match (verdict, plan) {
             (Ok(()), Ok(plan)) => self.carry_out(index, &plan),
-            (_, plan) => self.note_refused(index, holder == Some(motion.station), plan.ok()),
+            (_, plan) => self.note_refused(index, is_own, plan.ok()),
+        }
+        // Who is ahead is refused before it has a slot of its own.
+        if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Refusal::Future)) {
+            self.note_clock(at, index, motion);
         }
         verdict
     }
@@ -79,6 +84,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let link = &self.config.link;
         let seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
+        let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
+        let off = own.filter(|_| self.is_synchronised(at)).map_or(Off::No, Track::clock_off);
+        let stamped = off.corrected(stamped);
         timely(stamped, at, link.stale, link.future)?;
         let placed = self.place_motion(index, motion);
         let track = self.peers.get(index).filter(|_| !seat.is_taken_over);
@@ -128,15 +136,28 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Judges a sample by what is held of its station, if anything is.
+    ///
+    /// One that is too far away is refused, and nobody is driven by; but where a station is that was near is known by it all the
+    /// same, if it agrees with what is certain: or else who is long gone would be taken to stand where it was heard last.
     fn judge(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
         let held = track.map_or(Certainty::NONE, |track| *track.certainty());
-        let is_too_far =
-            self.ego.as_ref().is_some_and(|ego| sample.position.ahead_of(ego.position).magnitude() > REACH);
-        if is_too_far {
-            return Judgement { certainty: held, verdict: Err(Refusal::TooFar) };
+        let judgement = self.weigh(track, sample, placed);
+        let ego = self.ego.as_ref().map(|ego| ego.position);
+        if ego.is_none_or(|ego| sample.position.ahead_of(ego).magnitude() <= REACH) {
+            return judgement;
         }
+        let is_known = !placed.is_elsewhere() && track.is_some_and(|track| track.newest().is_some());
+        let certainty = match judgement.verdict {
+            Ok(Belief::Agrees) if is_known => judgement.certainty,
+            _ => held,
+        };
+        Judgement { certainty, verdict: Err(Refusal::TooFar) }
+    }
+
+    fn weigh(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
+        let off = track.map_or(Off::No, Track::clock_off);
+        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link, off);
         let period = self.config.link.period;
-        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link);
         match track {
             // On the axis as it was, on which everything is that is held.
             Some(track) if !placed.is_elsewhere() => {
@@ -149,7 +170,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                     Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
                     None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
                 };
-                let judgement = Certainty::NONE.judge(sample, None, around, &reach, period);
+                let grounds = Grounds { around, doubt, reach, from_last: reach, period };
+                let judgement = Certainty::NONE.judge(sample, None, &grounds);
+                let held = track.map_or(Certainty::NONE, |track| *track.certainty());
                 if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
             }
         }
@@ -196,6 +219,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         track.dispute();
         if let Some(axis) = self.coordination.axis_mut(index) {
             axis.dispute();
+        }
+    }
+
+    /// Takes note of what a motion says of its sender's clock.
+    fn note_clock(&mut self, at: Instant, index: usize, motion: &Motion) {
+        let Some(stamped) = self.instant_of(motion.stamp, at) else { return };
+        let Some(track) = self.peers.get_index_mut(index) else { return };
+        if track.hear_clock(at, stamped, &self.config.link) {
+            self.health.count(Refusal::PeerClock);
         }
     }
 

@@ -1,0 +1,119 @@
+//! Drift: a station's samples, one after the other, enter; whether its positions fit its speeds over all of them leaves.
+//!
+//! Where a vehicle is follows from where it was and from the speeds between: the mean of the speeds at both ends of a gap, and to
+//! either side what both may be off, and the bulge of the fastest way from one speed to the other over the limits. So the place
+//! is known within an interval that is carried on from sample to sample and cut by each sample's own; a sample that leaves
+//! nothing of it does not fit. Cutting it each time is as much as comparing any sample with any before it.
+//!
+//! With the accelerations `a` and `-b` at the most, the bulge over a gap of `T` between speeds of the slope `s` is
+//! `(a - s) (b + s) / (a + b) · T²/2`. What is off of both speeds counts fully and not twice: where one end were off by less the
+//! bulge would grow, but by less than the mean falls, as long as `-b <= s <= a`.
+//!
+//! So a drift is found that is faster than the published accuracy of the speed and `a b / (a + b) · T/2` together, 0.1 m/s for a
+//! car of 2.5 and 8 m/s² that is heard at 10 Hz, and it is found when it has made up twice the accuracy of the position with
+//! what it is faster. A slower one is none, by what the station says of itself.
+
+use super::Sample;
+use crate::estimator::bound::{Doubt, Reach};
+use crate::fixed::{quotient, saturate_i32};
+use crate::health::Refusal;
+use crate::parameters::{SPEED_ROUNDING, UNPUBLISHED_SPEED_ACCURACY};
+use crate::time::Duration;
+use crate::units::{Acceleration, Distance, Position, Speed};
+
+/// Over a longer gap the bulge says nothing any more, and the course begins anew.
+const LONGEST_GAP: Duration = Duration::from_millis(500);
+/// Where it is less certain than this when a sample was true, as without synchronisation, there is no course.
+const LEAST_CERTAIN: Duration = Duration::from_millis(20);
+/// What fixed-point arithmetic loses over a gap, and much more.
+const ROUNDING: Distance = Distance::from_bits(16);
+
+/// The interval in which a station is, at the stamp of its newest sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Course {
+    low: Position,
+    high: Position,
+}
+
+impl Course {
+    /// By one sample alone.
+    fn of(sample: &Sample, doubt: &Doubt, off: Speed) -> Self {
+        let moved = sample.speed.plus(off).over(uncertain(doubt).seconds());
+        let off = doubt.position.plus(moved).plus(ROUNDING);
+        Self { low: sample.position.ahead(off.negated()), high: sample.position.ahead(off) }
+    }
+
+    /// The same that far ahead.
+    #[must_use]
+    pub fn shifted(&self, way: Distance) -> Self {
+        Self { low: self.low.ahead(way), high: self.high.ahead(way) }
+    }
+
+    /// The course after a sample, from that at the sample before it; `None` where it begins anew with the next.
+    ///
+    /// # Errors
+    /// [`Refusal::Implausible`]: nothing is left of it, and the positions do not fit the speeds.
+    pub fn after(
+        held: Option<&Self>,
+        last: Option<&Sample>,
+        sample: &Sample,
+        doubt: &Doubt,
+        reach: &Reach,
+    ) -> Result<Option<Self>, Refusal> {
+        if uncertain(doubt) > LEAST_CERTAIN {
+            return Ok(None);
+        }
+        let off = off(sample, doubt, reach);
+        let own = Self::of(sample, doubt, off);
+        let (Some(held), Some(last)) = (held, last) else { return Ok(Some(own)) };
+        let gap = sample.at.since(last.at);
+        if gap <= Duration::ZERO || gap > LONGEST_GAP {
+            return Ok(Some(own));
+        }
+        let off_before = self::off(last, doubt, reach);
+        let mean =
+            |one: Speed, other: Speed| Speed::from_bits(one.to_bits() / 2).plus(Speed::from_bits(other.to_bits() / 2));
+        let way = mean(last.speed, sample.speed).over(gap.seconds());
+        let slope = (off == off_before).then(|| slope(last.speed, sample.speed, gap));
+        let either = mean(off_before, off).over(gap.seconds()).plus(bulge(reach, slope, gap)).plus(ROUNDING);
+        let low = held.low.ahead(way).ahead(either.negated()).max(own.low);
+        let high = held.high.ahead(way).ahead(either).min(own.high);
+        if low <= high { Ok(Some(Self { low, high })) } else { Err(Refusal::Implausible) }
+    }
+}
+
+/// How far from its stamp a sample may have been true, either way.
+fn uncertain(doubt: &Doubt) -> Duration {
+    doubt.earlier.max(doubt.later)
+}
+
+/// How far off the speed at the stamp may be.
+fn off(sample: &Sample, doubt: &Doubt, reach: &Reach) -> Speed {
+    let hardest = reach.acceleration.max(reach.braking);
+    let accuracy = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
+    accuracy.plus(hardest.over(uncertain(doubt).fine_seconds()))
+}
+
+/// Of 15 fraction bits, rounded up: sums and products of a few of them stay below 2⁶³.
+fn coarse(acceleration: Acceleration) -> i64 {
+    i64::from(acceleration.to_bits()).saturating_add(1023) >> 10
+}
+
+/// The slope from one speed to another, in m/s² of 15 fraction bits.
+fn slope(from: Speed, to: Speed, gap: Duration) -> i64 {
+    let gained = i64::from(to.to_bits()).saturating_sub(from.to_bits().into());
+    quotient(gained.saturating_mul(1_000_000), gap.as_micros().max(1)) >> 8
+}
+
+/// How much farther, or less far, than by the mean of its speeds a vehicle may get in a gap; the most for any slope if that is not
+/// known.
+fn bulge(reach: &Reach, slope: Option<i64>, gap: Duration) -> Distance {
+    let (a, b) = (coarse(reach.acceleration), coarse(reach.braking));
+    let steepest = a.saturating_sub(b) / 2;
+    let s = slope.unwrap_or(steepest).clamp(b.saturating_neg(), a);
+    let product = a.saturating_sub(s).saturating_mul(b.saturating_add(s));
+    let height = quotient(product, a.saturating_add(b).max(1)).saturating_add(2);
+    let gained = Acceleration::from_bits(saturate_i32(height.saturating_mul(1 << 10))).over(gap.fine_seconds());
+    Speed::from_bits(gained.to_bits() / 2).over(gap.seconds()).plus(ROUNDING)
+}

@@ -1,0 +1,78 @@
+//! A peer's clock that is off beyond what is assumed of it: that is found and named, and the truth is inside the bound from then on;
+//! who is only late is not taken for one whose clock is off.
+
+mod rig;
+
+use holdover::health::Refusal;
+use holdover::wire::Said;
+use rig::random::Random;
+use rig::{Rig, TARGET, instant, m_of, mps_of};
+
+/// A vehicle at 15 m/s with its clock so far ahead, in microseconds, and so long under way; the seconds until the truth is inside the
+/// bound for good, the motions taken in the last 20 of 40 s, and how often its clock was named.
+fn heard(ahead: i64, mut delay: impl FnMut(&mut Random) -> i64) -> (f64, u32, u32) {
+    let mut random = Random::new(7);
+    let mut rig = Rig::new(&rig::config());
+    rig.power_up(true, 0);
+    for at in [-60_000, -50_000, -40_000] {
+        let _ = rig.target(at, Said::Intent(rig::intent(2.5, 8.0)));
+    }
+    let mut under_way = Vec::new();
+    let (mut outside, mut taken) = (0.0, 0);
+    for n in 0..4_000i64 {
+        let now = n * 10_000;
+        if n % 50 == 0 {
+            rig.synchronise(now, 0);
+        }
+        let truth = 500.0 + 15.0 * now as f64 * 1e-6;
+        if n % 10 == 0 {
+            let motion = rig.motion(TARGET, now + ahead, truth, 15.0, 0.0, 0.0, Some((0.3, 0.1)));
+            under_way.push((now + delay(&mut random), motion));
+        }
+        under_way.sort_by_key(|(arrives, _)| *arrives);
+        while under_way.first().is_some_and(|(arrives, _)| *arrives <= now) {
+            let (_, motion) = under_way.remove(0);
+            let verdict = rig.target(now, Said::Motion(motion));
+            taken += u32::from(n > 2_000 && verdict.is_ok());
+        }
+        let Some(bound) = rig.unit.bound(2, instant(now)) else { continue };
+        let is_inside = m_of(bound.lowest_position()) <= truth
+            && truth <= m_of(bound.highest_position())
+            && mps_of(bound.lowest_speed()) <= 15.0
+            && 15.0 <= mps_of(bound.highest_speed());
+        if !is_inside {
+            outside = now as f64 * 1e-6;
+        }
+    }
+    (outside, taken, rig.unit.health().of(Refusal::PeerClock))
+}
+
+#[test]
+fn who_is_ahead_is_heard_after_five_messages_and_the_truth_is_inside_its_bound() {
+    for (ahead, delay) in [(20_000, 5_000), (60_000, 1_000), (150_000, 80_000)] {
+        let (outside, taken, named) = heard(ahead, |_| delay);
+        assert!(outside <= 1.0, "{ahead}: {outside} s");
+        assert!(taken > 190, "{ahead}: {taken}");
+        assert!((7..=9).contains(&named), "{ahead}: {named}");
+    }
+    // Under way for any time up to 80 ms, some are ahead and some are not.
+    let (outside, taken, named) = heard(30_000, |random| random.between(0.0, 80_000.0) as i64);
+    assert!(outside <= 5.0 && taken > 190 && named > 5, "{outside} {taken} {named}");
+}
+
+#[test]
+fn who_is_behind_is_named_after_a_window_and_the_truth_is_inside_its_bound() {
+    for (behind, delay) in [(300_000, 5_000), (150_000, 20_000), (1_000_000, 0)] {
+        let (outside, taken, named) = heard(-behind, |_| delay);
+        assert!(outside <= 5.5, "{behind}: {outside} s");
+        assert!(taken > 190 && (6..=8).contains(&named), "{behind}: {taken} {named}");
+    }
+}
+
+#[test]
+fn who_is_only_late_by_turns_is_not_taken_for_behind() {
+    for spread in [0.0, 50_000.0, 200_000.0] {
+        let (outside, taken, named) = heard(0, |random| 20_000 + random.between(0.0, spread) as i64);
+        assert!(outside == 0.0 && taken > 100 && named == 0, "{spread}: {outside} {taken} {named}");
+    }
+}
