@@ -105,7 +105,8 @@ fn peer(scenario: &Scenario, random: &mut Random, braking: f64, speed: f64, blin
     let length = random.one_of(&[4.8, 4.8, 2.5, 12.0]);
     let uncertain = 2.0 * (sensor.position + ego.sensor.position) + (sensor.speed + ego.sensor.speed) * 4.0;
     let safe = safe_gap(ego.speed + 1.0, speed, braking, 8.0, lag, blind);
-    let gap = safe.max(ego.speed * ego.gap + 2.0) + uncertain;
+    let closes = (ego.speed + 0.5 - speed).max(0.0) * (ego.engages + 0.2);
+    let gap = safe.max(ego.speed * ego.gap + 2.0) + uncertain + closes;
     Peer {
         station: 2,
         slot: random.below(8) as u8,
@@ -156,8 +157,21 @@ fn lorry(scenario: &mut Scenario, random: &mut Random) {
     lorry.length = (lorry.length * 100.0).floor() / 100.0;
     lorry.pulling = random.between(0.5, 2.0);
     lorry.ahead += lorry.length;
+    scenario.ego.gap = random.one_of(&[1.0, 1.0, 1.6]);
+    // It brakes to a stand when the ego has come near, and perhaps has just fallen silent.
+    let closing = scenario.ego.speed - speed;
+    let after = if closing > 2.0 { (lorry.ahead - lorry.length) / closing } else { random.between(5.0, 15.0) };
+    let at = (after * random.between(0.6, 1.2)).clamp(scenario.ego.engages + 1.0, 30.0);
+    scenario.ego.wanted = scenario.ego.wanted.max(scenario.ego.speed + 3.0);
+    scenario.event.push(Event { at, what: What::Drive { peer: 0, demand: -99.0 } });
+    if random.chance(0.7) {
+        let seconds = random.between(2.0, 15.0);
+        scenario.event.push(Event { at: at - random.between(0.0, 2.0), what: What::Mute { peer: 0, seconds } });
+    }
     scenario.peer.push(lorry);
-    manoeuvre::drive(scenario, random, 0, 1.0);
+    if random.chance(0.5) {
+        manoeuvre::drive(scenario, random, 0, 1.0);
+    }
     manoeuvre::disturb(scenario, random, 0, 2);
 }
 
@@ -218,6 +232,10 @@ fn silence(scenario: &mut Scenario, random: &mut Random) {
             },
         };
         scenario.event.push(Event { at, what });
+        if random.chance(0.4) {
+            let brakes = at + random.between(0.1, 2.0);
+            scenario.event.push(Event { at: brakes, what: What::Drive { peer: 0, demand: -99.0 } });
+        }
         at += seconds + random.between(1.0, 10.0);
     }
 }

@@ -18,6 +18,11 @@ pub fn drive(scenario: &mut Scenario, random: &mut Random, peer: usize, often: f
             _ => 0.0,
         };
         scenario.event.push(Event { at, what: What::Drive { peer, demand } });
+        if demand == HARDEST && random.chance(0.3) {
+            // Just when nobody hears it.
+            let seconds = random.between(1.0, 12.0);
+            scenario.event.push(Event { at: at - random.between(0.0, 0.3), what: What::Mute { peer, seconds } });
+        }
         // After a while it does something about its standing there.
         let next = random.exponential(4.0 / often) + 0.2;
         if demand == HARDEST && random.chance(0.6) {

@@ -62,7 +62,8 @@ const SIMPLER: &[&dyn Fn(&mut Scenario)] = &[
     &|s| s.bus.loss = 0.0,
     &|s| s.bus.twice = 0.0,
     &|s| s.bus.jitter = 0.0,
-    &|s| s.range.fitted = false,
+    // Who has no V2X is to be seen.
+    &|s| s.range.fitted &= s.peer.iter().any(|p| p.station == 0),
     &|s| s.range.misses = 0.0,
     &|s| s.ego.drift = 0.0,
     &|s| s.ego.lag_factor = 1.0,

@@ -51,6 +51,7 @@ pub struct World<'a> {
     pub outcome: Outcome,
     /// Whether everything is well, and since when.
     pub well: Option<f64>,
+    engaged: bool,
     follow: u8,
     next_event: usize,
     cutting_in: Vec<usize>,
@@ -84,6 +85,7 @@ impl<'a> World<'a> {
             wanted_before: (scenario.ego.wanted.max(scenario.ego.speed), 0.0),
             outcome: Outcome::default(),
             well: None,
+            engaged: false,
             follow: scenario.follow,
             next_event: 0,
             cutting_in: Vec::new(),
@@ -119,6 +121,7 @@ impl<'a> World<'a> {
             self.ego.start(None);
         }
         self.cut_in(now);
+        self.make_way();
         self.change_slots(now);
         self.ego.ticks_at(now + STEP);
         let is_well = self.well.is_some();
@@ -145,6 +148,7 @@ impl<'a> World<'a> {
         self.put_views(end);
         if self.missed > 0 {
             self.missed -= 1;
+            self.ego.said.told = None;
         } else {
             self.ego.tick(end);
         }
@@ -153,12 +157,17 @@ impl<'a> World<'a> {
 
     /// What the driver does while the unit is in standby.
     fn driver(&self) -> f64 {
-        let speed = self.ego.body.speed;
-        let near = self.others.iter().filter(|other| other.on_lane).any(|other| {
-            let gap = other.rear() - self.ego.body.position;
-            gap > 0.0 && gap < safe_gap(speed, other.body.speed, 12.0, 8.0, 0.3, 0.0)
-        });
-        if near { -3.0 } else { (self.wanted - speed).clamp(-1.0, 0.5) }
+        if self.is_near() { -8.0 } else { (self.scenario.ego.speed - self.ego.body.speed).clamp(-1.0, 0.5) }
+    }
+
+    /// Whether somebody on the lane is so near that it is not known to be safe, whoever it is.
+    fn is_near(&self) -> bool {
+        let (body, lag) = (&self.ego.body, self.scenario.ego.lag * self.scenario.ego.lag_factor);
+        self.others.iter().filter(|other| other.on_lane).any(|other| {
+            let gap = other.rear() - body.position;
+            let braking = if other.station == 0 { 12.0 } else { other.limits.braking };
+            gap > 0.0 && gap < safe_gap(body.speed, other.body.speed, braking, 8.0, lag, 0.15)
+        })
     }
 
     /// What the vehicle itself says in a step, and its driver.
@@ -177,7 +186,9 @@ impl<'a> World<'a> {
             self.ego.sense(now + sensed, &body, times);
         }
         if tick % 10 == 3 {
-            let engaged = now >= self.scenario.ego.engages;
+            // The driver takes care until the unit is engaged, and engages it where that is safe.
+            self.engaged |= now >= self.scenario.ego.engages && !self.is_near();
+            let engaged = self.engaged;
             if self.ego.wish(now + 0.0085, engaged, Some(self.follow), self.wanted, self.scenario.ego.gap) {
                 self.followed = self.follow;
             }
@@ -326,6 +337,17 @@ impl<'a> World<'a> {
                 if self.others[number].station != 0 {
                     self.follow = self.others[number].station;
                 }
+            }
+        }
+    }
+
+    /// Nobody drives through another one: who is about to be hit from behind gets out of the way.
+    fn make_way(&mut self) {
+        for number in 0..self.others.len() {
+            let (position, on_lane) = (self.others[number].body.position, self.others[number].on_lane);
+            for ahead in &mut self.others {
+                let is_hit = on_lane && ahead.body.position > position && ahead.rear() < position + 0.5;
+                ahead.on_lane &= !is_hit;
             }
         }
     }
