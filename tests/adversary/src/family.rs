@@ -55,6 +55,7 @@ fn base(family: Family, seed: u64, random: &mut Random) -> Scenario {
         family,
         broken: None,
         amount: 0.0,
+        shifted: 0.0,
         seed,
         length: random.between(20.0, 45.0),
         epoch: 1_400_000_000_000_000 + (random.bits() % 100_000_000_000_000) as i64,
@@ -89,7 +90,7 @@ fn base(family: Family, seed: u64, random: &mut Random) -> Scenario {
             fitted: random.chance(0.3),
             sees: random.between(80.0, 200.0),
             sensor: Sensor { position: 0.2, speed: 0.2, ..sensor(random) },
-            age: random.between(0.001, 0.06),
+            age: random.between(0.001, 0.04),
             misses: random.one_of(&[0.0, 0.05, 0.3]),
         },
         crossing: Vec::new(),
@@ -151,7 +152,8 @@ fn closing(scenario: &mut Scenario, random: &mut Random) {
 fn lorry(scenario: &mut Scenario, random: &mut Random) {
     let closes = random.chance(0.5);
     let speed = if closes { random.between(2.0, 20.0) } else { scenario.ego.speed };
-    let braking = random.between(2.0, 7.0);
+    let hardest = random.one_of(&[3.5, 7.0]);
+    let braking = random.between(2.0, hardest);
     let mut lorry = peer(scenario, random, braking, speed, 0.4);
     (lorry.length, lorry.intends) = (random.between(8.0, 18.0), true);
     lorry.length = (lorry.length * 100.0).floor() / 100.0;
@@ -161,11 +163,14 @@ fn lorry(scenario: &mut Scenario, random: &mut Random) {
     // It brakes to a stand when the ego has come near, and perhaps has just fallen silent.
     let closing = scenario.ego.speed - speed;
     let after = if closing > 2.0 { (lorry.ahead - lorry.length) / closing } else { random.between(5.0, 15.0) };
-    let at = (after * random.between(0.6, 1.2)).clamp(scenario.ego.engages + 1.0, 30.0);
+    let at = match random.below(2) {
+        0 => scenario.ego.engages + random.between(0.1, 2.5),
+        _ => (after * random.between(0.6, 1.2)).clamp(scenario.ego.engages + 1.0, 30.0),
+    };
     scenario.ego.wanted = scenario.ego.wanted.max(scenario.ego.speed + 3.0);
     scenario.event.push(Event { at, what: What::Drive { peer: 0, demand: -99.0 } });
     if random.chance(0.7) {
-        let seconds = random.between(2.0, 15.0);
+        let seconds = random.between(4.0, 20.0);
         scenario.event.push(Event { at: at - random.between(0.0, 2.0), what: What::Mute { peer: 0, seconds } });
     }
     scenario.peer.push(lorry);

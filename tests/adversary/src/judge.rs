@@ -15,8 +15,6 @@ pub const REFUSED: f64 = 1.0;
 pub const HURRY: (f64, f64) = (1.2, 1.0);
 /// How long a wish of before counts, s.
 const WISHED: f64 = 15.0;
-/// By how much the truth is shifted: a seeded fault, so that it can be shown that it is found.
-pub static SHIFT: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
 
 /// After every tick.
 pub fn judge(world: &mut World, now: f64) {
@@ -47,8 +45,7 @@ fn bound(world: &mut World, now: f64) {
         return;
     };
     world.outcome.checked += 1;
-    let shift = if SHIFT.load(std::sync::atomic::Ordering::Relaxed) { 1.0 } else { 0.0 };
-    let off = wrapped(other.body.position + shift - told.position);
+    let off = wrapped(other.body.position + world.scenario.shifted - told.position);
     let (behind, ahead) = (-told.behind - off, off - told.ahead);
     let faster = other.body.speed - told.speed;
     let (slow, fast) = (-told.slower - faster, faster - told.faster);

@@ -29,7 +29,8 @@ usage: holdover-adversary [--drives N] [--seed N] [--threads N] [--family NAME].
   --replay FILE   runs one that was kept, and says what is found in it
   --help          this
 
-Violations of kept assumptions are printed one on a line: family, drive, seed, time, what. Progress goes to stderr.
+Violations of kept assumptions are printed one on a line: family, drive, seed, time, what at
+first, and in brackets how much at most (m/s of impact or beyond the wish, m outside, s). Progress goes to stderr.
 exit code: 0 everything held; 1 an assumption was kept and something was violated; 2 bad arguments
 ";
 
@@ -143,14 +144,10 @@ fn drive(arguments: &Arguments) -> Result<bool, String> {
 
 fn print_violations(report: &Report, all: bool) {
     let lines = report.violations.iter().flat_map(|violation| {
-        violation.outcome.findings.iter().map(move |Finding { fault, at, text, .. }| {
-            let family = violation.scenario.family.name();
-            format!(
-                "{family:9} drive {:6} seed {:19} {at:7.2} s  {}: {text}",
-                violation.drive,
-                violation.scenario.seed,
-                fault.name()
-            )
+        violation.outcome.findings.iter().map(move |Finding { fault, at, text, amount }| {
+            let (family, seed) = (violation.scenario.family.name(), violation.scenario.seed);
+            let drive = violation.drive;
+            format!("{family:9} drive {drive:6} seed {seed:19} {at:7.2} s  {}: {text} [{amount:.3}]", fault.name())
         })
     });
     let most = if all { usize::MAX } else { 200 };

@@ -261,6 +261,9 @@ pub struct Scenario {
     #[serde(default)]
     #[allow(missing_docs)]
     pub amount: f64,
+    /// How far ahead of itself the checker takes the truth to be, m: a fault of its own, to show that it is found.
+    #[serde(default)]
+    pub shifted: f64,
     /// Of everything that is drawn while it runs.
     pub seed: u64,
     /// How long it lasts, s.

@@ -43,6 +43,17 @@ pub fn shrink(scenario: &Scenario, fault: Fault) -> Scenario {
         }
         size /= 2;
     }
+    for place in (0..best.crossing.len()).rev() {
+        try_it(&mut best, &|s| {
+            s.crossing.remove(place);
+        });
+    }
+    for place in 0..best.crossing.len() {
+        try_it(&mut best, &|s| s.crossing[place].deaf_until = s.crossing[place].deaf_from);
+        try_it(&mut best, &|s| s.crossing[place].rests = 0.0);
+        try_it(&mut best, &|s| s.crossing[place].at = s.crossing[place].at.round());
+        try_it(&mut best, &|s| s.crossing[place].speed = s.crossing[place].speed.round());
+    }
     for change in SIMPLER {
         try_it(&mut best, change);
     }
