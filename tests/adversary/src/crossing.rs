@@ -219,18 +219,18 @@ fn spread(scenario: &Scenario, now: f64, drivers: &mut [Driver], random: &mut Ra
         if frames.is_empty() {
             continue;
         }
-        for to in 0..drivers.len() {
+        for (to, driver) in drivers.iter_mut().enumerate() {
             if to == from {
                 continue;
             }
             let radio = &scenario.radio;
-            if drivers[to].losing[from] > 0 {
-                drivers[to].losing[from] -= 1;
+            if driver.losing[from] > 0 {
+                driver.losing[from] -= 1;
                 continue;
             }
             // Everybody is heard at least once.
             if now > 3.0 && random.chance(radio.loss / radio.burst.max(1.0)) {
-                drivers[to].losing[from] = random.exponential(radio.burst - 0.5).round().max(0.0) as u32;
+                driver.losing[from] = random.exponential(radio.burst - 0.5).round().max(0.0) as u32;
                 continue;
             }
             let arrives = now + radio.delay + random.exponential(radio.jitter).min(0.5);
@@ -238,7 +238,7 @@ fn spread(scenario: &Scenario, now: f64, drivers: &mut [Driver], random: &mut Ra
                 .iter()
                 .enumerate()
                 .map(|(place, (what, data))| (arrives + 1e-5 * place as f64, from, *what, *data));
-            drivers[to].air.extend(air);
+            driver.air.extend(air);
         }
     }
 }

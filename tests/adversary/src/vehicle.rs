@@ -124,7 +124,7 @@ impl Vehicle {
     /// A vehicle as the scenario has it; the unit is not started.
     pub fn new(ego: &Ego, bus: &Bus, epoch: i64, seed: u64, station: u8) -> Self {
         let mut config = Config::car(StationHash(station));
-        config.lag = FineSeconds::from_millis(milli(ego.lag).into());
+        config.lag = FineSeconds::from_millis(milli(ego.lag));
         config.envelope = ego.envelope.then_some(Envelope::CAR);
         if !ego.long {
             config.prediction.horizon = Duration::from_millis(600);
