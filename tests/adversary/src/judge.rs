@@ -75,7 +75,8 @@ fn hurry(world: &mut World, now: f64) {
     let (before, until) = world.wanted_before;
     let wanted = if now < until + WISHED { before.max(world.wanted) } else { world.wanted };
     let speed = world.ego.body.speed;
-    if speed > wanted * HURRY.0 + HURRY.1 {
+    let off = if world.scenario.ego.sensor.speed < 0.0 { 1.5 } else { world.scenario.ego.sensor.speed };
+    if speed > wanted * HURRY.0 + HURRY.1 + off {
         let mode = world.ego.said.mode;
         world
             .outcome

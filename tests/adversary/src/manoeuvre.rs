@@ -41,7 +41,10 @@ pub fn disturb(scenario: &mut Scenario, random: &mut Random, peer: usize, most: 
         let seconds = random.exponential(1.5) + 0.1;
         let what = match random.below(13) {
             0 | 1 => What::Limits { peer, braking: random.between(2.0, 12.0), pulling: random.between(0.5, 5.0) },
-            2 => What::Length { peer, published: scenario.peer[peer].length + random.between(0.0, 5.0) },
+            // A sensor that sees the rear knows the front by the published length.
+            2 if !scenario.range.fitted => {
+                What::Length { peer, published: scenario.peer[peer].length + random.between(0.0, 5.0) }
+            }
             3 => What::Mute { peer, seconds },
             4 => What::Deaf { seconds },
             5 if scenario.radio.tail < 1.8 => What::NoTime { seconds: random.between(0.5, 12.0) },
