@@ -11,6 +11,8 @@ const TOLERANCE: f64 = 0.0006;
 const SPEED_TOLERANCE: f64 = 0.0011;
 /// Honest samples are not refused for longer than this, s.
 pub const REFUSED: f64 = 1.0;
+/// Farther away it may be refused, m.
+const REACH: f64 = 1_400.0;
 /// How much faster than wanted it may get, as a factor and m/s: who follows catches up by up to a fifth.
 pub const HURRY: (f64, f64) = (1.2, 1.0);
 /// How long a wish of before counts, s.
@@ -86,11 +88,13 @@ fn hurry(world: &mut World, now: f64) {
 
 /// Takes note of what became of a motion that a station really sent.
 pub fn note_motion(world: &mut World, at: f64, number: usize, motion: &Motion, verdicts: [Verdict; 2]) {
+    let front = world.ego.body.position;
     let other = &mut world.others[number];
+    let is_far = (other.body.position - front).abs() > REACH;
     let is_newest = motion.stamp > other.newest;
     other.newest = other.newest.max(motion.stamp);
-    // What is incomplete, or was overtaken, or is very old, may be refused.
-    if verdicts.contains(&Verdict::Lost) || !is_newest || at - motion.at > 1.9 {
+    // What is incomplete, or was overtaken, or is very old, or from too far away, may be refused.
+    if is_far || verdicts.contains(&Verdict::Lost) || !is_newest || at - motion.at > 1.9 {
         return;
     }
     if verdicts[1] == Verdict::Taken {
