@@ -1,0 +1,265 @@
+//! Another vehicle, driven by events: its body and limits, what it says, and what of that is still on its way.
+
+use crate::body::Body;
+use crate::random::Random;
+use crate::scenario::{Peer, Radio, Sensor};
+use crate::vehicle::{measured, published};
+use crate::wire::{BOOK, Can, Counters, stamp, wrapped};
+
+/// Published limits, m/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Hardest braking.
+    pub braking: f64,
+    /// Hardest acceleration.
+    pub pulling: f64,
+}
+
+impl Limits {
+    /// As the bus can say them: whoever keeps to what it publishes keeps to these.
+    pub fn new(braking: f64, pulling: f64) -> Self {
+        let steps = |value: f64| (value * 50.0).round() / 50.0;
+        Self { braking: steps(braking), pulling: steps(pulling) }
+    }
+}
+
+/// What is in the air.
+#[derive(Clone, Copy, Debug)]
+pub enum Message {
+    /// Tag, and values as measured.
+    Motion(Motion),
+    /// What it publishes of itself.
+    Intent {
+        /// Of the message.
+        tag: u8,
+        /// How hard it brakes and pulls.
+        limits: Limits,
+        /// Bumper to bumper, m.
+        length: f64,
+    },
+}
+
+/// A motion in the air.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Of the message.
+    pub tag: u8,
+    /// Whose it is.
+    pub station: u8,
+    /// When it was measured, s of true time.
+    pub at: f64,
+    /// As the sender has it, µs.
+    pub stamp: i64,
+    /// As measured.
+    pub position: f64,
+    #[allow(missing_docs)]
+    pub speed: f64,
+    #[allow(missing_docs)]
+    pub acceleration: f64,
+    #[allow(missing_docs)]
+    pub demand: f64,
+    /// What is published of the accuracies.
+    pub sensor: Sensor,
+}
+
+impl Motion {
+    /// As two frames in a slot.
+    pub fn frames(&self, slot: u8, counters: &mut Counters) -> [Can; 2] {
+        let layout = &BOOK.peers[usize::from(slot)].0;
+        let tag = f64::from(self.tag);
+        let a = [tag, wrapped(self.position), stamp(self.stamp), f64::from(self.station)];
+        let accuracies = published(&self.sensor);
+        let b = [tag, self.speed, self.acceleration, self.demand, accuracies.0, accuracies.1];
+        [layout.a.seal(counters, &a), layout.b.seal(counters, &b)]
+    }
+}
+
+/// As three frames in a slot.
+pub fn intent_frames(slot: u8, counters: &mut Counters, tag: u8, limits: &Limits, length: f64) -> [Can; 3] {
+    let layout = &BOOK.peers[usize::from(slot)].1;
+    let tag = f64::from(tag);
+    [
+        layout.who.seal(counters, &[tag, 0.0, length, 2.0, 1.0, 0.0, 30.0]),
+        layout.law.seal(counters, &[tag, 1.0, 1.6, 0.5, 2.0, 0.3]),
+        layout.limits.seal(counters, &[tag, 2.0, limits.pulling, limits.braking.min(4.0), 5.0, limits.braking, 0.0]),
+    ]
+}
+
+/// The vehicle.
+pub struct Other {
+    /// As the scenario has it.
+    pub set_up: Peer,
+    /// Where it is, and where it was a step before, and when that was.
+    pub body: Body,
+    before: Body,
+    since: f64,
+    /// What it is to do, m/s².
+    pub demand: f64,
+    /// Station and slot as they are now.
+    pub station: u8,
+    #[allow(missing_docs)]
+    pub slot: u8,
+    /// Whether it is on the ego's lane.
+    pub on_lane: bool,
+    /// Limits and length that it publishes.
+    pub limits: Limits,
+    #[allow(missing_docs)]
+    pub length: f64,
+    /// Limits that the unit took last.
+    pub known: Option<Limits>,
+    /// It is silent until then.
+    pub mute_until: f64,
+    /// When it was put on the bus last; and, in which slot it was to be before.
+    pub delivered: f64,
+    /// What is on its way, with the time of arrival.
+    pub air: Vec<(f64, Message)>,
+    /// Stamp of the newest motion that was delivered, and since when honest ones are refused, how many.
+    pub newest: i64,
+    #[allow(missing_docs)]
+    pub refused: Option<(f64, u32)>,
+    tag: u8,
+    intent_tag: u8,
+    next_motion: f64,
+    next_intent: f64,
+    losing: u32,
+    last_intent: f64,
+    random: Random,
+}
+
+impl Other {
+    /// As the scenario has it, behind the ego's front bumper at `front`.
+    pub fn new(set_up: &Peer, front: f64, seed: u64, number: usize) -> Self {
+        let mut random = Random::new(seed, 2000 + number as u64);
+        let limits = Limits::new(set_up.braking, set_up.pulling);
+        let body = Body {
+            position: front + set_up.ahead,
+            speed: set_up.speed,
+            acceleration: 0.0,
+            lag: 0.0,
+            braking: limits.braking,
+            pulling: limits.pulling,
+            top: 33.0,
+        };
+        Self {
+            set_up: *set_up,
+            body,
+            before: body,
+            since: 0.0,
+            demand: set_up.demand,
+            station: set_up.station,
+            slot: set_up.slot,
+            on_lane: set_up.on_lane,
+            limits,
+            length: set_up.length,
+            known: None,
+            mute_until: 0.0,
+            delivered: f64::NEG_INFINITY,
+            air: Vec::new(),
+            newest: i64::MIN,
+            refused: None,
+            tag: random.below(4) as u8,
+            intent_tag: random.below(4) as u8,
+            next_motion: set_up.phase,
+            next_intent: set_up.phase + 0.02,
+            losing: 0,
+            last_intent: 0.0,
+            random,
+        }
+    }
+
+    /// Rear bumper.
+    pub fn rear(&self) -> f64 {
+        self.body.position - self.set_up.length
+    }
+
+    /// Moves on from an instant.
+    pub fn drive(&mut self, since: f64, time: f64) {
+        (self.before, self.since) = (self.body, since);
+        self.body.drive(self.demand, time);
+    }
+
+    /// What it is allowed to do: not more than it publishes, nor than the unit was told, nor than anything says that is still on
+    /// its way to the unit. `times` its braking where that assumption is broken.
+    pub fn limit(&mut self, times: f64) {
+        let mut least = self.limits;
+        let in_air = self.air.iter().filter_map(|(_, message)| match message {
+            Message::Intent { limits, .. } => Some(*limits),
+            Message::Motion(_) => None,
+        });
+        for limits in in_air.chain(self.known) {
+            least.braking = least.braking.min(limits.braking);
+            least.pulling = least.pulling.min(limits.pulling);
+        }
+        (self.body.braking, self.body.pulling) = (least.braking * times, least.pulling);
+    }
+
+    /// Says what is due until then.
+    pub fn speak(&mut self, until: f64, epoch: i64, radio: &Radio, times: f64, is_well: bool) {
+        while self.next_motion <= until && self.station != 0 {
+            let at = self.next_motion;
+            self.next_motion += 0.1;
+            let body = self.before.after(self.demand, (at - self.since).max(0.0));
+            self.tag = (self.tag + 1) % 4;
+            let (position, speed) = measured(&self.set_up.sensor, &body, times, &mut self.random);
+            let stamp = epoch + (at * 1e6).round() as i64 + self.set_up.clock.round() as i64;
+            let motion = Motion {
+                tag: self.tag,
+                station: self.station,
+                at,
+                stamp,
+                position,
+                speed,
+                acceleration: body.acceleration,
+                demand: self.demand.clamp(-self.body.braking, self.body.pulling),
+                sensor: self.set_up.sensor,
+            };
+            if let Some(arrives) = self.carry(at, radio, is_well) {
+                self.air.push((arrives, Message::Motion(motion)));
+            }
+        }
+        while self.next_intent <= until && self.station != 0 {
+            let at = self.next_intent;
+            self.next_intent += 0.5;
+            self.intent_tag = (self.intent_tag + 1) % 4;
+            if !self.set_up.intends {
+                continue;
+            }
+            if let Some(arrives) = self.carry(at, radio, is_well) {
+                // Intents have no stamp: the modem hands them on in the order in which they were sent.
+                self.last_intent = self.last_intent.max(arrives) + 1e-4;
+                let intent = Message::Intent { tag: self.intent_tag, limits: self.limits, length: self.length };
+                self.air.push((self.last_intent, intent));
+            }
+        }
+    }
+
+    /// When a message that is sent now arrives, if it does.
+    fn carry(&mut self, at: f64, radio: &Radio, is_well: bool) -> Option<f64> {
+        if at < self.mute_until {
+            return None;
+        }
+        if is_well {
+            return Some(at + radio.delay.min(0.05));
+        }
+        if self.losing > 0 {
+            self.losing -= 1;
+            return None;
+        }
+        if self.random.chance(radio.loss / radio.burst.max(1.0)) {
+            self.losing = self.random.exponential(radio.burst - 0.5).round().max(0.0) as u32;
+            return None;
+        }
+        let late = if self.random.chance(radio.tails) {
+            self.random.between(0.0, radio.tail)
+        } else {
+            self.random.exponential(radio.jitter)
+        };
+        Some(at + (radio.delay + late).min(radio.delay + radio.tail.max(radio.jitter * 6.0)))
+    }
+
+    /// What arrives until then, in order.
+    pub fn arriving(&mut self, until: f64) -> Option<(f64, Message)> {
+        let next = (0..self.air.len()).min_by(|a, b| self.air[*a].0.total_cmp(&self.air[*b].0))?;
+        (self.air[next].0 <= until).then(|| self.air.swap_remove(next))
+    }
+}

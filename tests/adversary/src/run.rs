@@ -1,0 +1,178 @@
+//! Many drives: a seed and a number enter, what was found leaves, the same whatever the number of threads.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use crate::broken::Assumption;
+use crate::family;
+use crate::random::{Random, mix};
+use crate::scenario::{Family, Scenario};
+use crate::verdict::{Fault, Outcome};
+use crate::world;
+
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// How many, kept and broken.
+    pub drives: u64,
+    /// Of everything.
+    pub seed: u64,
+    /// Only these families.
+    pub families: Vec<Family>,
+    /// Whether the other half breaks assumptions; or else all keep them.
+    pub breaks: bool,
+    /// Whether the envelope is on.
+    pub envelope: bool,
+}
+
+/// A drive in which a kept assumption did not help.
+#[derive(Clone, Debug)]
+pub struct Violation {
+    /// Its number.
+    pub drive: u64,
+    /// The drive.
+    pub scenario: Scenario,
+    /// What was found.
+    pub outcome: Outcome,
+}
+
+/// Counts of one row of the table.
+#[derive(Clone, Copy, Debug, Default)]
+#[allow(missing_docs)]
+pub struct Row {
+    pub drives: u64,
+    pub collisions: u64,
+    pub hardest: f64,
+    pub impacts: f64,
+    pub outside: u64,
+    pub refused: u64,
+    pub stuck: u64,
+}
+
+/// All that was found.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Kept drives per family.
+    pub kept: BTreeMap<usize, u64>,
+    /// In the order of the drives.
+    pub violations: Vec<Violation>,
+    /// Per broken assumption.
+    pub broken: BTreeMap<Assumption, Row>,
+    /// Ticks, and those whose bound was checked, of kept drives.
+    pub ticks: u64,
+    #[allow(missing_docs)]
+    pub checked: u64,
+}
+
+/// The drive of that number.
+pub fn scenario(plan: &Plan, drive: u64) -> Scenario {
+    let seed = mix(plan.seed ^ mix(drive)) >> 1;
+    let is_broken = plan.breaks && drive % 2 == 1;
+    let turn = if plan.breaks { drive / 2 } else { drive };
+    let families = &plan.families;
+    let mut scenario = if is_broken {
+        let assumption = Assumption::ALL[(turn % Assumption::ALL.len() as u64) as usize];
+        let family = assumption.family(families, turn / Assumption::ALL.len() as u64);
+        let mut scenario = family::draw(family, seed);
+        assumption.apply(&mut scenario, &mut Random::new(seed, 7));
+        scenario
+    } else {
+        family::draw(families[(turn % families.len() as u64) as usize], seed)
+    };
+    scenario.ego.envelope = plan.envelope;
+    scenario
+}
+
+/// Runs them; `tell` is called with the number of drives that are done.
+pub fn run(plan: &Plan, tell: &(impl Fn(u64) + Sync)) -> Report {
+    let done = AtomicU64::new(0);
+    let outcomes: Vec<_> = (0..plan.drives)
+        .into_par_iter()
+        .map(|drive| {
+            let outcome = one(plan, drive);
+            tell(done.fetch_add(1, Ordering::Relaxed) + 1);
+            outcome
+        })
+        .collect();
+    let mut report = Report::default();
+    for (drive, (family, broken, outcome)) in (0..).zip(outcomes) {
+        if let Some(assumption) = broken {
+            report.broken.entry(assumption).or_default().add(&outcome);
+            continue;
+        }
+        *report.kept.entry(family as usize).or_default() += 1;
+        report.ticks += outcome.ticks;
+        report.checked += outcome.checked;
+        if !outcome.findings.is_empty() {
+            report.violations.push(Violation { drive, scenario: scenario(plan, drive), outcome });
+        }
+    }
+    report
+}
+
+#[inline(never)] // a drive's stack is not to be that of every split
+fn one(plan: &Plan, drive: u64) -> (Family, Option<Assumption>, Outcome) {
+    let scenario = scenario(plan, drive);
+    (scenario.family, scenario.broken, world::run(&scenario))
+}
+
+impl Row {
+    fn add(&mut self, outcome: &Outcome) {
+        self.drives += 1;
+        if let Some(collision) = outcome.of(Fault::Collision) {
+            self.collisions += 1;
+            self.impacts += collision.amount;
+            self.hardest = self.hardest.max(collision.amount);
+        }
+        self.outside += u64::from(outcome.of(Fault::Bound).is_some());
+        self.refused += u64::from(outcome.of(Fault::Refused).is_some());
+        self.stuck += u64::from(outcome.of(Fault::Deadlock).is_some());
+    }
+}
+
+impl Report {
+    /// The table of broken assumptions, in Markdown, per 1,000 drives.
+    pub fn table(&self) -> String {
+        let mut text = String::from(
+            "| what is broken | drives | collisions | mean impact, m/s | hardest, m/s | outside the bound | honest ones refused | does not drive again |\n\
+             |---|---|---|---|---|---|---|---|\n",
+        );
+        for assumption in Assumption::ALL {
+            let Some(row) = self.broken.get(&assumption) else { continue };
+            let per = |count: u64| count as f64 * 1000.0 / row.drives.max(1) as f64;
+            let mean = row.impacts / row.collisions.max(1) as f64;
+            text += &format!(
+                "| {} | {} | {:.1} | {mean:.1} | {:.1} | {:.1} | {:.1} | {:.1} |\n",
+                assumption.says(),
+                row.drives,
+                per(row.collisions),
+                row.hardest,
+                per(row.outside),
+                per(row.refused),
+                per(row.stuck),
+            );
+        }
+        text
+    }
+
+    /// What was found where assumptions are kept, in Markdown, per family and kind.
+    pub fn summary(&self) -> String {
+        let mut text = format!("| family | drives | {} |\n|---|---|", Fault::ALL.map(Fault::name).join(" | "));
+        text += &"---|".repeat(Fault::ALL.len());
+        text.push('\n');
+        for (family, drives) in &self.kept {
+            let family = Family::ALL[*family];
+            text += &format!("| {} | {drives} |", family.name());
+            for fault in Fault::ALL {
+                let of_it = |violation: &&Violation| {
+                    violation.scenario.family == family && violation.outcome.of(fault).is_some()
+                };
+                text += &format!(" {} |", self.violations.iter().filter(of_it).count());
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
