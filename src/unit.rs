@@ -321,9 +321,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 });
                 Course::Law { driver: self.driver(), target: reading }
             }
-            Mode::Fallback { since, .. } => match self.still_known(now, target) {
-                Some(ahead) => Course::Cruise { ahead },
-                None => Course::Caution { since },
+            Mode::Fallback { .. } => match self.still_known(now, target) {
+                Some(ahead) => Course::Cruise { ahead, target_speed: self.target_speed() },
+                None => Course::Caution,
             },
             Mode::Fault { .. } => Course::Brake,
         }
