@@ -155,6 +155,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_OVERLOOKED = -90,
   // A synchronisation that came later than the unit's own clock allows.
   HOLDOVER_REFUSED_SYNC_LATE = -91,
+  // Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
+  HOLDOVER_REFUSED_RANGE_DISAGREES = -92,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -63,6 +63,9 @@ pub enum Refusal {
     Overlooked = 26,
     /// A synchronisation that came later than the unit's own clock allows ([`Clock`](crate::clock::Clock)).
     SyncLate = 27,
+    /// Views of the range sensor that what is certain of the target excludes: once for every contradiction that begins. The unit
+    /// drives by what it sees then.
+    RangeDisagrees = 28,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -98,7 +101,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -127,6 +130,7 @@ impl Refusal {
         Self::OffRoute,
         Self::Overlooked,
         Self::SyncLate,
+        Self::RangeDisagrees,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -161,6 +165,7 @@ impl Refusal {
             Self::OffRoute => "off_route",
             Self::Overlooked => "overlooked",
             Self::SyncLate => "sync_late",
+            Self::RangeDisagrees => "range_disagrees",
         }
     }
 }

@@ -25,11 +25,9 @@ mod foresee;
 mod inbox;
 mod outbox;
 mod range;
+mod sight;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
-
-/// A view of the range sensor older than this is not driven by.
-const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// The onboard unit for up to `PEERS` peers with a history of `SAMPLES` samples each and horizons of up to `STEPS` steps.
 ///
@@ -50,7 +48,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     mode: Mode,
     health: Health,
     outbox: outbox::Outbox,
-    ranging: range::Ranging,
+    ranging: sight::Ranging,
     coordination: Coordination<PEERS>,
     last_tick: Option<Instant>,
 }
@@ -74,7 +72,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             mode: Mode::Standby,
             health: Health::new(),
             outbox: outbox::Outbox::new(),
-            ranging: range::Ranging::new(),
+            ranging: sight::Ranging::new(),
             coordination: Coordination::idle(),
             last_tick: None,
         }
@@ -101,7 +99,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.mode = Mode::Standby;
         self.health = Health::new();
         self.outbox = outbox::Outbox::new();
-        self.ranging = range::Ranging::new();
+        self.ranging = sight::Ranging::new();
         self.coordination.reset();
         self.last_tick = None;
         Ok(())
@@ -222,7 +220,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = match self.ego.as_ref() {
             None => Err(FaultCause::EgoMissing),
             Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
-            Some(_) if self.ranging.disagrees(now, RANGE_TIMEOUT) => Err(FaultCause::RangeDisagrees),
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
@@ -240,6 +237,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 }
             }
             (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
+        };
+        // Whoever is seen ahead is driven by then, and not what is heard.
+        let is_contradicted = self.visible().is_some_and(|index| self.is_contradicted(index, now));
+        let target = match target {
+            TargetFact::Lost(_) => target,
+            _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
+            _ => target,
         };
         Facts { engaged: self.wish.as_ref().is_some_and(|wish| wish.engaged), ego, target }
     }

@@ -131,6 +131,8 @@ pub enum Status {
     RefusedOverlooked = -90,
     /// A synchronisation that came later than the unit's own clock allows.
     RefusedSyncLate = -91,
+    /// Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
+    RefusedRangeDisagrees = -92,
 }
 
 impl From<ConfigError> for Status {
@@ -186,6 +188,7 @@ impl From<Refusal> for Status {
             Refusal::OffRoute => Self::RefusedOffRoute,
             Refusal::Overlooked => Self::RefusedOverlooked,
             Refusal::SyncLate => Self::RefusedSyncLate,
+            Refusal::RangeDisagrees => Self::RefusedRangeDisagrees,
         }
     }
 }
@@ -250,6 +253,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedOffRoute, c"refused: off_route"),
     (Status::RefusedOverlooked, c"counted: overlooked"),
     (Status::RefusedSyncLate, c"refused: sync_late"),
+    (Status::RefusedRangeDisagrees, c"counted: range_disagrees"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -1,11 +1,11 @@
 //! What the unit is careful by: what is certain of its peers and what its range sensor sees enter; what is still known of the
 //! vehicle ahead without its messages, and the command that the last gate lets through, leave.
 
-use super::{OnboardUnit, RANGE_TIMEOUT};
+use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::controller::Facts;
 use crate::envelope;
-use crate::estimator::bound::Bound;
+use crate::estimator::bound::{Bound, Reach};
 use crate::estimator::{Reading, State};
 use crate::parameters::{
     ACCELERATION_ROUNDING, DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
@@ -13,7 +13,7 @@ use crate::parameters::{
 };
 use crate::peers::Sample;
 use crate::time::Instant;
-use crate::units::{Acceleration, Position};
+use crate::units::{Acceleration, Position, Speed};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// What is certain of a peer at an instant, now or later.
@@ -24,26 +24,33 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
-    /// or the near end of what is certain. Never a stale sample. A target that comes by another leg is not what the sensor
-    /// sees: of the two, the one that is nearer.
+    /// or the near end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees
+    /// that it is not there. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two,
+    /// the one that is nearer.
     pub(super) fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
-        let seen = self.ranging.ahead(now, RANGE_TIMEOUT);
+        let seen = self.ranging.ahead(now);
         if seen.is_some() && target == self.visible() {
             return seen;
         }
+        let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &Reach::WORST));
+        let stood = stood.and_then(|bound| self.near(bound.lowest_position(), bound.lowest_speed()));
+        let target = target.filter(|index| !self.is_seen_past(*index, now));
         let certain = target.and_then(|index| self.certain_rear(now, index));
-        [seen, certain].into_iter().flatten().min_by_key(|rear| rear.position)
+        [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
     }
 
     /// The rear bumper at the near end of what is certain of a peer.
     fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        let position = bound.lowest_position().ahead(length.negated());
-        // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+        self.near(bound.lowest_position().ahead(length.negated()), bound.lowest_speed())
+    }
+
+    /// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+    fn near(&self, position: Position, speed: Speed) -> Option<Reading> {
         let ego = self.ego.as_ref()?.position;
         let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
-        Some(Reading { position: ego.ahead(gap), speed: bound.lowest_speed() })
+        Some(Reading { position: ego.ahead(gap), speed })
     }
 
     /// The last gate, with the ego at the less safe end of its accuracies: the command as it is encoded, and whether the
@@ -75,10 +82,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let heard = match self.coordination.itinerary() {
-            None => target.and_then(|index| self.stop_behind(index)),
+            None => target.filter(|index| !self.is_seen_past(*index, now)).and_then(|index| self.stop_behind(index)),
             Some(_) => [self.stop_on_lane(now, &ego), self.stop_at_crossing(now, rearmost)].into_iter().flatten().min(),
         };
-        let stop_before = [heard, self.stop_behind_seen(now)].into_iter().flatten().min();
+        let stop_before = [heard, self.stop_behind_seen(now, rearmost)].into_iter().flatten().min();
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
@@ -91,7 +98,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let leading = (0..PEERS)
             .filter(|index| choice.leading.contains(*index))
             .filter(|index| self.is_heeded(*index, now, ego.position, ego.speed));
-        leading.chain(choice.lane.map(usize::from)).filter_map(|index| self.stop_behind(index)).min()
+        let ahead = leading.chain(choice.lane.map(usize::from)).filter(|index| !self.is_seen_past(*index, now));
+        ahead.filter_map(|index| self.stop_behind(index)).min()
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
@@ -125,9 +133,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(envelope::stop_behind(stop, length))
     }
 
-    /// The same behind whatever the range sensor sees that is not known to be the target.
-    fn stop_behind_seen(&self, now: Instant) -> Option<Position> {
-        let (rear, reach) = self.ranging.stranger(now, RANGE_TIMEOUT)?;
-        Some(rear.nearest_stop(&reach))
+    /// The same behind whatever the range sensor has seen that is not known to be the target. Past whom the ego has got by more than
+    /// a vehicle's length is not on its path.
+    fn stop_behind_seen(&self, now: Instant, rearmost: Position) -> Option<Position> {
+        let target = self.visible().and_then(|index| self.peers.get(index)?.station());
+        let is_passed = |rear: &Bound| rearmost.ahead_of(rear.lowest_position()) > DEFAULT_LENGTH;
+        let ahead = self.ranging.strangers(now, target).filter(|rear| !is_passed(rear));
+        ahead.map(|rear| rear.nearest_stop(&Reach::WORST)).min()
     }
 }
