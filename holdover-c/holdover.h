@@ -157,6 +157,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_SYNC_LATE = -91,
   // Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
   HOLDOVER_REFUSED_RANGE_DISAGREES = -92,
+  // A horizon that its sender cannot drive.
+  HOLDOVER_REFUSED_UNREACHABLE = -93,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -66,6 +66,8 @@ pub enum Refusal {
     /// Views of the range sensor that what is certain of the target excludes: once for every contradiction that begins. The unit
     /// drives by what it sees then.
     RangeDisagrees = 28,
+    /// A horizon that its sender cannot drive, by all that is certain of it: it is not used.
+    Unreachable = 29,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -101,7 +103,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -131,6 +133,7 @@ impl Refusal {
         Self::Overlooked,
         Self::SyncLate,
         Self::RangeDisagrees,
+        Self::Unreachable,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -166,6 +169,7 @@ impl Refusal {
             Self::Overlooked => "overlooked",
             Self::SyncLate => "sync_late",
             Self::RangeDisagrees => "range_disagrees",
+            Self::Unreachable => "unreachable",
         }
     }
 }

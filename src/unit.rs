@@ -162,11 +162,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.coordinate(now);
         let target = self.target();
         let before = match self.mode {
-            Mode::Holdover { .. } => target.and_then(|index| self.estimator.read(index, now)),
+            Mode::Holdover { .. } => target.and_then(|index| self.estimated(index, now)),
             _ => None,
         };
-        self.estimator.update(now, &self.peers);
-        let reading = target.and_then(|index| self.estimator.read(index, now));
+        let unreachable = self.estimator.update(now, &self.peers);
+        self.health.add(Refusal::Unreachable, unreachable);
+        let reading = target.and_then(|index| self.estimated(index, now));
 
         let facts = self.facts(now, target, reading.is_some());
         self.mode = self.mode.next(&facts, now);
@@ -321,7 +322,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {
                     let length = self.peers.get(index)?.intent().map(|intent| intent.length);
-                    Some((self.estimator.read(index, next)?, length))
+                    Some((self.estimated(index, next)?, length))
                 });
                 Course::Law { driver: self.driver(), target: reading }
             }

@@ -133,6 +133,8 @@ pub enum Status {
     RefusedSyncLate = -91,
     /// Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
     RefusedRangeDisagrees = -92,
+    /// A horizon that its sender cannot drive.
+    RefusedUnreachable = -93,
 }
 
 impl From<ConfigError> for Status {
@@ -189,6 +191,7 @@ impl From<Refusal> for Status {
             Refusal::Overlooked => Self::RefusedOverlooked,
             Refusal::SyncLate => Self::RefusedSyncLate,
             Refusal::RangeDisagrees => Self::RefusedRangeDisagrees,
+            Refusal::Unreachable => Self::RefusedUnreachable,
         }
     }
 }
@@ -254,6 +257,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedOverlooked, c"counted: overlooked"),
     (Status::RefusedSyncLate, c"refused: sync_late"),
     (Status::RefusedRangeDisagrees, c"counted: range_disagrees"),
+    (Status::RefusedUnreachable, c"counted: unreachable"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -23,6 +23,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(track.certainty().bound()?.after(at, &track.reach()))
     }
 
+    /// Where a peer is estimated to be, inside what is certain of it then.
+    pub(super) fn estimated(&self, index: usize, at: Instant) -> Option<Reading> {
+        self.estimator.read_inside(index, at, &self.peers)
+    }
+
     /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
     /// or the near end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees
     /// that it is not there. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two,
