@@ -64,7 +64,10 @@ fn an_honest_sample_of_poor_accuracy_does_not_undo_the_good_ones_before_it() {
                 let bound = estimate.bound.expect("it is bounded");
                 let width = m_of(bound.highest_position()) - m_of(bound.lowest_position());
                 assert!(width < 0.6, "{width}");
-                assert!(error.abs() < 0.3 && error_of_speed.abs() < 0.9, "{off} {faster} at {tick}: {error} {error_of_speed}");
+                assert!(
+                    error.abs() < 0.3 && error_of_speed.abs() < 0.9,
+                    "{off} {faster} at {tick}: {error} {error_of_speed}"
+                );
             }
             truth = truth.after(0.0, 0.01);
         }
@@ -189,7 +192,11 @@ fn drive(seed: u64) -> u64 {
         if let Some(estimate) = heard.answer.estimate {
             let (bound, reading) = (estimate.bound.expect("whoever is estimated is bounded"), estimate.reading);
             let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
-            assert!((low..=high).contains(&truth.position), "seed {seed} at {tick}: {} not in {low}..{high}", truth.position);
+            assert!(
+                (low..=high).contains(&truth.position),
+                "seed {seed} at {tick}: {} not in {low}..{high}",
+                truth.position
+            );
             let position = m_of(reading.position);
             assert!((low..=high).contains(&position), "seed {seed} at {tick}: {position} not in {low}..{high}");
             let (low, high) = (mps_of(bound.lowest_speed()), mps_of(bound.highest_speed()));
@@ -198,7 +205,10 @@ fn drive(seed: u64) -> u64 {
             // What it drives by is of one period later.
             let next = rig.unit.bound(2, instant(now + 10_000)).expect("likewise");
             let read = rig.unit.estimator().read_inside(2, instant(now + 10_000), rig.unit.peers()).expect("likewise");
-            assert!((next.lowest_position()..=next.highest_position()).contains(&read.position), "seed {seed} at {tick}");
+            assert!(
+                (next.lowest_position()..=next.highest_position()).contains(&read.position),
+                "seed {seed} at {tick}"
+            );
             checked += 1;
         }
         ego += 0.15;

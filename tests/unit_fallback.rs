@@ -256,6 +256,28 @@ fn behind_a_lie_the_seen_one_is_followed_and_not_hit() {
 }
 
 #[test]
+fn one_that_cuts_in_where_a_silent_target_may_be_is_not_taken_for_it() {
+    for silent_for in [2.0, 3.0] {
+        let mut config = Config { envelope: GATE, ..rig::config() };
+        config.law.time_gap = holdover::units::Seconds::from_millis(600);
+        let mut road = Road::new(&config, 30.0, 60.0);
+        road.rig.wanted = 30.0;
+        road.power_up();
+        road.run(1.0);
+        road.senses.v2x = false;
+        road.run(silent_for);
+        // The target goes on beyond; another one cuts in, and says nothing.
+        road.target = Body { position: road.ego.position + rig::LENGTH + 40.0, speed: road.ego.speed };
+        road.senses.range = true;
+        assert_eq!(road.run(11.0).command.mode, ModeCode::Holdover);
+        let gap = road.gap();
+        road.acceleration = -12.0;
+        let least = road.run_to_rest();
+        assert!(least > 0.0, "silent for {silent_for} s, {gap} m apart: {least}");
+    }
+}
+
+#[test]
 fn a_target_that_is_gone_holds_nobody_where_the_sensor_sees_that_nobody_is() {
     for (envelope, silent_for) in [(None, 1.5), (GATE, 1.5), (None, 20.0), (GATE, 20.0)] {
         let mut road = Road::new(&impatient(envelope), 15.0, 150.0);

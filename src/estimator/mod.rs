@@ -309,7 +309,12 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// Where a peer is at an instant, inside what is certain of it then.
     #[must_use]
-    pub fn read_inside<const SAMPLES: usize>(&self, index: usize, at: Instant, peers: &Peers<PEERS, SAMPLES>) -> Option<Reading> {
+    pub fn read_inside<const SAMPLES: usize>(
+        &self,
+        index: usize,
+        at: Instant,
+        peers: &Peers<PEERS, SAMPLES>,
+    ) -> Option<Reading> {
         let (reading, track) = (self.read(index, at)?, peers.get(index)?);
         let bound = track.certainty().bound().filter(|bound| self.model.stamped && at >= bound.at());
         Some(bound.map_or(reading, |bound| certain::limited(reading, &bound.after(at, &track.reach()))))

@@ -22,6 +22,9 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
 
+/// No vehicle on a road is shorter.
+const SHORTEST: Distance = Distance::from_mm(1_500);
+
 /// A correction of less than this share is not worth computing the horizon anew.
 const LEAST_SHARE: i64 = 16;
 
@@ -81,7 +84,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
     }
 
-    /// Whose the sight is, if it is the peer's by all that is certain of that; then it narrows it.
+    /// Whose the sight is, if it is certain that it is the peer's; then it narrows it. It is if it fits what is certain of the peer, and
+    /// that leaves no room for another vehicle. A sight that may be the peer's or another one's corrects the estimate alone.
     fn compare(&mut self, now: Instant, index: usize, sight: &Sight) -> Option<StationHash> {
         let is_disputed = self.is_contradicted(index, now);
         let track = self.peers.get_index_mut(index)?;
@@ -111,15 +115,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.raise(index, sight);
             return None;
         }
+        let bound = before?;
+        // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear.
+        let is_certain = bound.highest_position().ahead_of(seen.lowest_position()) < SHORTEST;
         let track = self.peers.get_index_mut(index)?;
-        track.narrow(&seen);
         let newest = track.newest().copied();
-        if let (Some(newest), Some(bound)) = (newest, before)
+        if is_certain {
+            track.narrow(&seen);
+        } else {
+            self.raise(index, sight);
+        }
+        if let Some(newest) = newest
             && let Some(sample) = self.corrected(index, sight, front, &bound, &newest)
         {
             self.estimator.note_correction(index, sample);
         }
-        Some(station)
+        is_certain.then_some(station)
     }
 
     /// Whether what is seen and what is heard of a peer contradict one another.
