@@ -159,6 +159,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_SYNC_EARLY = -92,
   // Not a refusal of a frame: a peer's clock is off.
   HOLDOVER_REFUSED_PEER_CLOCK = -93,
+  // Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
+  HOLDOVER_REFUSED_RANGE_DISAGREES = -94,
+  // A horizon that its sender cannot drive.
+  HOLDOVER_REFUSED_UNREACHABLE = -95,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

@@ -67,6 +67,11 @@ pub enum Refusal {
     SyncEarly = 28,
     /// Not a refusal of a message: a peer's clock that is ahead of GNSS time, or perhaps behind it; once for every 5 s.
     PeerClock = 29,
+    /// Views of the range sensor that what is certain of the target excludes: once for every contradiction that begins. The unit
+    /// drives by what it sees then.
+    RangeDisagrees = 30,
+    /// A horizon that its sender cannot drive, by all that is certain of it: it is not used.
+    Unreachable = 31,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -102,7 +107,7 @@ impl Incident {
 
 impl Refusal {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 30] = [
+    pub const ALL: [Self; 32] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -133,6 +138,8 @@ impl Refusal {
         Self::SyncLate,
         Self::SyncEarly,
         Self::PeerClock,
+        Self::RangeDisagrees,
+        Self::Unreachable,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -169,6 +176,8 @@ impl Refusal {
             Self::SyncLate => "sync_late",
             Self::SyncEarly => "sync_early",
             Self::PeerClock => "peer_clock",
+            Self::RangeDisagrees => "range_disagrees",
+            Self::Unreachable => "unreachable",
         }
     }
 }

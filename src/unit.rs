@@ -27,11 +27,9 @@ mod foresee;
 mod inbox;
 mod outbox;
 mod range;
+mod sight;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
-
-/// A view of the range sensor older than this is not driven by.
-const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// The onboard unit for up to `PEERS` peers with a history of `SAMPLES` samples each and horizons of up to `STEPS` steps.
 ///
@@ -52,7 +50,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     mode: Mode,
     health: Health,
     outbox: outbox::Outbox,
-    ranging: range::Ranging,
+    ranging: sight::Ranging,
     /// The ego as the last gate sees it.
     reckoning: Held<Reckoning>,
     coordination: Coordination<PEERS>,
@@ -78,7 +76,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             mode: Mode::Standby,
             health: Health::new(),
             outbox: outbox::Outbox::new(),
-            ranging: range::Ranging::new(),
+            ranging: sight::Ranging::new(),
             reckoning: Held::Nothing,
             coordination: Coordination::idle(),
             last_tick: None,
@@ -106,7 +104,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.mode = Mode::Standby;
         self.health = Health::new();
         self.outbox = outbox::Outbox::new();
-        self.ranging = range::Ranging::new();
+        self.ranging = sight::Ranging::new();
         self.reckoning.clear();
         self.coordination.reset();
         self.last_tick = None;
@@ -170,11 +168,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.coordinate(now);
         let target = self.target();
         let before = match self.mode {
-            Mode::Holdover { .. } => target.and_then(|index| self.estimator.read(index, now)),
+            Mode::Holdover { .. } => target.and_then(|index| self.estimated(index, now)),
             _ => None,
         };
-        self.estimator.update(now, &self.peers);
-        let reading = target.and_then(|index| self.estimator.read(index, now));
+        let unreachable = self.estimator.update(now, &self.peers);
+        self.health.add(Refusal::Unreachable, unreachable);
+        let reading = target.and_then(|index| self.estimated(index, now));
 
         let facts = self.facts(now, target, reading.is_some());
         self.mode = self.mode.next(&facts, now);
@@ -232,7 +231,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = match self.ego.as_ref() {
             None => Err(FaultCause::EgoMissing),
             Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
-            Some(_) if self.ranging.disagrees(now, RANGE_TIMEOUT) => Err(FaultCause::RangeDisagrees),
             Some(_) => Ok(()),
         };
         let track = target.and_then(|index| self.peers.get(index));
@@ -250,6 +248,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 }
             }
             (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
+        };
+        // Whoever is seen ahead is driven by then, and not what is heard.
+        let is_contradicted = self.visible().is_some_and(|index| self.is_contradicted(index, now));
+        let target = match target {
+            TargetFact::Lost(_) => target,
+            _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
+            _ => target,
         };
         Facts { engaged: self.wish.as_ref().is_some_and(|wish| wish.engaged), ego, target }
     }
@@ -327,13 +332,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {
                     let length = self.peers.get(index)?.intent().map(|intent| intent.length);
-                    Some((self.estimator.read(index, next)?, length))
+                    Some((self.estimated(index, next)?, length))
                 });
                 Course::Law { driver: self.driver(), target: reading }
             }
-            Mode::Fallback { since, .. } => match self.still_known(now, target) {
-                Some(ahead) => Course::Cruise { ahead },
-                None => Course::Caution { since },
+            Mode::Fallback { .. } => match self.still_known(now, target) {
+                Some(ahead) => Course::Cruise { ahead, target_speed: self.target_speed() },
+                None => Course::Caution,
             },
             Mode::Fault { .. } => Course::Brake,
         }

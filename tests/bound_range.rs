@@ -3,7 +3,7 @@
 
 mod rig;
 
-use holdover::controller::{FaultCause, Mode};
+use holdover::controller::{FallbackCause, Mode};
 use holdover::time::Duration;
 use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::{Message, Said};
@@ -64,7 +64,7 @@ fn run(seed: u64) -> u64 {
             let _ = road.rig.put(now, &Message::Range(sample));
         }
         let heard = road.step();
-        let named = matches!(heard.answer.mode, Mode::Fault { cause: FaultCause::RangeDisagrees, .. });
+        let named = matches!(heard.answer.mode, Mode::Fallback { cause: FallbackCause::RangeDisagrees, .. });
         assert!(!named, "seed {seed} at {tick}");
         road.ego = rig::plant::Plant { acceleration: own_a, ..road.ego };
         let moved = ego.after(own_a, 0.01);

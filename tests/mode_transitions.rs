@@ -13,29 +13,28 @@ use rig::random::Random;
 use rig::road::{Road, Senses};
 use rig::{TARGET, config};
 
-/// Standby, Cooperative, Holdover, Fallback (not associated, never heard, silent), Fault (ego missing, ego stale, range).
-const STATES: [&str; 9] = ["S", "C", "H", "Fn", "Fh", "Fs", "Xm", "Xs", "Xr"];
+/// Standby, Cooperative, Holdover, Fallback (not associated, never heard, silent, range), Fault (ego missing, ego stale).
+const STATES: [&str; 9] = ["S", "C", "H", "Fn", "Fh", "Fs", "Fr", "Xm", "Xs"];
 
 /// What the facts are, in the order of the columns.
-const FACTS: [&str; 10] = ["off", "Xm", "Xs", "Xr", "leads", "on", "silent", "Fn", "Fh", "Fs"];
+const FACTS: [&str; 10] = ["off", "Xm", "Xs", "leads", "on", "silent", "Fn", "Fh", "Fs", "Fr"];
 
 /// State by state, and within a state that waits by how long it has, the next state by the facts.
-const NEXT: [(&str, &str, [&str; 10]); 15] = [
-    ("S", "", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("C", "", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("H", "", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("Fn", "", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("Fh", "", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("Fs", "not yet", ["S", "Xm", "Xs", "Xr", "C", "Fs", "Fs", "Fn", "Fh", "Fs"]),
-    ("Fs", "almost", ["S", "Xm", "Xs", "Xr", "C", "Fs", "Fs", "Fn", "Fh", "Fs"]),
-    ("Fs", "enough", ["S", "Xm", "Xs", "Xr", "C", "C", "Fs", "Fn", "Fh", "Fs"]),
-    ("Xm", "almost", ["S", "Xm", "Xs", "Xr", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm"]),
-    ("Xm", "enough", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("Xs", "not yet", ["S", "Xm", "Xs", "Xr", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
-    ("Xs", "almost", ["S", "Xm", "Xs", "Xr", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
-    ("Xs", "enough", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
-    ("Xr", "almost", ["S", "Xm", "Xs", "Xr", "Xr", "Xr", "Xr", "Xr", "Xr", "Xr"]),
-    ("Xr", "enough", ["S", "Xm", "Xs", "Xr", "C", "C", "H", "Fn", "Fh", "Fs"]),
+const NEXT: [(&str, &str, [&str; 10]); 14] = [
+    ("S", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("C", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("H", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fn", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fh", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fr", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fs", "not yet", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fs", "almost", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr"]),
+    ("Fs", "enough", ["S", "Xm", "Xs", "C", "C", "Fs", "Fn", "Fh", "Fs", "Fr"]),
+    ("Xm", "almost", ["S", "Xm", "Xs", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm"]),
+    ("Xm", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+    ("Xs", "not yet", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
+    ("Xs", "almost", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
+    ("Xs", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
 ];
 
 const NOW: Instant = Instant::from_micros(100_000_000);
@@ -50,9 +49,9 @@ fn name(code: ModeCode, detail: u8) -> &'static str {
         (ModeCode::Fallback, 1) => "Fn",
         (ModeCode::Fallback, 2) => "Fh",
         (ModeCode::Fallback, 3) => "Fs",
+        (ModeCode::Fallback, 4) => "Fr",
         (ModeCode::Fault, 1) => "Xm",
         (ModeCode::Fault, 2) => "Xs",
-        (ModeCode::Fault, 3) => "Xr",
         other => panic!("no such mode: {other:?}"),
     }
 }
@@ -73,9 +72,9 @@ fn mode(state: &str, waited: &str) -> Mode {
         "Fn" => fallback(FallbackCause::NotAssociated),
         "Fh" => fallback(FallbackCause::NeverHeard),
         "Fs" => fallback(FallbackCause::Silent),
+        "Fr" => fallback(FallbackCause::RangeDisagrees),
         "Xm" => fault(FaultCause::EgoMissing),
-        "Xs" => fault(FaultCause::EgoStale),
-        _ => fault(FaultCause::RangeDisagrees),
+        _ => fault(FaultCause::EgoStale),
     }
 }
 
@@ -85,13 +84,13 @@ fn facts(name: &str, target: TargetFact) -> Facts {
         "off" => Facts { engaged: false, ..fine },
         "Xm" => Facts { ego: Err(FaultCause::EgoMissing), ..fine },
         "Xs" => Facts { ego: Err(FaultCause::EgoStale), ..fine },
-        "Xr" => Facts { ego: Err(FaultCause::RangeDisagrees), ..fine },
         "leads" => Facts { target: TargetFact::NotNeeded, ..fine },
         "on" => Facts { target: TargetFact::On, ..fine },
         "silent" => Facts { target: TargetFact::Off, ..fine },
         "Fn" => Facts { target: TargetFact::Lost(FallbackCause::NotAssociated), ..fine },
         "Fh" => Facts { target: TargetFact::Lost(FallbackCause::NeverHeard), ..fine },
-        _ => Facts { target: TargetFact::Lost(FallbackCause::Silent), ..fine },
+        "Fs" => Facts { target: TargetFact::Lost(FallbackCause::Silent), ..fine },
+        _ => Facts { target: TargetFact::Lost(FallbackCause::RangeDisagrees), ..fine },
     }
 }
 
@@ -104,6 +103,7 @@ fn every_state_goes_where_the_table_says_and_nowhere_else() {
         TargetFact::Lost(FallbackCause::NotAssociated),
         TargetFact::Lost(FallbackCause::NeverHeard),
         TargetFact::Lost(FallbackCause::Silent),
+        TargetFact::Lost(FallbackCause::RangeDisagrees),
     ];
     for (state, waited, row) in NEXT {
         for (column, expected) in FACTS.iter().zip(row) {
@@ -120,7 +120,7 @@ fn every_state_goes_where_the_table_says_and_nowhere_else() {
 fn a_state_keeps_its_data_and_a_new_one_starts_now() {
     let (since, on) = (Instant::from_micros(50_000_000), TargetFact::On);
     let next = |state, waited, column| mode(state, waited).next(&facts(column, on), NOW);
-    for state in ["S", "C", "Fn", "Fh"] {
+    for state in ["S", "C", "Fn", "Fh", "Fr"] {
         assert_eq!(next(state, "", "silent"), Mode::Holdover { since: NOW }, "{state}");
     }
     assert_eq!(next("H", "", "silent"), Mode::Holdover { since });

@@ -4,7 +4,7 @@
 mod rig;
 
 use holdover::config::Envelope;
-use holdover::controller::{FaultCause, Mode};
+use holdover::controller::{FallbackCause, Mode};
 use holdover::time::Duration;
 use holdover::wire::Predecessor;
 use holdover::wire::command::ModeCode;
@@ -75,17 +75,19 @@ fn fresh_messages_are_left_alone() {
 }
 
 #[test]
-fn disagreement_beyond_both_bounds_is_a_fault_that_is_left_when_they_agree() {
+fn disagreement_beyond_both_bounds_is_a_fallback_that_is_left_when_they_agree() {
     for wrong in [-6.0, 8.0, 40.0] {
         let mut road = silent(&rig::config(), true);
         road.senses.v2x = true;
         assert_eq!(road.run(0.5).command.mode, ModeCode::Cooperative);
         road.wrong = wrong;
         let heard = road.run(0.3);
-        let is_named = matches!(heard.answer.mode, Mode::Fault { cause: FaultCause::RangeDisagrees, .. });
+        let is_named = matches!(heard.answer.mode, Mode::Fallback { cause: FallbackCause::RangeDisagrees, .. });
         assert!(is_named, "{wrong}: {:?}", heard.answer.mode);
+        road.run(2.0);
+        assert_eq!(road.rig.unit.health().of(Refusal::RangeDisagrees), 1, "however long it lasts");
         road.wrong = 0.0;
-        assert_eq!(road.run(0.45).command.mode, ModeCode::Fault);
+        assert_eq!(road.run(0.9).command.mode, ModeCode::Fallback);
         assert_eq!(road.run(0.2).command.mode, ModeCode::Cooperative);
     }
 }
@@ -96,13 +98,13 @@ fn what_is_no_longer_seen_contradicts_nothing() {
     road.senses.v2x = true;
     // Somebody cuts in, and leaves again: the sensor then says nothing.
     road.wrong = -10.0;
-    assert_eq!(road.run(0.5).command.mode, ModeCode::Fault);
+    assert_eq!(road.run(0.5).command.mode, ModeCode::Fallback);
     road.senses.range = false;
-    assert_eq!(road.run(1.0).command.mode, ModeCode::Cooperative);
+    assert_eq!(road.run(1.1).command.mode, ModeCode::Cooperative);
 }
 
 #[test]
-fn a_single_wrong_view_is_no_fault() {
+fn a_single_wrong_view_is_no_disagreement() {
     let mut road = silent(&rig::config(), true);
     road.senses.v2x = true;
     road.run(0.5);

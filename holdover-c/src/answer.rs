@@ -226,9 +226,9 @@ const fn of_mode(mode: &holdover::controller::Mode) -> (Mode, Cause) {
         Core::Fallback { cause: FallbackCause::NotAssociated, .. } => (Mode::Fallback, Cause::NotAssociated),
         Core::Fallback { cause: FallbackCause::NeverHeard, .. } => (Mode::Fallback, Cause::NeverHeard),
         Core::Fallback { cause: FallbackCause::Silent, .. } => (Mode::Fallback, Cause::Silent),
+        Core::Fallback { cause: FallbackCause::RangeDisagrees, .. } => (Mode::Fallback, Cause::RangeDisagrees),
         Core::Fault { cause: FaultCause::EgoMissing, .. } => (Mode::Fault, Cause::EgoMissing),
         Core::Fault { cause: FaultCause::EgoStale, .. } => (Mode::Fault, Cause::EgoStale),
-        Core::Fault { cause: FaultCause::RangeDisagrees, .. } => (Mode::Fault, Cause::RangeDisagrees),
     }
 }
 

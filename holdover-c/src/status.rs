@@ -135,6 +135,10 @@ pub enum Status {
     RefusedSyncEarly = -92,
     /// Not a refusal of a frame: a peer's clock is off.
     RefusedPeerClock = -93,
+    /// Not a refusal of a frame: what the range sensor sees began to contradict what is heard of the target.
+    RefusedRangeDisagrees = -94,
+    /// A horizon that its sender cannot drive.
+    RefusedUnreachable = -95,
 }
 
 impl From<ConfigError> for Status {
@@ -192,6 +196,8 @@ impl From<Refusal> for Status {
             Refusal::SyncLate => Self::RefusedSyncLate,
             Refusal::SyncEarly => Self::RefusedSyncEarly,
             Refusal::PeerClock => Self::RefusedPeerClock,
+            Refusal::RangeDisagrees => Self::RefusedRangeDisagrees,
+            Refusal::Unreachable => Self::RefusedUnreachable,
         }
     }
 }
@@ -258,6 +264,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedSyncLate, c"refused: sync_late"),
     (Status::RefusedSyncEarly, c"refused: sync_early"),
     (Status::RefusedPeerClock, c"counted: peer_clock"),
+    (Status::RefusedRangeDisagrees, c"counted: range_disagrees"),
+    (Status::RefusedUnreachable, c"counted: unreachable"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

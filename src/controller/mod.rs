@@ -14,7 +14,7 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Driver, Follower, Reading, State, Stride};
+use crate::estimator::{Driver, Follower, Leader, Reading, State, Stride};
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
@@ -29,16 +29,16 @@ pub enum Course {
         /// The target's reading and length.
         target: Option<(Reading, Option<Distance>)>,
     },
-    /// Adaptive cruise control: behind what is still known, seen from the rear bumper of the vehicle ahead.
+    /// Adaptive cruise control: behind what is still known, seen from the rear bumper of the vehicle ahead, and no faster than
+    /// the free road would be driven.
     Cruise {
         /// Rear bumper and speed of the vehicle ahead.
         ahead: Reading,
+        /// `v_∞`.
+        target_speed: Speed,
     },
-    /// Caution: braking that grows slowly.
-    Caution {
-        /// Since when.
-        since: Instant,
-    },
+    /// Caution: braking that grows slowly while nothing is known.
+    Caution,
     /// Braking as hard as is normal.
     Brake,
     /// Someone else drives; the unit keeps up with what is demanded.
@@ -56,6 +56,8 @@ pub struct Controller {
     blend: Blend,
     keep: Share,
     period: FineSeconds,
+    /// Since when the course is caution.
+    caution: Option<Instant>,
     /// The step of the law that was driven by last, which is made of a driver and a length.
     stride: Held<(Driver, Option<Distance>, Stride)>,
 }
@@ -87,6 +89,7 @@ impl Controller {
             blend: Blend::NONE,
             keep: Share::ZERO,
             period: FineSeconds::ZERO,
+            caution: None,
             stride: Held::Nothing,
         }
     }
@@ -116,15 +119,19 @@ impl Controller {
     /// The demand of this tick.
     pub fn drive(&mut self, config: &Config, now: Instant, ego: Option<&State>, course: &Course) -> Acceleration {
         self.blend = self.blend.faded(self.keep);
+        if !matches!(course, Course::Caution) {
+            self.caution = None;
+        }
         self.demand = match (course, ego) {
             (Course::Yield { demand }, _) => {
                 self.blend = Blend::NONE;
                 *demand
             }
             (Course::Law { driver, target }, Some(ego)) => self.by_law(config, driver, ego, *target),
-            (Course::Cruise { ahead }, Some(ego)) => self.cruise(config, ego, ahead),
-            (Course::Caution { since }, _) => {
-                let braking = growth(now.since(*since)).min(config.limits.braking);
+            (Course::Cruise { ahead, target_speed }, Some(ego)) => self.cruise(config, ego, ahead, *target_speed),
+            (Course::Caution, _) => {
+                let since = *self.caution.get_or_insert(now);
+                let braking = growth(now.since(since)).min(config.limits.braking);
                 self.slewed(config, braking.negated())
             }
             (Course::Brake | Course::Law { .. } | Course::Cruise { .. }, _) => {
@@ -158,14 +165,16 @@ impl Controller {
         self.slewed_by(jerk, demand)
     }
 
-    /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction.
-    fn cruise(&self, config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
+    /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction. Where
+    /// that asks for more than Algorithm 2 does at the speed that the driver wants, Algorithm 2 is driven by.
+    fn cruise(&self, config: &Config, ego: &State, ahead: &Reading, target_speed: Speed) -> Acceleration {
         let Seen { gain, damping, time_gap } = CRUISE;
         let time_gap = time_gap.max(config.law.time_gap);
         let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
         let wish = law.wish(ego, ahead.position.ring(), ahead.speed);
         let limits = config.limits;
-        let capped = wish.min(speed_cap(config.law.max_speed, ego.speed));
+        let free = Leader::new(config.law.free_road_acceleration, target_speed).wish(ego.speed);
+        let capped = wish.min(free).min(speed_cap(config.law.max_speed, ego.speed));
         self.slewed(config, capped.limited(limits.braking.negated(), limits.acceleration))
     }
 

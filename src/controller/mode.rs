@@ -6,15 +6,16 @@
 //!              engaged, own motion known
 //!  Standby ---------------------------------> Cooperative <---+  the target's link is on, or the ego leads
 //!     ^                                        |   ^           |
-//!     | not engaged                   link off |   | link on   | link on: at once after NeverHeard and NotAssociated,
-//!     |  (from everywhere)                     v   |           | for REJOIN after Silent
+//!     | not engaged                   link off |   | link on   | link on: at once, but after Silent for REJOIN
+//!     |  (from everywhere)                     v   |           |
 //!     |                                      Holdover          |
 //!     |                                        |               |
 //!     |        silent for longer than a        v               |
-//!     |        holdover lasts, or no target  Fallback ---------+
+//!     |        holdover lasts, no target, or  Fallback --------+
+//!     |        the range sensor contradicts
+//!     |        what is heard
 //!     |
-//!     +--- Fault  from everywhere while engaged: own motion unknown, or the range sensor contradicts what is heard;
-//!                 left when that has not been so for RECOVER
+//!     +--- Fault  from everywhere while engaged: own motion unknown; left when that has not been so for RECOVER
 //! ```
 //!
 //! The driver's wish comes first, then the ego's own state (without it nothing can be commanded but braking), then the
@@ -36,6 +37,8 @@ pub enum FallbackCause {
     NeverHeard = 2,
     /// The target has been silent for longer than a holdover lasts.
     Silent = 3,
+    /// What the range sensor sees and what is heard of the target exclude one another.
+    RangeDisagrees = 4,
 }
 
 /// Why the ego's own motion is unknown.
@@ -47,8 +50,6 @@ pub enum FaultCause {
     EgoMissing = 1,
     /// It has stopped coming.
     EgoStale = 2,
-    /// What the range sensor sees and what is heard of the target exclude one another.
-    RangeDisagrees = 3,
 }
 
 /// A target that fell silent has to be heard for this long before it is followed again: three messages at 10 Hz.
@@ -110,7 +111,7 @@ pub enum TargetFact {
 pub struct Facts {
     /// The driver's wish.
     pub engaged: bool,
-    /// Whether the ego's own motion is known and nothing contradicts it.
+    /// Whether the ego's own motion is known.
     pub ego: Result<(), FaultCause>,
     /// The target.
     pub target: TargetFact,
@@ -256,8 +257,8 @@ mod tests {
     }
 
     #[test]
-    fn a_target_that_was_never_heard_is_followed_at_once() {
-        for cause in [FallbackCause::NeverHeard, FallbackCause::NotAssociated] {
+    fn a_target_that_was_never_heard_or_is_no_longer_contradicted_is_followed_at_once() {
+        for cause in [FallbackCause::NeverHeard, FallbackCause::NotAssociated, FallbackCause::RangeDisagrees] {
             let lost = Facts { target: TargetFact::Lost(cause), ..FINE };
             assert_eq!(Mode::Standby.next(&lost, at(0)).next(&FINE, at(10)), Mode::Cooperative);
         }
@@ -265,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_fault_lasts_until_its_cause_has_been_gone_for_half_a_second() {
-        let faulty = Facts { ego: Err(FaultCause::RangeDisagrees), ..FINE };
+        let faulty = Facts { ego: Err(FaultCause::EgoStale), ..FINE };
         let mut mode = Mode::Cooperative.next(&faulty, at(0));
         for millis in (10..510).step_by(10) {
             mode = mode.next(&FINE, at(millis));

@@ -140,6 +140,13 @@ impl Bound {
         }
     }
 
+    /// Of a vehicle of which nothing is known but that it is not behind a place.
+    #[must_use]
+    pub fn not_behind(at: Instant, position: Position) -> Self {
+        let near = End { position: micro_position(position).0, speed: 0 };
+        Self { at, near, far: End { position: i64::MAX, speed: TOP_SPEED } }
+    }
+
     /// The instant that it is of.
     #[must_use]
     pub const fn at(&self) -> Instant {

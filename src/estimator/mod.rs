@@ -9,10 +9,13 @@
 //! * *No news:* the step that has passed is dropped and one more is computed at the far end by the same model, so that a
 //!   horizon never runs out.
 //!
+//! What starts a horizon, and what is read from it, is inside what is certain of the vehicle (`certain`).
+//!
 //! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
 
 mod actuator;
 pub mod bound;
+pub mod certain;
 mod chain;
 mod delay;
 mod driver;
@@ -165,8 +168,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.strides = [Held::Nothing; PEERS];
     }
 
-    /// Brings every peer's horizon up to now.
-    pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) {
+    /// Brings every peer's horizon up to now. How many horizons that were sent it did not use, because their senders cannot
+    /// drive so.
+    pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) -> u32 {
+        let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
         let correction = match &self.correction {
             Held::Nothing => None, // as in nearly every tick, and then nothing is copied
@@ -181,8 +186,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
                 Some((corrected, sample)) if *corrected == index => Source::Seen(sample),
                 _ => Source::Nothing,
             };
-            self.update_one(present, peers, index, track, &source);
+            let is_used = self.update_one(present, peers, index, track, &source);
+            unreachable = unreachable.saturating_add(u32::from(!is_used));
         }
+        unreachable
     }
 
     fn update_one<const SAMPLES: usize>(
@@ -192,7 +199,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         index: usize,
         track: &Track<SAMPLES>,
         source: &Source<'_>,
-    ) {
+    ) -> bool {
         let Self { grid, model, length, horizons, strides, own, own_length, aheads, .. } = self;
         let ahead = aheads.get(index).and_then(Held::get);
         // How it drives is asked only when its step has to be made, or its horizon starts anew.
@@ -216,24 +223,36 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             let (driver, length_ahead) = course();
             stride.set(driver.over(grid.step, length_ahead, model));
         }
-        let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return };
+        let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return true };
         // The horizon is taken out of the array's borrow together with the one that it is computed from.
         let (horizon, ahead) = match ahead {
             Some(Ahead::Peer(other)) => pair(horizons, index, other),
             Some(Ahead::Own) => (horizons.get_mut(index), Some(&*own)),
             None => (horizons.get_mut(index), None),
         };
-        let Some(horizon) = horizon else { return };
+        let Some(horizon) = horizon else { return true };
         let ahead = ahead.filter(|ahead| !ahead.is_empty());
         let delay = if model.stamped { None } else { Some(track.link().delay()) };
         let forecast = Forecast { grid, length: *length, model, stride, ahead, delay };
         let (sample, received) = match source {
             Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.intent())),
             Source::Seen(sample) => (sample, None),
-            Source::Nothing => return forecast.extend(horizon, present),
+            Source::Nothing => {
+                forecast.extend(horizon, present);
+                return true;
+            }
         };
+        // Without stamps, which is for reproducing the paper, nothing is held to what is certain.
+        let bound = track.certainty().bound().filter(|_| model.stamped);
+        let reach = track.reach();
+        let moved = bound.and_then(|bound| certain::moved(sample, bound, &reach));
+        let sample = moved.as_ref().unwrap_or(sample);
+        let usable = received.filter(|(knots, intent)| {
+            bound.is_none_or(|bound| certain::is_reachable(knots, intent.horizon_tenths, sample, bound, &reach))
+        });
         let (driver, length_ahead) = course();
-        forecast.anchor(horizon, present, &News { sample, received, driver, length_ahead });
+        forecast.anchor(horizon, present, &News { sample, received: usable, driver, length_ahead });
+        usable.is_some() == received.is_some()
     }
 
     /// How the ego drives behind a peer, if any, for its own horizon.
@@ -288,7 +307,20 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         act(&Forecast { grid, length, model, stride, ahead, delay: None }, &mut self.own);
     }
 
-    /// Where a peer is at an instant.
+    /// Where a peer is at an instant, inside what is certain of it then.
+    #[must_use]
+    pub fn read_inside<const SAMPLES: usize>(
+        &self,
+        index: usize,
+        at: Instant,
+        peers: &Peers<PEERS, SAMPLES>,
+    ) -> Option<Reading> {
+        let (reading, track) = (self.read(index, at)?, peers.get(index)?);
+        let bound = track.certainty().bound().filter(|bound| self.model.stamped && at >= bound.at());
+        Some(bound.map_or(reading, |bound| certain::limited(reading, &bound.after(at, &track.reach()))))
+    }
+
+    /// Where a peer is at an instant by its horizon.
     #[must_use]
     pub fn read(&self, index: usize, at: Instant) -> Option<Reading> {
         self.horizons.get(index)?.read(at, &self.grid, self.model.interpolate)

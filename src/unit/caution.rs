@@ -1,18 +1,18 @@
 //! What the unit is careful by: what is certain of its peers and what its range sensor sees enter; what is still known of the
 //! vehicle ahead without its messages, and the command that the last gate lets through, leave.
 
-use super::{OnboardUnit, RANGE_TIMEOUT};
+use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::controller::Facts;
 use crate::envelope::{self, Obstacle, Reckoning, Spare};
-use crate::estimator::bound::Bound;
+use crate::estimator::bound::{Bound, Reach};
 use crate::estimator::{Reading, State};
 use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
 use crate::time::Instant;
-use crate::units::{Acceleration, Distance, Position};
+use crate::units::{Acceleration, Distance, Position, Speed};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// What is certain of a peer at an instant, now or later.
@@ -22,27 +22,39 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(track.certainty().bound()?.after(at, &track.reach()))
     }
 
+    /// Where a peer is estimated to be, inside what is certain of it then.
+    pub(super) fn estimated(&self, index: usize, at: Instant) -> Option<Reading> {
+        self.estimator.read_inside(index, at, &self.peers)
+    }
+
     /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it,
-    /// or the near end of what is certain. Never a stale sample. A target that comes by another leg is not what the sensor
-    /// sees: of the two, the one that is nearer.
+    /// or the near end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees
+    /// that it is not there. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two,
+    /// the one that is nearer.
     pub(super) fn still_known(&self, now: Instant, target: Option<usize>) -> Option<Reading> {
-        let seen = self.ranging.ahead(now, RANGE_TIMEOUT);
+        let seen = self.ranging.ahead(now);
         if seen.is_some() && target == self.visible() {
             return seen;
         }
+        let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &Reach::WORST));
+        let stood = stood.and_then(|bound| self.near(bound.lowest_position(), bound.lowest_speed()));
+        let target = target.filter(|index| !self.is_seen_past(*index, now));
         let certain = target.and_then(|index| self.certain_rear(now, index));
-        [seen, certain].into_iter().flatten().min_by_key(|rear| rear.position)
+        [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
     }
 
     /// The rear bumper at the near end of what is certain of a peer.
     fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        let position = bound.lowest_position().ahead(length.negated());
-        // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+        self.near(bound.lowest_position().ahead(length.negated()), bound.lowest_speed())
+    }
+
+    /// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+    fn near(&self, position: Position, speed: Speed) -> Option<Reading> {
         let ego = self.ego.as_ref()?.position;
         let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
-        Some(Reading { position: ego.ahead(gap), speed: bound.lowest_speed() })
+        Some(Reading { position: ego.ahead(gap), speed })
     }
 
     /// The last gate, with the ego at the less safe end of its accuracies: the command as it is encoded, and whether the
@@ -76,13 +88,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let heard = match self.coordination.itinerary() {
-            None => target.and_then(|index| self.obstacle(now, index)).map(spare),
+            None => {
+                let target = target.filter(|index| !self.is_seen_past(*index, now));
+                target.and_then(|index| self.obstacle(now, index)).map(spare)
+            }
             Some(_) => {
                 let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing);
                 self.stop_on_lane(now, &ego).chain(crossing).map(spare).min()
             }
         };
-        let seen = self.obstacle_seen(now).map(spare);
+        let seen = self.obstacles_seen(now, rearmost).map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), spare };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
@@ -96,7 +111,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let leading = (0..PEERS)
             .filter(move |index| choice.leading.contains(*index))
             .filter(move |index| self.is_heeded(*index, now, ego.position, ego.speed));
-        leading.chain(choice.lane.map(usize::from)).filter_map(move |index| self.obstacle(now, index))
+        let ahead = leading.chain(choice.lane.map(usize::from)).filter(move |index| !self.is_seen_past(*index, now));
+        ahead.filter_map(move |index| self.obstacle(now, index))
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
@@ -129,9 +145,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(Obstacle::rear(&self.bound(index, now)?, length, &track.reach()))
     }
 
-    /// The same of whatever the range sensor sees that is not known to be the target.
-    fn obstacle_seen(&self, now: Instant) -> Option<Obstacle> {
-        let (rear, reach) = self.ranging.stranger(now, RANGE_TIMEOUT)?;
-        Some(Obstacle::rear(&rear.after(now, &reach), Distance::ZERO, &reach))
+    /// The same of everyone whom the range sensor has seen and who is not known to be the target. Past whom the ego has got by more
+    /// than a vehicle's length is not on its path.
+    fn obstacles_seen(&self, now: Instant, rearmost: Position) -> impl Iterator<Item = Obstacle> {
+        let target = self.visible().and_then(|index| self.peers.get(index)?.station());
+        let is_passed = move |rear: &Bound| rearmost.ahead_of(rear.lowest_position()) > DEFAULT_LENGTH;
+        let ahead = self.ranging.strangers(now, target).filter(move |rear| !is_passed(rear));
+        ahead.map(move |rear| Obstacle::rear(&rear.after(now, &Reach::WORST), Distance::ZERO, &Reach::WORST))
     }
 }

@@ -335,7 +335,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Where a peer is estimated to be, and its rear bumper.
     pub(super) fn rear(&self, index: usize, now: Instant) -> Option<(Reading, Position)> {
-        let reading = self.estimator.read(index, now)?;
+        let reading = self.estimated(index, now)?;
         let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
         Some((reading, reading.position.ahead(length.negated())))
     }

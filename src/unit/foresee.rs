@@ -45,7 +45,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The gains of an association that begins then.
     fn gains_behind(&self, index: usize, own: &Reading, at: Instant) -> Option<Gains> {
-        let ahead = self.estimator.read(index, at)?;
+        let ahead = self.estimated(index, at)?;
         let headway = ahead.position.ahead_of(own.position);
         Some(Gains::look_up(&self.config.law, own.speed, ahead.speed, headway))
     }
@@ -58,7 +58,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         for index in 0..PEERS {
             let is_minded = self.coordination.standing(index).is_some_and(|standing| {
                 if self.coordination.is_on_lane(standing) {
-                    self.estimator.read(index, now).is_some_and(|reading| reading.position > own.position)
+                    self.estimated(index, now).is_some_and(|reading| reading.position > own.position)
                 } else {
                     let is_ahead = || self.entry(index, standing).is_some_and(|entry| self.is_ahead(index, &entry));
                     standing.crossing > next || standing.crossing == next && is_ahead()

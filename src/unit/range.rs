@@ -1,78 +1,32 @@
 //! The on-board range sensor: its view of the vehicle ahead enters; what is certain of the target is narrowed by it, the
 //! estimate is corrected by it, and whether the two agree leaves.
 //!
+//! As the view shows the nearest vehicle on the ego's path, nobody whose place is on that path is nearer: the near ends of
+//! those are raised to it. While view and messages contradict one another neither touches the other, and the unit drives by
+//! what it sees.
+//!
 //! The sensor's and the estimate's positions are weighed by the squares of their uncertainties: the sensor's accuracy
 //! against half the width of the target's bound, which grows with the age of what was heard over V2X. So fresh messages
 //! are left alone, and in a long silence the sensor decides.
 
 use super::OnboardUnit;
-use crate::estimator::Reading;
-use crate::estimator::bound::{Bound, Doubt, Reach};
+use super::sight::{Sight, Verdict};
+use crate::estimator::bound::{Bound, Doubt};
 use crate::health::Refusal;
-use crate::held::Held;
 use crate::parameters::{
     LENGTH_ROUNDING, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
 
-/// The sensor's newest view, at an instant of the unit's clock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sight {
-    at: Instant,
-    /// Rear bumper of the vehicle ahead.
-    rear: Position,
-    speed: Speed,
-    doubt: Doubt,
-    /// Whether it went into what is certain of the target.
-    is_target: bool,
-}
-
-/// So many views in a row that contradict what is certain of the target are a disagreement.
-const DISAGREEMENT: u8 = 3;
+/// No vehicle on a road is shorter.
+const SHORTEST: Distance = Distance::from_mm(1_500);
 
 /// A correction of less than this share is not worth computing the horizon anew.
 const LEAST_SHARE: i64 = 16;
-
-/// The range sensor's part of the unit.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Ranging {
-    sight: Held<Sight>,
-    contradictions: u8,
-}
-
-impl Ranging {
-    pub(super) const fn new() -> Self {
-        Self { sight: Held::Nothing, contradictions: 0 }
-    }
-
-    /// Whether what the sensor sees and what is heard contradict one another beyond what is uncertain of both. What is no
-    /// longer seen contradicts nothing.
-    pub(super) fn disagrees(&self, now: Instant, timeout: Duration) -> bool {
-        self.contradictions >= DISAGREEMENT && self.newest(now, timeout).is_some()
-    }
-
-    /// What is certain of the rear of a vehicle that the sensor sees, and how fast it can change its speed, as long as it is
-    /// not known to be the target.
-    pub(super) fn stranger(&self, now: Instant, timeout: Duration) -> Option<(Bound, Reach)> {
-        let sight = self.newest(now, timeout).filter(|sight| !sight.is_target)?;
-        Some((Bound::around(sight.at, sight.rear, sight.speed, &sight.doubt, &Reach::WORST), Reach::WORST))
-    }
-
-    fn newest(&self, now: Instant, timeout: Duration) -> Option<Sight> {
-        self.sight.get().filter(|sight| now.since(sight.at) <= timeout)
-    }
-
-    /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
-    /// front one. `None` if it is older than `timeout`.
-    pub(super) fn ahead(&self, now: Instant, timeout: Duration) -> Option<Reading> {
-        let sight = self.newest(now, timeout)?;
-        let age = now.since(sight.at).seconds();
-        Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
-    }
-}
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a view of the vehicle ahead, received at `received`.
@@ -89,12 +43,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
         let doubt = self.doubt_of_sight(ego, since, &seen);
-        let mut sight = Sight { at, rear, speed, doubt, is_target: false };
-        if let Some(index) = self.visible() {
-            sight.is_target = self.compare(index, &sight);
+        let mut sight = Sight { at, rear, speed, doubt, station: None };
+        let (visible, leading) = (self.visible(), self.coordination.choice().leading);
+        for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
+            self.raise(index, &sight);
         }
-        self.ranging.sight.set(sight);
+        if let Some(index) = visible {
+            sight.station = self.compare(received, index, &sight);
+        }
+        self.ranging.see(sight);
         Ok(())
+    }
+
+    /// Nobody on the ego's path is nearer than what is seen. Whether the peer may be farther.
+    fn raise(&mut self, index: usize, sight: &Sight) -> bool {
+        let Some(track) = self.peers.get_index_mut(index) else { return true };
+        // However long it is, its front is not behind its rear.
+        let length = track.intent().map_or(Distance::ZERO, |intent| intent.length);
+        let seen = sight.bound();
+        track.narrow(&Bound::not_behind(seen.at(), seen.lowest_position().ahead(length)))
     }
 
     /// What is uncertain of a sight: the sensor's accuracies, the ego's own, and what the ego may have done between its
@@ -117,24 +84,68 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
     }
 
-    /// Whether the sight is the target's, by all that is certain of that; then it narrows it.
-    fn compare(&mut self, index: usize, sight: &Sight) -> bool {
-        let Some(track) = self.peers.get_index_mut(index) else { return false };
-        let Some(length) = track.intent().map(|intent| intent.length) else { return false };
+    /// Whose the sight is, if it is certain that it is the peer's; then it narrows it. It is if it fits what is certain of the peer, and
+    /// that leaves no room for another vehicle. A sight that may be the peer's or another one's corrects the estimate alone.
+    fn compare(&mut self, now: Instant, index: usize, sight: &Sight) -> Option<StationHash> {
+        let is_disputed = self.is_contradicted(index, now);
+        let track = self.peers.get_index_mut(index)?;
+        let (station, heard) = (track.station()?, track.newest().map(|newest| newest.received));
+        let Some(length) = track.intent().map(|intent| intent.length) else {
+            self.raise(index, sight);
+            return None;
+        };
         let front = sight.rear.ahead(length);
         let reach = track.reach();
+        let seen = track.around(sight.at, front, sight.speed, &sight.doubt);
         let before = track.certainty().bound().map(|bound| bound.after(sight.at, &reach));
-        let around = track.around(sight.at, front, sight.speed, &sight.doubt);
-        if !track.narrow(&around) {
-            self.ranging.contradictions = self.ranging.contradictions.saturating_add(1);
-            return false;
+        let verdict = if track.certainty().bound().is_none_or(|bound| bound.and(&seen, &reach).is_some()) {
+            Verdict::Agrees
+        } else if before.is_some_and(|bound| bound.highest_position() < seen.lowest_position()) {
+            Verdict::SeesPast
+        } else {
+            Verdict::Contradicts
+        };
+        if self.ranging.judge(station, now, verdict, heard) {
+            self.health.count(Refusal::RangeDisagrees);
         }
-        self.ranging.contradictions = 0;
-        let (Some(newest), Some(bound)) = (track.newest().copied(), before) else { return true };
-        if let Some(sample) = self.corrected(index, sight, front, &bound, &newest) {
+        if is_disputed {
+            return None;
+        }
+        if verdict != Verdict::Agrees {
+            self.raise(index, sight);
+            return None;
+        }
+        let bound = before?;
+        // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear.
+        let is_certain = bound.highest_position().ahead_of(seen.lowest_position()) < SHORTEST;
+        let track = self.peers.get_index_mut(index)?;
+        let newest = track.newest().copied();
+        if is_certain {
+            track.narrow(&seen);
+        } else {
+            self.raise(index, sight);
+        }
+        if let Some(newest) = newest
+            && let Some(sample) = self.corrected(index, sight, front, &bound, &newest)
+        {
             self.estimator.note_correction(index, sample);
         }
-        true
+        is_certain.then_some(station)
+    }
+
+    /// Whether what is seen and what is heard of a peer contradict one another.
+    pub(super) fn is_contradicted(&self, index: usize, now: Instant) -> bool {
+        self.heard_of(index).is_some_and(|(station, heard)| self.ranging.disagrees(station, now, heard))
+    }
+
+    /// Whether the sensor sees that a peer is not where it is held to be.
+    pub(super) fn is_seen_past(&self, index: usize, now: Instant) -> bool {
+        self.heard_of(index).is_some_and(|(station, heard)| self.ranging.sees_past(station, now, heard))
+    }
+
+    fn heard_of(&self, index: usize) -> Option<(StationHash, Option<Instant>)> {
+        let track = self.peers.get(index)?;
+        Some((track.station()?, track.newest().map(|newest| newest.received)))
     }
 
     /// The estimate and the sight, each by its weight, as a sample of the target.

@@ -60,6 +60,8 @@ pub struct Rig {
     listener: Receiver<0>,
     sequence: u8,
     tag: u8,
+    /// The speed that the driver wants, in m/s.
+    pub wanted: f64,
 }
 
 /// The instant of the unit's clock.
@@ -81,6 +83,7 @@ impl Rig {
             listener: Receiver::new(config.base_id, Role::Modem),
             sequence: 0,
             tag: 0,
+            wanted: 40.0,
         }
     }
 
@@ -157,7 +160,8 @@ impl Rig {
 
     /// The driver's wish.
     pub fn wish(&mut self, at: i64, engaged: bool, predecessor: Predecessor) -> Result<(), Refusal> {
-        self.put(at, &Message::EgoIntent(EgoIntent { engaged, predecessor, target_speed: mps(40.0), time_gap: None }))
+        let target_speed = mps(self.wanted);
+        self.put(at, &Message::EgoIntent(EgoIntent { engaged, predecessor, target_speed, time_gap: None }))
     }
 
     /// The range sensor's view.

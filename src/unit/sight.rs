@@ -1,0 +1,176 @@
+//! What the range sensor has seen: views enter; what the unit remembers of them, and whether they contradict what is heard,
+//! leave.
+//!
+//! A view shows the nearest vehicle on the ego's path: nobody is between the ego and what it sees. That is an assumption of
+//! use; all that is concluded here rests on it.
+//!
+//! *Memory.* What was seen does not vanish with the view. Its near end is carried on, as a stranger's that may brake as hard
+//! as any vehicle: for [`MOVING`] of whoever was driving, and for [`STANDING`] of whoever stood or crawled. A newer view
+//! takes its place unless it is nearer: then it hides what stood beyond, and both are remembered.
+//!
+//! *Contradiction.* [`DISAGREEMENT`] views in a row that what is certain of the target excludes are one. It lasts until
+//! none has contradicted it for [`SETTLED`]. If they saw past all that is certain of the target, nobody is where that is
+//! held to be, and the contradiction lasts until the target is heard again, however long it is silent.
+
+use crate::estimator::Reading;
+use crate::estimator::bound::{Bound, Doubt, Reach};
+use crate::held::Held;
+use crate::time::{Duration, Instant};
+use crate::units::{Position, Speed};
+use crate::wire::StationHash;
+
+/// A view older than this is not driven by, and shows no longer that nobody is nearer.
+pub(super) const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
+
+/// Who was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does not
+/// act within this time, so that one who turns off costs nothing.
+const MOVING: Duration = Duration::from_millis(1_000);
+
+/// Who stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a sensor
+/// that sees nobody says nothing: without an end, who leaves while nobody looks would hold the ego for ever.
+const STANDING: Duration = Duration::from_millis(10_000);
+
+/// Whoever may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
+const CRAWL: Speed = Speed::from_mm_per_s(1_000);
+
+/// So many views in a row that contradict what is certain of the target are a disagreement.
+const DISAGREEMENT: u8 = 3;
+
+/// So long no view may contradict it until a disagreement is over.
+const SETTLED: Duration = Duration::from_millis(1_000);
+
+/// A view, at an instant of the unit's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Sight {
+    pub at: Instant,
+    /// Rear bumper of the vehicle ahead.
+    pub rear: Position,
+    pub speed: Speed,
+    pub doubt: Doubt,
+    /// Whose it is, if it went into what is certain of that station.
+    pub station: Option<StationHash>,
+}
+
+impl Sight {
+    /// What is certain of the rear that was seen, by what was seen alone.
+    pub fn bound(&self) -> Bound {
+        Bound::around(self.at, self.rear, self.speed, &self.doubt, &Reach::WORST)
+    }
+}
+
+/// Views that what is certain of a station excludes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Contradiction {
+    station: StationHash,
+    /// The last of them.
+    at: Instant,
+    /// Whether it saw past all that is certain of the station.
+    is_past: bool,
+}
+
+/// The range sensor's part of the unit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ranging {
+    newest: Held<Sight>,
+    /// Whoever was seen standing last, until a view shows that it is not there.
+    standing: Held<Sight>,
+    /// Views in a row that contradict.
+    contradictions: u8,
+    contradiction: Held<Contradiction>,
+}
+
+impl Ranging {
+    pub(super) const fn new() -> Self {
+        Self { newest: Held::Nothing, standing: Held::Nothing, contradictions: 0, contradiction: Held::Nothing }
+    }
+
+    /// Takes a view in.
+    pub(super) fn see(&mut self, sight: Sight) {
+        let seen = sight.bound();
+        // The same one again, or farther: nobody is where it was held to be, then.
+        let is_beyond =
+            |held: &Sight| seen.highest_position() >= held.bound().after(seen.at(), &Reach::WORST).lowest_position();
+        if seen.lowest_speed() <= CRAWL {
+            self.standing.set(sight);
+        } else if self.standing.as_ref().is_some_and(is_beyond) {
+            self.standing.clear();
+        }
+        self.newest.set(sight);
+    }
+
+    /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
+    /// front one. `None` if the view is too old.
+    pub(super) fn ahead(&self, now: Instant) -> Option<Reading> {
+        let sight = self.newest.get().filter(|sight| now.since(sight.at) <= RANGE_TIMEOUT)?;
+        let age = now.since(sight.at).seconds();
+        Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
+    }
+
+    /// What is certain of the rears of those who are remembered as `station` is not, each at the time of its view.
+    pub(super) fn strangers(&self, now: Instant, station: Option<StationHash>) -> impl Iterator<Item = Bound> + use<> {
+        let moving = self.newest.get().filter(|sight| now.since(sight.at) <= MOVING);
+        let remembered = [moving, self.standing(now)].into_iter().flatten();
+        remembered.filter(move |sight| station.is_none() || sight.station != station).map(|sight| sight.bound())
+    }
+
+    /// Whoever was seen standing.
+    pub(super) fn standing(&self, now: Instant) -> Option<Sight> {
+        self.standing.get().filter(|sight| now.since(sight.at) <= STANDING)
+    }
+
+    /// Takes note of whether a view contradicts what is certain of a station, and saw past that. Whether a disagreement begins.
+    pub(super) fn judge(
+        &mut self,
+        station: StationHash,
+        at: Instant,
+        verdict: Verdict,
+        heard: Option<Instant>,
+    ) -> bool {
+        if verdict == Verdict::Agrees {
+            self.contradictions = 0;
+            return false;
+        }
+        self.contradictions = self.contradictions.saturating_add(1);
+        let begins = !self.disagrees(station, at, heard);
+        if begins && self.contradictions < DISAGREEMENT {
+            return false;
+        }
+        self.contradiction.set(Contradiction { station, at, is_past: verdict == Verdict::SeesPast });
+        begins
+    }
+
+    /// Whether what is seen and what is heard of a station, `heard` last, contradict one another.
+    pub(super) fn disagrees(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
+        self.holds(station, now, heard, SETTLED).is_some()
+    }
+
+    /// Whether the sensor sees that a station is not where it is held to be: by a view that is not too old, or since which nothing
+    /// was heard of it.
+    pub(super) fn sees_past(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
+        self.holds(station, now, heard, RANGE_TIMEOUT).is_some_and(|contradiction| contradiction.is_past)
+    }
+
+    fn holds(
+        &self,
+        station: StationHash,
+        now: Instant,
+        heard: Option<Instant>,
+        lasts: Duration,
+    ) -> Option<Contradiction> {
+        self.contradiction.get().filter(|held| {
+            let is_unheard = held.is_past && heard.is_none_or(|heard| heard <= held.at);
+            held.station == station && (is_unheard || now.since(held.at) <= lasts)
+        })
+    }
+}
+
+/// What a view says of what is certain of a station.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It may be that station's.
+    Agrees,
+    /// It is not, or what is heard is wrong.
+    Contradicts,
+    /// Likewise, and the station cannot be where it is held to be.
+    SeesPast,
+}
