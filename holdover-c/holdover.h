@@ -355,6 +355,10 @@ typedef struct holdover_envelope_t {
   uint32_t speed_mm_s;
   // What is left between the bumpers when both have come to rest, in mm.
   uint32_t margin_mm;
+  // How long a command may stay in force beyond its period: the next one's way to the actuators, and ticks missed in a row; in us.
+  uint32_t delay_us;
+  // Share of the lag by which the real one may be longer or shorter, in thousandths.
+  uint32_t lag_tolerance_milli;
 } holdover_envelope_t;
 
 // Everything that the unit has to be told. Times that are compared with the clock are in us, as the clock is; all else is

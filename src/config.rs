@@ -9,7 +9,7 @@ pub use check::ConfigError;
 use crate::dynamics::Body;
 use crate::parameters;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 use crate::wire::intent::Limits;
 use crate::wire::{BaseId, StationHash};
 
@@ -145,16 +145,24 @@ pub struct Envelope {
     pub speed: Speed,
     /// What is left between the bumpers when both have come to rest.
     pub margin: Distance,
+    /// How long a command may stay in force beyond its period: the next one's way to the actuators, and ticks that were missed
+    /// in a row; 0 to 0.5 s.
+    pub delay: Duration,
+    /// Share of the configured lag by which the real one may be longer or shorter; 0 to 1.
+    pub lag_tolerance: Share,
 }
 
 impl Envelope {
-    /// A car's: 3 m/s², emergency braking of 8 m/s² built up at 25 m/s³, 50 m/s, half a metre.
+    /// A car's: 3 m/s², emergency braking of 8 m/s² built up at 25 m/s³, 50 m/s, half a metre; three ticks of 10 ms, a fifth
+    /// of the lag.
     pub const CAR: Self = Self {
         acceleration: Acceleration::from_mm_per_s2(3_000),
         braking: Acceleration::from_mm_per_s2(8_000),
         jerk: Jerk::from_mm_per_s3(25_000),
         speed: Speed::from_mm_per_s(50_000),
         margin: Distance::from_mm(500),
+        delay: Duration::from_millis(30),
+        lag_tolerance: Share::from_milli(200),
     };
 }
 

@@ -7,50 +7,72 @@
 //!
 //! # Safe distance
 //!
-//! The vehicle ahead cannot stop before the near end of its bound does if that brakes at its hardest
-//! ([`crate::estimator::bound::Bound::nearest_stop`]); through a silence that point does not move. The ego has to be
-//! able to stop before it: RSS' longitudinal rule with the ego's own reaction in full.
+//! What is certain of a vehicle ahead is its near end: a vehicle of its own, whose rear is at `p`, whose speed is `w`, and
+//! which brakes with `c`, its hardest ([`crate::estimator::bound`]). No truth gets behind it. What the gate keeps is this:
+//! *emergency braking from now on never meets the near end*. A command that is allowed by a condition that suffices for it
+//! keeps it; and where none does, the command is emergency braking, and what was true stays true.
 //!
 //! With actuators that lag by `T`, `y = r + T v` and `z = v + T a` move as a double integrator, `ẏ = z`, `ż = u`, exactly.
-//! Emergency braking takes the demand `u` down to `-b` at jerk `j`, which takes `τ = (u + b)/j`. Then
+//! Of the near end likewise `q = p + T w`, `q̇ = w - T c`. Behind `q` in `y` is behind `p` in `r`: since
+//! `T d(p - r)/dt + (p - r) = q - y`, a `p - r` that was not negative stays so while `q - y` is not. It is not to begin with:
+//! there was no collision yet, and a near end that is behind the ego is that of a vehicle that is at least where the ego is.
+//!
+//! Emergency braking takes the demand `u` down to `-b` at jerk `j`, which takes `τ = (u + b)/j`. Before it begins the
+//! demand may hold for the reaction time `h`: a tick, and how late a command may come into force
+//! ([`Envelope::delay`]). Then, with `X = z + ½ j (τ + h)²`,
 //!
 //! ```text
-//! V(z, u) = ( z + ½ j (τ + h)² )² / 2b
+//! V = X² / 2b
 //! ```
 //!
-//! is more than all of the way that `y` still makes if the demand `u` holds for one more tick `h` and emergency braking
-//! follows: along that manoeuvre `V` falls by at least the way made, and it is never negative. So `V <= S`, with `S` the
-//! way from `y` to the point, is kept from tick to tick by braking at the latest when it would be broken, and solved for
-//! the demand it is the largest acceleration that keeps the next tick safe:
+//! is more than all of the way that `y` still makes: along that manoeuvre `Ẋ <= -b`, so that `V` falls by at least `X`, which
+//! is at least `z`. For the same reason, if `c < b`, with `Z = z - q̇` and `X = Z + ½ j (τ + h)²`,
 //!
 //! ```text
-//! u = sqrt( 2 j ( sqrt(2 b S) - z ) ) - j h - b
+//! V = X² / 2(b - c),   0 for X < 0
 //! ```
 //!
-//! It falls steadily as the way shrinks: there is no cliff. In steady following behind a vehicle that brakes no harder
-//! than the ego it does nothing as long as the newest sample is younger than `t_g - ρ`, with
-//! `ρ = T + 2h + (b + j h)²/(2 j b)`, if the standstill distance covers margin, accuracies and `(b + j h)⁴/(8 j² b)`.
+//! is more than all by which `y` still closes on `q` as long as that goes on braking, and on the real `q` the less: where that
+//! comes to rest, its parabola goes on backwards. So either of two conditions suffices:
+//!
+//! - **by the points of rest**: `V <= S` with the way `S` from `y` to where the near end would come to rest *if it braked with
+//!   the harder of `b` and `c`*. A vehicle that brakes so is never ahead of the near end. Both on the move, the gap to it is
+//!   concave, since no ego brakes harder than `b`; once it stands the gap only shrinks, once the ego does it only grows. So
+//!   its least value is at the beginning or at the points of rest. With `c` alone in the place of the harder one the gap is
+//!   not concave if `c < b`: the paths cross on the way.
+//! - **by closing**, if `c < b`: `V <= S` with the way `S` from `y` to `q`.
+//!
+//! Both are kept from tick to tick by braking at the latest when they would be broken, and both grow weaker if the near end is
+//! further ahead or faster than it was said to be. Solved for the demand, with the *speed to spare*
+//! `G = sqrt(2 b S) - z`, or `sqrt(2 (b - c) S) - Z`, both are
+//!
+//! ```text
+//! u = sqrt( 2 j G ) - j h - b
+//! ```
+//!
+//! so that one root serves for the larger `G` of the two conditions, the least of all vehicles ahead. It falls steadily as the
+//! way shrinks: there is no cliff.
+//!
+//! *Coming to rest.* Where `z` is negative, `y` runs back. At a standstill the acceleration is lost, and `z` springs up to 0. So
+//! the cap takes no `z` for less than 0, as the ego might be told to drive on. If it is told to brake it stands for good, and
+//! what is known of the way until then is enough ([`is_safe`]).
+//!
+//! *The lag* is known to within [`Envelope::lag_tolerance`]. `V - S` is a convex function of `T` (a square of what is linear,
+//! less what is linear), so it is largest at one of the two ends of that; both are computed.
+//!
+//! In steady following behind a vehicle that brakes no less hard than the ego it does nothing as long as the newest sample is
+//! younger than `t_g - ρ`, with `ρ = T + (b + j h)²/(2 j b)` and `T` at its largest, if the standstill distance covers margin,
+//! accuracies and `(b + j h)⁴/(8 j² b)`.
+
+mod distance;
+
+pub use distance::{Ego, Obstacle, Spare, distance_cap, floor, is_safe, spare};
 
 use crate::config::Envelope;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
+use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::command::ACCELERATION_STEPS;
 use crate::wire::quantity::Quantity;
-
-/// The ego as the gate sees it: its own motion at the uncertain end that is the less safe one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ego {
-    /// Front bumper, as far ahead as it may be.
-    pub position: Position,
-    /// Speed, as high as it may be.
-    pub speed: Speed,
-    /// Acceleration reached.
-    pub acceleration: Acceleration,
-    /// The command in force.
-    pub last: Acceleration,
-    /// Time constant of its actuators.
-    pub lag: FineSeconds,
-}
 
 /// No more acceleration than the absolute limit.
 #[must_use]
@@ -70,45 +92,10 @@ pub fn freshness_cap(is_fresh: bool) -> Acceleration {
     if is_fresh { Acceleration::MAX } else { Acceleration::ZERO }
 }
 
-/// The way to a point before which the ego has to be able to stop, less the margin, the lag's part and one tick of delay:
-/// `S` of the module's theory.
-#[must_use]
-pub fn room(envelope: &Envelope, ego: &Ego, stop_before: Position, period: Duration) -> Distance {
-    let ahead = stop_before.ahead_of(ego.position).minus(envelope.margin);
-    ahead.minus(way(ego.speed, ego.lag)).minus(ego.speed.over(period.seconds()))
-}
-
-/// The largest acceleration that keeps the next tick safe; below the hardest braking if none does.
-#[must_use]
-pub fn distance_cap(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration) -> Acceleration {
-    let braking = micros(envelope.braking);
-    let jerk = i64::from(envelope.jerk.to_mm_per_s3()).saturating_mul(1000);
-    // At a standstill the acceleration is lost and `z` springs up to 0, so that nothing may be built on its being less.
-    let z = speed_micros(ego.speed).saturating_add(speed_micros(ego.acceleration.over(ego.lag))).max(0);
-    let fastest = root(2i64.saturating_mul(braking).saturating_mul(distance_micros(room)));
-    // Without room or without anything to spare the roots are 0, and what comes out is below the hardest braking.
-    let rise = root(2i64.saturating_mul(jerk).saturating_mul(fastest.saturating_sub(z)));
-    let tick = micros(envelope.jerk.over(period.fine_seconds()));
-    from_micros(rise.saturating_sub(tick).saturating_sub(braking))
-}
-
-/// The lowest command that the limits on jerk and braking allow: emergency braking.
-#[must_use]
-pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
-    let slew = envelope.jerk.over(period.fine_seconds());
-    last.minus(slew).max(envelope.braking.negated())
-}
-
 /// The highest command that the limit on jerk allows.
 #[must_use]
 pub fn ceiling(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
     last.plus(envelope.jerk.over(period.fine_seconds()))
-}
-
-/// Whether emergency braking from now on stops the ego in time: the predicate that the gate keeps.
-#[must_use]
-pub fn is_safe(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration) -> bool {
-    distance_cap(envelope, ego, room, period) >= floor(envelope, ego.last, period)
 }
 
 /// What the gate has to go by besides the ego.
@@ -116,8 +103,8 @@ pub fn is_safe(envelope: &Envelope, ego: &Ego, room: Distance, period: Duration)
 pub struct Situation {
     /// Whether the ego's own motion is fresh.
     pub is_fresh: bool,
-    /// The nearest point before which the ego has to be able to stop, if there is one.
-    pub stop_before: Option<Position>,
+    /// The least that is to spare behind anyone ahead.
+    pub spare: Spare,
 }
 
 /// The gate: the command that the demand becomes.
@@ -129,13 +116,10 @@ pub fn gate(
     situation: &Situation,
     period: Duration,
 ) -> Acceleration {
-    let distance = situation
-        .stop_before
-        .map_or(Acceleration::MAX, |point| distance_cap(envelope, ego, room(envelope, ego, point, period), period));
     let cap = absolute_cap(envelope)
         .min(speed_cap(envelope, ego.speed))
         .min(freshness_cap(situation.is_fresh))
-        .min(distance)
+        .min(distance_cap(envelope, situation.spare, period))
         .min(ceiling(envelope, ego.last, period));
     demand.min(cap).max(floor(envelope, ego.last, period))
 }
@@ -150,13 +134,6 @@ pub fn encodable(envelope: &Envelope, command: Acceleration) -> Acceleration {
     if step(down) < envelope.braking.negated() { step(down.saturating_add(1)) } else { step(down) }
 }
 
-/// Where the ego has to be able to stop behind a vehicle on its own path: behind that one's rear, where its near end would
-/// come to rest.
-#[must_use]
-pub fn stop_behind(nearest_stop: Position, length: Distance) -> Position {
-    nearest_stop.ahead(length.negated())
-}
-
 /// Where the ego has to be able to stop for a vehicle on a path that crosses its own: before the conflict area, until the
 /// rear of that one's near end has left it.
 #[must_use]
@@ -168,34 +145,6 @@ pub fn stop_before_conflict(
 ) -> Option<Position> {
     let has_left = other_near_end.ahead(other_length.negated()) >= other_area_ends;
     if has_left { None } else { Some(area_begins) }
-}
-
-/// `v T`, rounded up by at most a micrometre.
-fn way(speed: Speed, time: FineSeconds) -> Distance {
-    // 23 + 30 - 32 = 21 bits, and one more than half of that.
-    let product = crate::fixed::mul_hi(speed.to_bits(), time.to_bits());
-    Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1))
-}
-
-fn micros(acceleration: Acceleration) -> i64 {
-    acceleration.to_multiple_of(1_000_000)
-}
-
-fn speed_micros(speed: Speed) -> i64 {
-    speed.to_multiple_of(1_000_000)
-}
-
-fn distance_micros(distance: Distance) -> i64 {
-    distance.to_multiple_of(1_000_000)
-}
-
-fn from_micros(micros: i64) -> Acceleration {
-    Acceleration::from_ratio(micros, 1_000_000)
-}
-
-/// The square root, rounded down; 0 of what is negative.
-fn root(x: i64) -> i64 {
-    i64::try_from(x.max(0).unsigned_abs().isqrt()).unwrap_or(i64::MAX)
 }
 
 #[cfg(test)]

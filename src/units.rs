@@ -170,6 +170,14 @@ impl Acceleration {
     }
 }
 
+impl FineSeconds {
+    /// That share of it.
+    #[must_use]
+    pub const fn share(self, share: Share) -> Self {
+        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
+    }
+}
+
 impl Share {
     /// All of it.
     pub const ONE: Self = Self::from_bits(1 << ShareFormat::FRAC_NBITS);

@@ -4,12 +4,12 @@
 mod rig;
 
 use holdover::config::Envelope;
-use holdover::envelope::{self, Ego, Situation};
+use holdover::envelope::{self, Ego, Obstacle, Situation};
 use holdover::estimator::bound::{Bound, Doubt, Reach};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Jerk};
 use rig::plant::{Body, Plant};
-use rig::{m_of, metres, mps, mps2, mps2_of, place};
+use rig::{metres, mps, mps2, mps2_of, place};
 
 const PERIOD: Duration = Duration::from_millis(10);
 const H: f64 = 0.01;
@@ -39,12 +39,18 @@ fn seen(plant: &Plant, last: Acceleration, lag: FineSeconds) -> Ego {
 }
 
 fn is_safe(limits: &Envelope, ego: &Ego, stop_before: f64) -> bool {
-    envelope::is_safe(limits, ego, envelope::room(limits, ego, place(stop_before), PERIOD), PERIOD)
+    envelope::is_safe(limits, ego, &Obstacle::standing(place(stop_before)), PERIOD)
 }
 
-/// The nearest point ahead that is safe to have to stop before.
+/// The gate behind one obstacle.
+fn gated(limits: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Acceleration {
+    let situation = Situation { is_fresh: true, spare: envelope::spare(limits, ego, obstacle) };
+    envelope::gate(limits, Acceleration::MAX, ego, &situation, PERIOD)
+}
+
+/// The nearest point ahead, margin included, that is safe to have to stop before.
 fn nearest_safe(limits: &Envelope, ego: &Ego) -> f64 {
-    let (mut unsafe_at, mut safe_at) = (-50.0, 1500.0);
+    let (mut unsafe_at, mut safe_at) = (f64::from(limits.margin.to_bits()) / f64::from(1 << 20), 1500.0);
     while safe_at - unsafe_at > 1e-4 {
         let middle = 0.5 * (unsafe_at + safe_at);
         *(if is_safe(limits, ego, middle) { &mut safe_at } else { &mut unsafe_at }) = middle;
@@ -70,11 +76,11 @@ fn full_acceleration_never_takes_the_ego_beyond_the_point_it_has_to_stop_before(
             let nearest = nearest_safe(&limits, &seen(&start, mps2(last), lag));
             for further in [0.0, 1e-3, 0.02, 0.1, 0.5, 2.0, 7.0, 20.0, 60.0] {
                 let point = nearest + further;
-                let situation = Situation { is_fresh: true, stop_before: Some(place(point)) };
+                let obstacle = Obstacle::standing(place(point));
                 let (mut plant, mut last, mut still) = (start, mps2(last), 0);
                 for _ in 0..6_000 {
                     let ego = seen(&plant, last, lag);
-                    last = envelope::gate(&limits, Acceleration::MAX, &ego, &situation, PERIOD);
+                    last = gated(&limits, &ego, &obstacle);
                     plant.drive(mps2_of(last), H);
                     assert!(
                         plant.position <= point - margin,
@@ -136,18 +142,16 @@ fn no_collision(limits: &Envelope, lag: FineSeconds, speeds: (f64, f64), gap: f6
     };
     let front = moved(0.0).position - rig::LENGTH - gap;
     let mut plant = Plant { position: front, speed: speeds.0, acceleration: 0.0, lag: lag.get().to_num() };
-    let stop = envelope::stop_behind(ahead.bound.nearest_stop(&reach()), length);
-    if !is_safe(limits, &seen(&plant, Acceleration::ZERO, lag), m_of(stop)) {
+    let rear = |time: f64| Obstacle::rear(&ahead.bound.after(at(time), &reach()), length, &reach());
+    if !envelope::is_safe(limits, &seen(&plant, Acceleration::ZERO, lag), &rear(0.0), PERIOD) {
         return false;
     }
     let mut last = Acceleration::ZERO;
-    let situation = Situation { is_fresh: true, stop_before: Some(stop) };
     for tick in 0..3_000 {
-        last = envelope::gate(limits, Acceleration::MAX, &seen(&plant, last, lag), &situation, PERIOD);
+        last = gated(limits, &seen(&plant, last, lag), &rear(f64::from(tick) * H));
         plant.drive(mps2_of(last), H);
-        let rear = moved(f64::from(tick + 1) * H).position - rig::LENGTH;
         assert!(
-            plant.position < rear,
+            plant.position < moved(f64::from(tick + 1) * H).position - rig::LENGTH,
             "{limits:?} {lag:?} {speeds:?} gap {gap} age {age} brakes at {brakes_at}: hit after {tick} ticks"
         );
         if plant.speed == 0.0 && last <= Acceleration::ZERO {

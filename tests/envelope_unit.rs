@@ -65,15 +65,16 @@ fn a_standing_vehicle_is_not_hit_by_a_unit_that_is_engaged_at_speed_far_behind_i
 
 /// `ρ` of the envelope's documentation.
 fn reaction(limits: &Envelope, lag: f64) -> f64 {
-    let (b, j, h) = (f64::from(limits.braking.to_mm_per_s2()) / 1e3, f64::from(limits.jerk.to_mm_per_s3()) / 1e3, 0.01);
-    lag + 2.0 * h + (b + j * h).powi(2) / (2.0 * j * b)
+    let (b, j, h) = (f64::from(limits.braking.to_mm_per_s2()) / 1e3, f64::from(limits.jerk.to_mm_per_s3()) / 1e3, 0.04);
+    1.2 * lag + (b + j * h).powi(2) / (2.0 * j * b)
 }
 
 #[test]
 fn in_steady_following_nothing_is_changed_until_the_age_is_the_time_gap_less_the_reaction() {
     let rho = reaction(&Envelope::CAR, 0.3);
-    assert!((rho - 0.490).abs() < 1e-3, "{rho}");
-    for time_gap in [600, 700, 800, 1000, 1400, 2000] {
+    assert!((rho - 0.5625).abs() < 1e-3, "{rho}");
+    // A time gap that leaves less than a period of messages, 0.1 s, is limited between two of them.
+    for time_gap in [670, 700, 800, 1000, 1400, 2000] {
         for speed in [1.0, 5.0, 13.4, 20.0, 30.0, 40.0] {
             let mut config = guarded();
             config.law.time_gap = Seconds::from_millis(time_gap);
@@ -109,11 +110,15 @@ fn a_long_silence_is_braked_for_without_a_jump_and_without_wavering() {
     let (down, up) = road.steepest();
     // The jerk of emergency braking, and a step of the wire.
     assert!(down >= -25.3 && up <= 25.3, "{down} {up}");
+    // The cap is of a lag and a delay that are longer than the real ones, so that the last part of it builds up slowly.
     let begins = road.commands.iter().position(|u| *u < -0.5).unwrap();
-    let hardest = road.commands.iter().position(|u| *u <= -7.9).unwrap();
-    assert!(road.commands[begins..hardest].windows(2).all(|pair| pair[1] <= pair[0]));
-    // At its hardest the roundings of the wire, 1 mm and 1 mm/s of the ego's own motion, are all that moves it.
-    assert!(road.commands[hardest..].iter().all(|u| *u <= -7.7), "{:?}", &road.commands[hardest..]);
+    let hard = road.commands.iter().position(|u| *u <= -6.0).unwrap();
+    let builds_up = &road.commands[begins..hard];
+    assert!(builds_up.windows(2).all(|pair| pair[1] <= pair[0]), "{builds_up:?}");
+    // When it is hard the roundings of the wire, 1 mm and 1 mm/s of the ego's own motion, are all that moves it.
+    let held = &road.commands[hard..];
+    assert!(held.windows(2).all(|pair| pair[1] <= pair[0] + 0.15), "{held:?}");
+    assert!(held.iter().all(|u| *u <= -6.0) && *held.last().unwrap() <= -7.5, "{held:?}");
     // It builds up over most of half a second, as the theory says: (b + j h)/j.
-    assert!(hardest - begins >= 25, "{begins} {hardest}");
+    assert!(hard - begins >= 25, "{begins} {hard}");
 }

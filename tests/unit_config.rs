@@ -3,7 +3,7 @@
 
 use holdover::config::{Config, ConfigError, Envelope};
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 use holdover::wire::StationHash;
 
 const CAPACITY: usize = 400;
@@ -155,16 +155,20 @@ fn the_envelope() {
         jerk: Jerk::from_mm_per_s3(10_000),
         speed: Speed::from_mm_per_s(30_000),
         margin: Distance::from_mm(500),
+        delay: Duration::from_millis(30),
+        lag_tolerance: Share::from_milli(200),
     };
     type Set = fn(&mut Envelope, i32);
     // In bits of their formats; braking up to the car's emergency braking.
     let hardest = i64::from(Config::car(StationHash(1)).limits.emergency_braking.to_bits());
-    let bounded: [(Set, [i64; 2]); 5] = [
+    let bounded: [(Set, [i64; 2]); 7] = [
         (|envelope, bits| envelope.acceleration = Acceleration::from_bits(bits), [1, i64::MAX / 2]),
         (|envelope, bits| envelope.braking = Acceleration::from_bits(bits), [1, hardest]),
         (|envelope, bits| envelope.jerk = Jerk::from_bits(bits), [1, i64::MAX / 2]),
         (|envelope, bits| envelope.speed = Speed::from_bits(bits), [1, i64::MAX / 2]),
         (|envelope, bits| envelope.margin = Distance::from_bits(bits), [0, i64::MAX / 2]),
+        (|envelope, micros| envelope.delay = Duration::from_micros(micros.into()), [0, 500 * MS]),
+        (|envelope, bits| envelope.lag_tolerance = Share::from_bits(bits), [0, i64::from(Share::ONE.to_bits())]),
     ];
     for (set, ends) in bounded {
         range(ConfigError::Envelope, ends, |config, bits| {
@@ -172,6 +176,12 @@ fn the_envelope() {
             set(&mut envelope, int(bits));
             config.envelope = Some(envelope);
         });
+    }
+    // The longest lag that is tolerated has to be one that can be computed with.
+    for (millis, expected) in [(0, Ok(())), (1_664, Ok(())), (1_666, Err(ConfigError::Envelope))] {
+        let lag = FineSeconds::from_millis(millis);
+        let config = Config { lag, envelope: Some(SOUND), ..Config::car(StationHash(1)) };
+        assert_eq!(config.check(CAPACITY), expected, "{millis}");
     }
 }
 

@@ -69,5 +69,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .jerk_mm_s3 = 25000,
         .speed_mm_s = 50000,
         .margin_mm = 500,
+        .delay_us = 30000,
+        .lag_tolerance_milli = 200,
     },
 };

@@ -165,4 +165,8 @@ pub struct Envelope {
     pub speed_mm_s: u32,
     /// What is left between the bumpers when both have come to rest, in mm.
     pub margin_mm: u32,
+    /// How long a command may stay in force beyond its period: the next one's way to the actuators, and ticks missed in a row; in us.
+    pub delay_us: u32,
+    /// Share of the lag by which the real one may be longer or shorter, in thousandths.
+    pub lag_tolerance_milli: u32,
 }

@@ -75,6 +75,8 @@ fn fields() -> Vec<Field> {
         envelope.jerk_mm_s3,
         envelope.speed_mm_s,
         envelope.margin_mm,
+        envelope.delay_us,
+        envelope.lag_tolerance_milli,
     ]
 }
 

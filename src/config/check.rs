@@ -4,7 +4,7 @@
 use super::{Config, Prediction};
 use crate::parameters;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 use crate::wire::intent::Limits;
 
 /// Why a configuration was refused.
@@ -41,7 +41,8 @@ pub enum ConfigError {
     Link,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     Body,
-    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle.
+    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle; or its
+    /// delay is beyond 0.5 s, its tolerance beyond the whole lag, or the longest lag beyond 1.998 s.
     Envelope,
 }
 
@@ -62,13 +63,14 @@ impl core::fmt::Display for ConfigError {
             Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
-            Self::Envelope => "a limit of the envelope is zero, its margin is negative, or its braking is harder than emergency braking",
+            Self::Envelope => "a limit of the envelope is zero, its margin is negative, its braking is harder than emergency braking, its delay is beyond 0.5 s, or its lag_tolerance is beyond 1 or makes a lag beyond 1.998 s",
         })
     }
 }
 
 impl core::error::Error for ConfigError {}
 
+const LONGEST_LAG: FineSeconds = FineSeconds::from_millis(1_998);
 const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
 const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
 
@@ -89,7 +91,7 @@ impl Config {
             ConfigError::Horizon,
         )?;
         ensure((Distance::ZERO..=Distance::from_mm(40_950)).contains(&self.length), ConfigError::Length)?;
-        ensure((FineSeconds::ZERO..=FineSeconds::from_millis(1998)).contains(&self.lag), ConfigError::Lag)?;
+        ensure((FineSeconds::ZERO..=LONGEST_LAG).contains(&self.lag), ConfigError::Lag)?;
         self.check_limits()?;
         self.check_law()?;
         let link = &self.link;
@@ -115,6 +117,9 @@ impl Config {
                     && e.jerk > Jerk::ZERO
                     && e.speed > Speed::ZERO
                     && e.margin >= Distance::ZERO
+                    && (Duration::ZERO..=millis(500)).contains(&e.delay)
+                    && (Share::ZERO..=Share::ONE).contains(&e.lag_tolerance)
+                    && self.lag.plus(self.lag.share(e.lag_tolerance)) <= LONGEST_LAG
             }),
             ConfigError::Envelope,
         )

@@ -4,7 +4,7 @@
 use super::{OnboardUnit, RANGE_TIMEOUT};
 use crate::config::Envelope;
 use crate::controller::Facts;
-use crate::envelope;
+use crate::envelope::{self, Obstacle, Spare};
 use crate::estimator::bound::Bound;
 use crate::estimator::{Reading, State};
 use crate::parameters::{
@@ -13,7 +13,7 @@ use crate::parameters::{
 };
 use crate::peers::Sample;
 use crate::time::Instant;
-use crate::units::{Acceleration, Position};
+use crate::units::{Acceleration, Distance, Position};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// What is certain of a peer at an instant, now or later.
@@ -74,24 +74,29 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         };
         // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
+        let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let heard = match self.coordination.itinerary() {
-            None => target.and_then(|index| self.stop_behind(index)),
-            Some(_) => [self.stop_on_lane(now, &ego), self.stop_at_crossing(now, rearmost)].into_iter().flatten().min(),
+            None => target.and_then(|index| self.obstacle(now, index)).map(spare),
+            Some(_) => {
+                let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing);
+                self.stop_on_lane(now, &ego).chain(crossing).map(spare).min()
+            }
         };
-        let stop_before = [heard, self.stop_behind_seen(now)].into_iter().flatten().min();
-        let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
+        let seen = self.obstacle_seen(now).map(spare);
+        let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
+        let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), spare };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
     }
 
     /// On an itinerary: behind everyone ahead on the same leg. Who is estimated to be the nearest of them need not be: one that
     /// is silent may have braked where it is estimated to have driven on, past another one that is heard.
-    fn stop_on_lane(&self, now: Instant, ego: &envelope::Ego) -> Option<Position> {
+    fn stop_on_lane(&self, now: Instant, ego: &envelope::Ego) -> impl Iterator<Item = Obstacle> {
         let choice = self.coordination.choice();
         let leading = (0..PEERS)
-            .filter(|index| choice.leading.contains(*index))
-            .filter(|index| self.is_heeded(*index, now, ego.position, ego.speed));
-        leading.chain(choice.lane.map(usize::from)).filter_map(|index| self.stop_behind(index)).min()
+            .filter(move |index| choice.leading.contains(*index))
+            .filter(move |index| self.is_heeded(*index, now, ego.position, ego.speed));
+        leading.chain(choice.lane.map(usize::from)).filter_map(move |index| self.obstacle(now, index))
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
@@ -117,17 +122,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
-    /// The point behind a peer before which the ego has to be able to stop.
-    fn stop_behind(&self, index: usize) -> Option<Position> {
+    /// The rear of a peer at its near end, behind which the ego has to stay.
+    fn obstacle(&self, now: Instant, index: usize) -> Option<Obstacle> {
         let track = self.peers.get(index)?;
-        let stop = track.certainty().bound()?.nearest_stop(&track.reach());
         let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        Some(envelope::stop_behind(stop, length))
+        Some(Obstacle::rear(&self.bound(index, now)?, length, &track.reach()))
     }
 
-    /// The same behind whatever the range sensor sees that is not known to be the target.
-    fn stop_behind_seen(&self, now: Instant) -> Option<Position> {
+    /// The same of whatever the range sensor sees that is not known to be the target.
+    fn obstacle_seen(&self, now: Instant) -> Option<Obstacle> {
         let (rear, reach) = self.ranging.stranger(now, RANGE_TIMEOUT)?;
-        Some(rear.nearest_stop(&reach))
+        Some(Obstacle::rear(&rear.after(now, &reach), Distance::ZERO, &reach))
     }
 }

@@ -6,7 +6,7 @@
 use holdover::config;
 use holdover::dynamics;
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
 use holdover::wire::{BaseId, StationHash, intent};
 
 use super::{Body, Config, Envelope, Law, Limits, Link, Model, Prediction};
@@ -136,6 +136,8 @@ impl From<Envelope> for config::Envelope {
             jerk: Jerk::from_mm_per_s3(milli(plain.jerk_mm_s3)),
             speed: Speed::from_mm_per_s(milli(plain.speed_mm_s)),
             margin: Distance::from_mm(milli(plain.margin_mm)),
+            delay: micros(plain.delay_us),
+            lag_tolerance: Share::from_milli(milli(plain.lag_tolerance_milli)),
         }
     }
 }
@@ -249,6 +251,8 @@ impl From<&config::Envelope> for Envelope {
             jerk_mm_s3: magnitude(typed.jerk.to_mm_per_s3()),
             speed_mm_s: magnitude(typed.speed.to_mm_per_s()),
             margin_mm: magnitude(typed.margin.to_mm()),
+            delay_us: whole(typed.delay),
+            lag_tolerance_milli: magnitude(typed.lag_tolerance.to_milli()),
         }
     }
 }

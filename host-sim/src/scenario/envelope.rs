@@ -56,6 +56,7 @@ impl Envelope {
             jerk: Jerk::from_mm_per_s3(milli(self.jerk_mps3)),
             speed: Speed::from_mm_per_s(milli(self.speed_mps)),
             margin: Distance::from_mm(milli(self.margin_m)),
+            ..holdover::config::Envelope::CAR
         })
     }
 }

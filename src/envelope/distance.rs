@@ -1,0 +1,187 @@
+//! The safe distance: the ego and whom it has to stay behind enter; the speed to spare, and the largest acceleration that it
+//! allows, leave. The theory stands at the top of [`crate::envelope`]; the names here are those there.
+//!
+//! Everything is computed in whole micrometres, micrometres per second and their like, and rounded so that less is allowed.
+//! No product reaches 2⁶³: accelerations and jerks are below 2²⁶, speeds below 2²⁹, ways below 2³² of these.
+
+use crate::config::Envelope;
+use crate::estimator::bound::{Bound, Reach};
+use crate::fixed::quotient;
+use crate::time::Duration;
+use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
+
+/// The ego as the gate sees it: its own motion at the uncertain end that is the less safe one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ego {
+    /// Front bumper, as far ahead as it may be.
+    pub position: Position,
+    /// Speed, as high as it may be.
+    pub speed: Speed,
+    /// Acceleration reached, as high as it may be.
+    pub acceleration: Acceleration,
+    /// The command in force.
+    pub last: Acceleration,
+    /// Time constant of its actuators, as configured.
+    pub lag: FineSeconds,
+}
+
+/// What the ego has to stay behind, at now: of a vehicle ahead the rear at the near end of what is certain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Obstacle {
+    /// Its rear.
+    pub position: Position,
+    /// Its speed, as low as it may be.
+    pub speed: Speed,
+    /// The hardest that it brakes, as a magnitude.
+    pub braking: Acceleration,
+}
+
+impl Obstacle {
+    /// What does not move.
+    #[must_use]
+    pub const fn standing(position: Position) -> Self {
+        Self { position, speed: Speed::ZERO, braking: Acceleration::MAX }
+    }
+
+    /// The rear of a vehicle of that length, of whose front this is certain at now.
+    #[must_use]
+    pub fn rear(bound: &Bound, length: Distance, reach: &Reach) -> Self {
+        let position = bound.lowest_position().ahead(length.negated());
+        Self { position, speed: bound.lowest_speed().max(Speed::ZERO), braking: reach.braking }
+    }
+}
+
+/// The speed to spare, `G` of the theory, in µm/s: what the ramp of emergency braking may still add to the closing speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Spare(i64);
+
+impl Spare {
+    /// Nobody is ahead.
+    pub const ENDLESS: Self = Self(i64::MAX);
+    /// Not even emergency braking is known to help.
+    pub const NONE: Self = Self(i64::MIN);
+}
+
+/// How much there is to spare behind an obstacle: the least of what there is at the two ends of the lag.
+#[must_use]
+pub fn spare(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Spare {
+    lags(envelope, ego.lag)
+        .map(|lag| spare_at(envelope, ego, obstacle, lag, false))
+        .into_iter()
+        .fold(Spare::ENDLESS, Ord::min)
+}
+
+/// The least and the largest lag that the real one may be.
+fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
+    let more = lag.share(envelope.lag_tolerance);
+    [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
+}
+
+/// How much there is to spare with this lag. An ego that is about to stand may make way backwards in `y`; once it stands, it
+/// does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
+fn spare_at(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, lag: FineSeconds, comes_to_rest: bool) -> Spare {
+    let (own, other) = (micros(envelope.braking), micros(obstacle.braking));
+    let z = speed_up(ego.speed).saturating_add(speed_up(ego.acceleration.over(lag)));
+    let z = if comes_to_rest { z } else { z.max(0) };
+    let v = speed_down(obstacle.speed);
+    let gap = distance_down(obstacle.position.ahead_of(ego.position).minus(envelope.margin));
+    let room = gap.saturating_sub(distance_up(way(ego.speed, lag)));
+
+    // By the points of rest, with the harder of the two brakings.
+    let rests = room.saturating_add(quotient(v.saturating_mul(v), own.max(other).saturating_mul(2)));
+    let by_rest = spare_of(own, rests, z);
+    if other >= own {
+        return by_rest;
+    }
+    // By the closing of the two, where the one ahead brakes less hard.
+    let closing = room.saturating_add(distance_down(way(obstacle.speed, lag)).saturating_sub(2));
+    let slows = speed_up(obstacle.braking.over(lag));
+    by_rest.max(spare_of(own.saturating_sub(other), closing, z.saturating_sub(v.saturating_sub(slows))))
+}
+
+/// `sqrt(2 b S) - z`.
+fn spare_of(braking: i64, room: i64, z: i64) -> Spare {
+    if room < 0 {
+        return Spare::NONE;
+    }
+    Spare(root(2i64.saturating_mul(braking).saturating_mul(room)).saturating_sub(z))
+}
+
+/// The largest acceleration with which there is still something to spare after the next tick; below the hardest braking if
+/// there is none.
+#[must_use]
+pub fn distance_cap(envelope: &Envelope, spare: Spare, period: Duration) -> Acceleration {
+    if spare == Spare::ENDLESS {
+        return Acceleration::MAX;
+    }
+    let jerk = i64::from(envelope.jerk.to_mm_per_s3()).saturating_mul(1000);
+    // With nothing to spare the root is 0, and what comes out is below the hardest braking.
+    let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare.0.clamp(0, 1 << 30)));
+    let reaction = period.plus(envelope.delay).fine_seconds();
+    let reacting = micros(envelope.jerk.over(reaction)).saturating_add(1);
+    from_micros(rise.saturating_sub(reacting).saturating_sub(micros(envelope.braking)).saturating_sub(1))
+}
+
+/// The lowest command that the limits on jerk and braking allow: emergency braking.
+#[must_use]
+pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
+    let slew = envelope.jerk.over(period.fine_seconds());
+    last.minus(slew).max(envelope.braking.negated())
+}
+
+/// Whether emergency braking from now on never meets the obstacle: the predicate that the gate keeps.
+///
+/// If it holds and the next command is the gate's, it holds after the next tick: with the ego's exact motion (never
+/// backwards), and with an obstacle whose position and speed are then no less than those of this one after braking for a
+/// tick as hard as it can, and that brakes no harder. It is without rounding for `envelope.lag_tolerance` 0 and the real lag
+/// in `ego.lag`; with a tolerance it says the same of every lag within.
+#[must_use]
+pub fn is_safe(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, period: Duration) -> bool {
+    // What stands and is told to brake goes on standing. What is about to stand and is told to brake makes no more way in `y`.
+    let brakes = ego.last <= Acceleration::ZERO;
+    let stands = ego.speed <= Speed::ZERO && ego.acceleration <= Acceleration::ZERO;
+    let is_safe = |lag| {
+        let spare = spare_at(envelope, ego, obstacle, lag, brakes);
+        distance_cap(envelope, spare, period) >= floor(envelope, ego.last, period)
+    };
+    (brakes && stands) || lags(envelope, ego.lag).into_iter().all(is_safe)
+}
+
+/// `v T`, to within two words.
+fn way(speed: Speed, time: FineSeconds) -> Distance {
+    // 23 + 30 - 32 = 21 bits, and one more than half of that.
+    let product = crate::fixed::mul_hi(speed.to_bits(), time.to_bits());
+    Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1))
+}
+
+fn micros(acceleration: Acceleration) -> i64 {
+    acceleration.to_multiple_of(1_000_000)
+}
+
+/// One more than the nearest.
+fn speed_up(speed: Speed) -> i64 {
+    speed.to_multiple_of(1_000_000).saturating_add(1)
+}
+
+/// One less than the nearest.
+fn speed_down(speed: Speed) -> i64 {
+    speed.to_multiple_of(1_000_000).saturating_sub(1)
+}
+
+fn distance_up(distance: Distance) -> i64 {
+    distance.to_multiple_of(1_000_000).saturating_add(1)
+}
+
+fn distance_down(distance: Distance) -> i64 {
+    distance.to_multiple_of(1_000_000).saturating_sub(1)
+}
+
+fn from_micros(micros: i64) -> Acceleration {
+    Acceleration::from_ratio(micros, 1_000_000)
+}
+
+/// The square root, rounded down; 0 of what is negative.
+fn root(x: i64) -> i64 {
+    i64::try_from(x.max(0).unsigned_abs().isqrt()).unwrap_or(i64::MAX)
+}
