@@ -148,4 +148,6 @@ pub fn stop_before_conflict(
 }
 
 #[cfg(test)]
+mod proof;
+#[cfg(test)]
 mod tests;
