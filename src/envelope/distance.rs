@@ -63,13 +63,17 @@ impl Spare {
     pub const NONE: Self = Self(i64::MIN);
 }
 
-/// How much there is to spare behind an obstacle: the least of what there is at the two ends of the lag.
+/// How much there is to spare behind an obstacle.
 #[must_use]
 pub fn spare(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Spare {
-    lags(envelope, ego.lag)
-        .map(|lag| spare_at(envelope, ego, obstacle, lag, false))
-        .into_iter()
-        .fold(Spare::ENDLESS, Ord::min)
+    spare_of_all_lags(envelope, ego, obstacle, false)
+}
+
+/// By the better condition, and by each what there is at the worse end of the lag. What a condition leaves is at its least at an
+/// end; but where one holds at one end and the other at the other, between them neither need do.
+fn spare_of_all_lags(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, comes_to_rest: bool) -> Spare {
+    let [shortest, longest] = lags(envelope, ego.lag).map(|lag| spare_at(envelope, ego, obstacle, lag, comes_to_rest));
+    shortest.0.min(longest.0).max(shortest.1.min(longest.1))
 }
 
 /// The least and the largest lag that the real one may be.
@@ -78,9 +82,15 @@ fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
     [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
 }
 
-/// How much there is to spare with this lag. An ego that is about to stand may make way backwards in `y`; once it stands, it
+/// How much there is to spare with this lag, by the points of rest and by closing. An ego that is about to stand may make way backwards in `y`; once it stands, it
 /// does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
-fn spare_at(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, lag: FineSeconds, comes_to_rest: bool) -> Spare {
+fn spare_at(
+    envelope: &Envelope,
+    ego: &Ego,
+    obstacle: &Obstacle,
+    lag: FineSeconds,
+    comes_to_rest: bool,
+) -> (Spare, Spare) {
     let (own, other) = (micros(envelope.braking), micros(obstacle.braking));
     let z = speed_up(ego.speed).saturating_add(speed_up(ego.acceleration.over(lag)));
     let z = if comes_to_rest { z } else { z.max(0) };
@@ -92,12 +102,12 @@ fn spare_at(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, lag: FineSecond
     let rests = room.saturating_add(quotient(v.saturating_mul(v), own.max(other).saturating_mul(2)));
     let by_rest = spare_of(own, rests, z);
     if other >= own {
-        return by_rest;
+        return (by_rest, Spare::NONE);
     }
     // By the closing of the two, where the one ahead brakes less hard.
     let closing = room.saturating_add(distance_down(way(obstacle.speed, lag)).saturating_sub(2));
     let slows = speed_up(obstacle.braking.over(lag));
-    by_rest.max(spare_of(own.saturating_sub(other), closing, z.saturating_sub(v.saturating_sub(slows))))
+    (by_rest, spare_of(own.saturating_sub(other), closing, z.saturating_sub(v.saturating_sub(slows))))
 }
 
 /// `sqrt(2 b S) - z`.
@@ -141,11 +151,8 @@ pub fn is_safe(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, period: Dura
     // What stands and is told to brake goes on standing. What is about to stand and is told to brake makes no more way in `y`.
     let brakes = ego.last <= Acceleration::ZERO;
     let stands = ego.speed <= Speed::ZERO && ego.acceleration <= Acceleration::ZERO;
-    let is_safe = |lag| {
-        let spare = spare_at(envelope, ego, obstacle, lag, brakes);
-        distance_cap(envelope, spare, period) >= floor(envelope, ego.last, period)
-    };
-    (brakes && stands) || lags(envelope, ego.lag).into_iter().all(is_safe)
+    let spare = spare_of_all_lags(envelope, ego, obstacle, brakes);
+    (brakes && stands) || distance_cap(envelope, spare, period) >= floor(envelope, ego.last, period)
 }
 
 /// `v T`, to within two words.

@@ -149,11 +149,9 @@ fn a_shorter_tick_keeps_what_is_safe() {
     let period = lasts.clone() + lacks.clone();
     let reaction = period.clone() + rest;
     // The ramp goes on; or it ends within the time that this lasts, or that a period would.
-    for ramps in [
-        [period.clone() + more.clone(), more.clone()],
-        [lasts.clone(), number(0)],
-        [period.clone(), number(0)],
-    ] {
+    for ramps in
+        [[period.clone() + more.clone(), more.clone()], [lasts.clone(), number(0)], [period.clone(), number(0)]]
+    {
         let tick = Tick {
             jerk: jerk.clone(),
             braking: braking.clone(),

@@ -93,7 +93,16 @@ impl Case {
         }
         let lag = |part: i32| FineSeconds::from_bits(self.ego.lag.to_bits() + off / 8 * part);
         let less = FineSeconds::from_bits((self.ego.lag.to_bits() - off).max(0));
-        vec![less, lag(-7), lag(-5), lag(-2), lag(0), lag(3), lag(6), FineSeconds::from_bits(self.ego.lag.to_bits() + off)]
+        vec![
+            less,
+            lag(-7),
+            lag(-5),
+            lag(-2),
+            lag(0),
+            lag(3),
+            lag(6),
+            FineSeconds::from_bits(self.ego.lag.to_bits() + off),
+        ]
     }
 
     /// What the worst driver gets out of the gate.
@@ -101,7 +110,8 @@ impl Case {
         let spare = spare(&self.limits, &self.ego, &self.obstacle);
         let situation = Situation { is_fresh: true, spare };
         let out = gate(&self.limits, Acceleration::MAX, &self.ego, &situation, self.period);
-        let is_capped = distance_cap(&self.limits, spare, self.period) >= floor(&self.limits, self.ego.last, self.period);
+        let is_capped =
+            distance_cap(&self.limits, spare, self.period) >= floor(&self.limits, self.ego.last, self.period);
         (encodable(&self.limits, out), is_capped)
     }
 
@@ -249,8 +259,13 @@ fn what_is_called_safe_is_safe_and_so_is_every_command_up_to_the_cap() {
         }
     }
     eprintln!("tol 0: {}", wrong.iter().filter(|w| w.0.limits.lag_tolerance == Share::ZERO).count());
-    eprintln!("ends: {}", wrong.iter().filter(|w| w.0.lags().first() == Some(&w.1) || w.0.lags().last() == Some(&w.1)).count());
-    for w in wrong.iter().step_by(10) { eprintln!("{:?} {:?} {} {} {:?}", w.0.limits.lag_tolerance, w.1, w.2, w.3, w.0.ego.lag); }
+    eprintln!(
+        "ends: {}",
+        wrong.iter().filter(|w| w.0.lags().first() == Some(&w.1) || w.0.lags().last() == Some(&w.1)).count()
+    );
+    for w in wrong.iter().step_by(10) {
+        eprintln!("{:?} {:?} {} {} {:?}", w.0.limits.lag_tolerance, w.1, w.2, w.3, w.0.ego.lag);
+    }
     assert!(wrong.is_empty(), "{} of {judged:?}, such as {:?}", wrong.len(), wrong[0]);
     assert!(judged.into_iter().min() > Some(10_000), "{judged:?}");
 }
@@ -284,4 +299,45 @@ fn what_is_safe_is_safe_after_a_tick() {
     }
     assert!(wrong.is_empty(), "{} of {judged}, such as {:?}", wrong.len(), wrong[0]);
     assert!(judged > 10_000, "{judged}");
+}
+
+#[test]
+#[ignore]
+fn literal() {
+    let (mut judged, mut wrong, mut most) = (0, 0, 0);
+    for case in cases(CASES) {
+        if case.limits.lag_tolerance != Share::ZERO || !case.is_safe() {
+            continue;
+        }
+        let (told, _) = case.command();
+        let world = World::new(&case, case.ego.lag);
+        let then = world.after(&case.real(), told, world.period);
+        let up = |x: Interval, f: i32| (x.high * 2f64.powi(f)).ceil() as i64;
+        let down = |x: Interval, f: i32| (x.low * 2f64.powi(f)).floor() as i64;
+        let ego = Ego {
+            position: Position::from_bits(up(then.way, 20)),
+            speed: Speed::from_bits(up(then.speed, 23) as i32),
+            acceleration: Acceleration::from_bits(up(then.acceleration, 25) as i32),
+            last: told,
+            lag: case.ego.lag,
+        };
+        let obstacle = Obstacle {
+            position: Position::from_bits(down(then.rear, 20)),
+            speed: Speed::from_bits(down(then.other, 23) as i32),
+            ..case.obstacle
+        };
+        let next = Case { ego, obstacle, ..case };
+        judged += 1;
+        if !next.is_safe() {
+            wrong += 1;
+            let rear = next.obstacle.position.to_bits();
+            let need = (0..24).find(|n| next.with_gap(rear + (1 << n)).is_safe());
+            let key = need.map_or(99, |n| n);
+            if key > most {
+                most = key;
+                eprintln!("{key}: {next:?} from {case:?}");
+            }
+        }
+    }
+    eprintln!("{wrong} of {judged}, most 2^{most} words");
 }
