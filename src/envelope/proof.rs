@@ -30,6 +30,7 @@
 //! tried at **points**: a lattice of configurations, states and obstacles, each with the gap bisected to the nearest one that
 //! the code calls safe, which is where it can fail. There everything is computed in intervals that are rounded outward.
 
+mod drives;
 mod interval;
 mod lattice;
 

@@ -17,11 +17,11 @@ fn pick(number: &mut u64, values: &[i32]) -> i32 {
 
 /// A configuration, a state of the ego, and a near end.
 #[derive(Clone, Copy, Debug)]
-struct Case {
-    limits: Envelope,
-    period: Duration,
-    ego: Ego,
-    obstacle: Obstacle,
+pub struct Case {
+    pub limits: Envelope,
+    pub period: Duration,
+    pub ego: Ego,
+    pub obstacle: Obstacle,
 }
 
 impl Case {
@@ -86,7 +86,7 @@ impl Case {
     }
 
     /// The ends of what the real lag may be, and between them.
-    fn lags(&self) -> Vec<FineSeconds> {
+    pub fn lags(&self) -> Vec<FineSeconds> {
         let off = self.ego.lag.share(self.limits.lag_tolerance).to_bits();
         if off == 0 {
             return vec![self.ego.lag];
@@ -232,10 +232,10 @@ fn stands(now: &Real, command: Acceleration) -> bool {
 }
 
 /// How many of the lattice.
-const CASES: u64 = 60_000;
+const CASES: u64 = 20_000;
 
 /// Every case with the nearest gap that is called safe and with wider ones.
-fn cases(count: u64) -> impl Iterator<Item = Case> {
+pub fn cases(count: u64) -> impl Iterator<Item = Case> {
     (0..count).filter_map(Case::at).filter_map(|case| Some((case, case.nearest_safe()?))).flat_map(|(case, nearest)| {
         [0, 1, 40, 1_000, 100_000, 2_000_000, 30_000_000].into_iter().map(move |wider| case.with_gap(nearest + wider))
     })
@@ -257,14 +257,6 @@ fn what_is_called_safe_is_safe_and_so_is_every_command_up_to_the_cap() {
                 wrong.push((case, lag, before, capped));
             }
         }
-    }
-    eprintln!("tol 0: {}", wrong.iter().filter(|w| w.0.limits.lag_tolerance == Share::ZERO).count());
-    eprintln!(
-        "ends: {}",
-        wrong.iter().filter(|w| w.0.lags().first() == Some(&w.1) || w.0.lags().last() == Some(&w.1)).count()
-    );
-    for w in wrong.iter().step_by(10) {
-        eprintln!("{:?} {:?} {} {} {:?}", w.0.limits.lag_tolerance, w.1, w.2, w.3, w.0.ego.lag);
     }
     assert!(wrong.is_empty(), "{} of {judged:?}, such as {:?}", wrong.len(), wrong[0]);
     assert!(judged.into_iter().min() > Some(10_000), "{judged:?}");
@@ -301,43 +293,31 @@ fn what_is_safe_is_safe_after_a_tick() {
     assert!(judged > 10_000, "{judged}");
 }
 
+/// The same by the code alone, with the state after the tick in words that are rounded to the less safe side. What roundings
+/// are worth is stated: 31 µm, where no reserve of the theory makes up for them.
 #[test]
-#[ignore]
-fn literal() {
-    let (mut judged, mut wrong, mut most) = (0, 0, 0);
-    for case in cases(CASES) {
-        if case.limits.lag_tolerance != Share::ZERO || !case.is_safe() {
-            continue;
-        }
+fn what_is_called_safe_is_called_safe_after_a_tick_to_within_31_micrometres() {
+    let up = |x: Interval, fraction: i32| (x.high * 2f64.powi(fraction)).ceil() as i64;
+    let down = |x: Interval, fraction: i32| (x.low * 2f64.powi(fraction)).floor() as i64;
+    let mut judged = 0;
+    for case in cases(CASES).filter(|case| case.limits.lag_tolerance == Share::ZERO && case.is_safe()) {
         let (told, _) = case.command();
         let world = World::new(&case, case.ego.lag);
         let then = world.after(&case.real(), told, world.period);
-        let up = |x: Interval, f: i32| (x.high * 2f64.powi(f)).ceil() as i64;
-        let down = |x: Interval, f: i32| (x.low * 2f64.powi(f)).floor() as i64;
         let ego = Ego {
             position: Position::from_bits(up(then.way, 20)),
             speed: Speed::from_bits(up(then.speed, 23) as i32),
             acceleration: Acceleration::from_bits(up(then.acceleration, 25) as i32),
             last: told,
-            lag: case.ego.lag,
+            ..case.ego
         };
         let obstacle = Obstacle {
-            position: Position::from_bits(down(then.rear, 20)),
+            position: Position::from_bits(down(then.rear, 20) + 32),
             speed: Speed::from_bits(down(then.other, 23) as i32),
             ..case.obstacle
         };
-        let next = Case { ego, obstacle, ..case };
         judged += 1;
-        if !next.is_safe() {
-            wrong += 1;
-            let rear = next.obstacle.position.to_bits();
-            let need = (0..24).find(|n| next.with_gap(rear + (1 << n)).is_safe());
-            let key = need.map_or(99, |n| n);
-            if key > most {
-                most = key;
-                eprintln!("{key}: {next:?} from {case:?}");
-            }
-        }
+        assert!(Case { ego, obstacle, ..case }.is_safe(), "{case:?} {told:?} {then:?}");
     }
-    eprintln!("{wrong} of {judged}, most 2^{most} words");
+    assert!(judged > 10_000, "{judged}");
 }
