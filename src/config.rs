@@ -153,7 +153,7 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// A car's: 3 m/s², emergency braking of 8 m/s² built up at 25 m/s³, 50 m/s, half a metre; three ticks of 10 ms, a fifth
+    /// A car's: 3 m/s², emergency braking of 8 m/s² built up at 25 m/s³, 50 m/s, half a metre; three ticks of 10 ms, a quarter
     /// of the lag.
     pub const CAR: Self = Self {
         acceleration: Acceleration::from_mm_per_s2(3_000),
@@ -162,7 +162,7 @@ impl Envelope {
         speed: Speed::from_mm_per_s(50_000),
         margin: Distance::from_mm(500),
         delay: Duration::from_millis(30),
-        lag_tolerance: Share::from_milli(200),
+        lag_tolerance: Share::from_milli(250),
     };
 }
 

@@ -8,6 +8,7 @@ use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::coordination::{Coordination, Gentleness};
+use crate::envelope::Reckoning;
 use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
 use crate::health::{Health, Incident, Refusal};
 use crate::held::Held;
@@ -51,6 +52,8 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     health: Health,
     outbox: outbox::Outbox,
     ranging: range::Ranging,
+    /// The ego as the last gate sees it.
+    reckoning: Held<Reckoning>,
     coordination: Coordination<PEERS>,
     last_tick: Option<Instant>,
 }
@@ -75,6 +78,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             outbox: outbox::Outbox::new(),
             ranging: range::Ranging::new(),
+            reckoning: Held::Nothing,
             coordination: Coordination::idle(),
             last_tick: None,
         }
@@ -102,6 +106,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.outbox = outbox::Outbox::new();
         self.ranging = range::Ranging::new();
+        self.reckoning.clear();
         self.coordination.reset();
         self.last_tick = None;
         Ok(())
@@ -183,11 +188,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let last = self.controller.last_demand();
         let course = self.course(now, target);
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
-        let (acceleration, limited) = match &self.config.envelope {
+        let (acceleration, limited) = match self.config.envelope {
             Some(limits) if self.mode != Mode::Standby => {
-                self.gate(limits, now, demand, last, ego.as_ref(), &facts, target)
+                self.gate(&limits, now, demand, last, ego.as_ref(), &facts, target)
             }
-            _ => (demand, false),
+            _ => {
+                // Of what somebody else commands nothing is known.
+                self.reckoning.clear();
+                (demand, false)
+            }
         };
         self.controller.correct(acceleration);
         answer.command = self.outbox.command(&self.config, acceleration, ego.as_ref(), self.mode, limited);

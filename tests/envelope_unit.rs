@@ -66,20 +66,23 @@ fn a_standing_vehicle_is_not_hit_by_a_unit_that_is_engaged_at_speed_far_behind_i
 /// `ρ` of the envelope's documentation.
 fn reaction(limits: &Envelope, lag: f64) -> f64 {
     let (b, j, h) = (f64::from(limits.braking.to_mm_per_s2()) / 1e3, f64::from(limits.jerk.to_mm_per_s3()) / 1e3, 0.04);
-    1.2 * lag + (b + j * h).powi(2) / (2.0 * j * b)
+    let longest = 1.25 * lag;
+    // The acceleration may be 1 m/s² more than was measured.
+    longest + longest * 1.0 / b + (b + j * h).powi(2) / (2.0 * j * b)
 }
 
 #[test]
 fn in_steady_following_nothing_is_changed_until_the_age_is_the_time_gap_less_the_reaction() {
     let rho = reaction(&Envelope::CAR, 0.3);
-    assert!((rho - 0.5625).abs() < 1e-3, "{rho}");
+    assert!((rho - 0.6244).abs() < 1e-3, "{rho}");
     // A time gap that leaves less than a period of messages, 0.1 s, is limited between two of them.
-    for time_gap in [670, 700, 800, 1000, 1400, 2000] {
+    for time_gap in [730, 760, 800, 1000, 1400, 2000] {
         for speed in [1.0, 5.0, 13.4, 20.0, 30.0, 40.0] {
             let mut config = guarded();
             config.law.time_gap = Seconds::from_millis(time_gap);
             let t_g = f64::from(time_gap) / 1e3;
             let mut road = Road::new(&config, speed, 2.0 + speed * t_g);
+            road.wants = speed;
             // The sample at 3.0 s is the last one: after this step its age is 0 and the next tick's is 10 ms.
             road.power_up();
             road.run(1.01);

@@ -70,6 +70,6 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .speed_mm_s = 50000,
         .margin_mm = 500,
         .delay_us = 30000,
-        .lag_tolerance_milli = 200,
+        .lag_tolerance_milli = 250,
     },
 };

@@ -4,12 +4,11 @@
 use super::{OnboardUnit, RANGE_TIMEOUT};
 use crate::config::Envelope;
 use crate::controller::Facts;
-use crate::envelope::{self, Obstacle, Spare};
+use crate::envelope::{self, Obstacle, Reckoning, Spare};
 use crate::estimator::bound::Bound;
 use crate::estimator::{Reading, State};
 use crate::parameters::{
-    ACCELERATION_ROUNDING, DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
-    UNPUBLISHED_SPEED_ACCURACY,
+    DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
 use crate::time::Instant;
@@ -50,7 +49,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// gate changed the demand.
     #[allow(clippy::too_many_arguments)] // all of them are of one tick
     pub(super) fn gate(
-        &self,
+        &mut self,
         limits: &Envelope,
         now: Instant,
         demand: Acceleration,
@@ -65,13 +64,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);
         let faster = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
         let late = sample.speed.plus(faster).over(self.config.link.clock_error.seconds());
-        let ego = envelope::Ego {
-            position: sample.position.ahead(moved).ahead(off).ahead(late),
-            speed: state.speed.plus(faster),
-            acceleration: state.acceleration.plus(ACCELERATION_ROUNDING),
-            last,
-            lag: self.config.lag,
+        let start = envelope::Start {
+            at: sample.at,
+            position: sample.position.ahead(off).ahead(late),
+            speed: sample.speed.plus(faster),
+            acceleration: sample.acceleration,
         };
+        let reckoning = Reckoning::carry(&mut self.reckoning, &start, now, last, limits);
+        let ego = reckoning.ego(limits, last, self.config.lag);
         // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);

@@ -3,6 +3,7 @@
 //! times microseconds of true time; the unit's own clock runs [`OFFSET`] ahead of it.
 #![allow(dead_code)] // every test uses its own part of it
 
+pub mod chase;
 pub mod junction;
 pub mod plant;
 pub mod random;

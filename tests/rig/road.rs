@@ -2,8 +2,9 @@
 //! Switches enter; the ego's motion, its commands and the gap leave.
 
 use super::plant::{Body, Plant};
-use super::{Heard, LENGTH, Rig, TARGET, intent, mps2_of};
+use super::{Heard, LENGTH, Rig, TARGET, intent, mps, mps2_of};
 use holdover::Config;
+use holdover::wire::intent::Intent;
 use holdover::wire::{Predecessor, Said};
 
 /// What of the traffic gets through.
@@ -30,8 +31,16 @@ pub struct Road {
     pub lie: (f64, f64),
     /// Added to what the range sensor says.
     pub wrong: f64,
+    /// Added to what the ego's sensors say of its acceleration.
+    pub acceleration_off: f64,
+    /// A command comes into force so many periods late.
+    pub late: usize,
+    /// Share of the hardest braking, 8 m/s², that the road allows.
+    pub grip: f64,
     /// What the target says it can brake with.
     pub braking: f64,
+    /// The speed that the target says it wants.
+    pub wants: f64,
     pub now: i64,
     pub command: f64,
     pub commands: Vec<f64>,
@@ -53,7 +62,11 @@ impl Road {
             predecessor: Predecessor::Station(TARGET),
             lie: (0.0, 0.0),
             wrong: 0.0,
+            acceleration_off: 0.0,
+            late: 0,
+            grip: 1.0,
             braking: 8.0,
+            wants: 30.0,
             now: 0,
             command: 0.0,
             commands: Vec::new(),
@@ -71,13 +84,14 @@ impl Road {
             self.rig.synchronise(now, 0);
         }
         if self.senses.ego {
-            let _ = self.rig.ego(now, ego.position, ego.speed, ego.acceleration, self.command);
+            let _ = self.rig.ego(now, ego.position, ego.speed, ego.acceleration + self.acceleration_off, self.command);
         }
         if now % 100_000 == 0 {
             let _ = self.rig.wish(now, self.engaged, self.predecessor);
         }
         if self.senses.v2x && now % 500_000 == 0 {
-            let _ = self.rig.target(now, Said::Intent(intent(2.5, self.braking)));
+            let intent = Intent { target_speed: mps(self.wants), ..intent(2.5, self.braking) };
+            let _ = self.rig.target(now, Said::Intent(intent));
         }
         if self.senses.v2x && now % 100_000 == 0 {
             let (position, speed) = (self.target.position + self.lie.0, self.target.speed + self.lie.1);
@@ -97,11 +111,24 @@ impl Road {
         let heard = self.rig.tick(self.now);
         self.command = mps2_of(heard.command.acceleration);
         self.commands.push(self.command);
-        let drives = if self.engaged { self.command } else { 0.0 };
+        self.drive();
+        heard
+    }
+
+    /// One period whose tick is missed: the command before stays in force.
+    pub fn miss(&mut self) {
+        self.speak();
+        self.commands.push(self.command);
+        self.drive();
+    }
+
+    /// Both vehicles 10 ms on.
+    fn drive(&mut self) {
+        let in_force = self.commands.len().checked_sub(1 + self.late).map_or(0.0, |index| self.commands[index]);
+        let drives = if self.engaged { in_force.max(-8.0 * self.grip) } else { 0.0 };
         self.ego.drive(drives, 0.01);
         self.target = self.target.after(self.acceleration, 0.01);
         self.now += PERIOD_US;
-        heard
     }
 
     /// Lets everything be heard for 2 s while both go on at their speeds, and then engages.
