@@ -94,7 +94,7 @@ pub use reckoning::{Reckoning, Start};
 use crate::config::Envelope;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Position, Speed};
-use crate::wire::command::ACCELERATION_STEPS;
+use crate::wire::command::{ACCELERATION_MOST, ACCELERATION_STEPS};
 use crate::wire::quantity::Quantity;
 
 /// No more acceleration than the absolute limit.
@@ -155,6 +155,13 @@ pub fn encodable(envelope: &Envelope, command: Acceleration) -> Acceleration {
     let step = |steps| Acceleration::from_steps(steps, ACCELERATION_STEPS);
     let down = if step(nearest) > command { nearest.saturating_sub(1) } else { nearest };
     if step(down) < envelope.braking.negated() { step(down.saturating_add(1)) } else { step(down) }
+}
+
+/// The hardest braking that is ever commanded, as a magnitude: the limit, on a step of the command and within what it can say.
+#[must_use]
+pub fn hardest(envelope: &Envelope) -> Acceleration {
+    let most = Acceleration::from_steps(ACCELERATION_MOST, ACCELERATION_STEPS);
+    encodable(envelope, envelope.braking.min(most).negated()).negated()
 }
 
 /// Where the ego has to be able to stop for a vehicle on a path that crosses its own: before the conflict area, until the

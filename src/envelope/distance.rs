@@ -4,6 +4,7 @@
 //! Everything is computed in whole micrometres, micrometres per second and their like, and rounded so that less is allowed.
 //! No product reaches 2⁶³: accelerations and jerks are below 2²⁶, speeds below 2²⁹, ways below 2³² of these.
 
+use super::hardest;
 use crate::config::Envelope;
 use crate::estimator::bound::{Bound, Reach};
 use crate::fixed::quotient;
@@ -82,8 +83,8 @@ fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
     [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
 }
 
-/// How much there is to spare with this lag, by the points of rest and by closing. An ego that is about to stand may make way backwards in `y`; once it stands, it
-/// does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
+/// How much there is to spare with this lag, by the points of rest and by closing. An ego that is about to stand may make way
+/// backwards in `y`; once it stands, it does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
 fn spare_at(
     envelope: &Envelope,
     ego: &Ego,
@@ -91,7 +92,7 @@ fn spare_at(
     lag: FineSeconds,
     comes_to_rest: bool,
 ) -> (Spare, Spare) {
-    let (own, other) = (micros(envelope.braking), micros(obstacle.braking));
+    let (own, other) = (micros(hardest(envelope)), micros(obstacle.braking));
     let z = speed_up(ego.speed).saturating_add(speed_up(ego.acceleration.over(lag)));
     let z = if comes_to_rest { z } else { z.max(0) };
     let v = speed_down(obstacle.speed);
@@ -130,14 +131,14 @@ pub fn distance_cap(envelope: &Envelope, spare: Spare, period: Duration) -> Acce
     let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare.0.clamp(0, 1 << 30)));
     let reaction = period.plus(envelope.delay).fine_seconds();
     let reacting = micros(envelope.jerk.over(reaction)).saturating_add(1);
-    from_micros(rise.saturating_sub(reacting).saturating_sub(micros(envelope.braking)).saturating_sub(1))
+    from_micros(rise.saturating_sub(reacting).saturating_sub(micros(hardest(envelope))).saturating_sub(1))
 }
 
 /// The lowest command that the limits on jerk and braking allow: emergency braking.
 #[must_use]
 pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
     let slew = envelope.jerk.over(period.fine_seconds());
-    last.minus(slew).max(envelope.braking.negated())
+    last.minus(slew).max(hardest(envelope).negated())
 }
 
 /// Whether emergency braking from now on never meets the obstacle: the predicate that the gate keeps.

@@ -6,6 +6,7 @@ use crate::config::Envelope;
 use crate::envelope::*;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Share, Speed};
+use std::ops::Range;
 
 /// One of the values, picked by the lowest digit of a number, which loses it.
 fn pick(number: &mut u64, values: &[i32]) -> i32 {
@@ -22,6 +23,8 @@ pub struct Case {
     pub period: Duration,
     pub ego: Ego,
     pub obstacle: Obstacle,
+    /// The hardest that the ego can be told to brake, in mm/s².
+    pub braking: i32,
 }
 
 impl Case {
@@ -31,17 +34,19 @@ impl Case {
         let mut number = index.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 1;
         let mut pick = |values: &[i32]| pick(&mut number, values);
         let mm = Acceleration::from_mm_per_s2;
-        let braking = pick(&[8_000, 6_000, 2_000, 500, 12_000, 16_000]);
+        let configured = pick(&[8_000, 6_000, 2_000, 500, 12_000, 16_000, 20_460, 7_999]);
         let lag = FineSeconds::from_millis(pick(&[300, 0, 2, 20, 500, 990, 1_600]));
         let limits = Envelope {
             acceleration: mm(3_000),
-            braking: mm(braking),
+            braking: mm(configured),
             jerk: Jerk::from_mm_per_s3(pick(&[25_000, 1_000, 5_000, 51_000, 63_900])),
             speed: Speed::from_mm_per_s(65_534),
             margin: Distance::from_mm(pick(&[0, 500])),
             delay: Duration::from_millis(pick(&[30, 0, 100, 500]).into()),
             lag_tolerance: Share::from_milli(pick(&[0, 200, 1_000])),
         };
+        // What the command can say, in steps of 2 mm/s².
+        let braking = configured.min(16_382) / 2 * 2;
         let half = braking / 4 * 2;
         let speed = pick(&[13_400, 0, 2, 100, 1_000, 5_000, 30_000, 50_000, 65_534]);
         let acceleration = pick(&[0, -braking, -half, -100, 100, 3_000]);
@@ -61,7 +66,7 @@ impl Case {
         let period = Duration::from_millis(pick(&[10, 1, 20, 100]).into());
         let longest = lag.plus(lag.share(limits.lag_tolerance)) <= FineSeconds::from_millis(1_998);
         let moves = speed > 0 || acceleration >= 0;
-        (longest && moves).then_some(Self { limits, period, ego, obstacle })
+        (longest && moves).then_some(Self { limits, period, ego, obstacle, braking })
     }
 
     fn with_gap(self, word: i64) -> Self {
@@ -160,15 +165,16 @@ struct World {
 impl World {
     fn new(case: &Case, lag: FineSeconds) -> Self {
         let (limits, other) = (&case.limits, case.obstacle.braking);
+        let own = Acceleration::from_mm_per_s2(case.braking);
         Self {
-            braking: acceleration(limits.braking),
+            braking: acceleration(own),
             jerk: Interval::word(limits.jerk.to_bits().into(), 25),
             margin: Interval::word(limits.margin.to_bits().into(), 20),
             period: seconds(case.period),
             lag: Interval::word(lag.to_bits().into(), 30),
-            harder: acceleration(other.max(limits.braking)),
+            harder: acceleration(other.max(own)),
             other_braking: acceleration(other),
-            is_softer: other < limits.braking,
+            is_softer: other < own,
         }
     }
 
@@ -231,20 +237,20 @@ fn stands(now: &Real, command: Acceleration) -> bool {
     now.speed.high <= 0.0 && now.acceleration.high <= 0.0 && command <= Acceleration::ZERO
 }
 
-/// How many of the lattice.
-const CASES: u64 = 20_000;
+/// How many of the lattice every run tries, and how many the long one.
+const SOME: Range<u64> = 0..5_000;
+const MANY: Range<u64> = 5_000..300_000;
 
 /// Every case with the nearest gap that is called safe and with wider ones.
-pub fn cases(count: u64) -> impl Iterator<Item = Case> {
-    (0..count).filter_map(Case::at).filter_map(|case| Some((case, case.nearest_safe()?))).flat_map(|(case, nearest)| {
+pub fn cases(of: Range<u64>) -> impl Iterator<Item = Case> {
+    of.filter_map(Case::at).filter_map(|case| Some((case, case.nearest_safe()?))).flat_map(|(case, nearest)| {
         [0, 1, 40, 1_000, 100_000, 2_000_000, 30_000_000].into_iter().map(move |wider| case.with_gap(nearest + wider))
     })
 }
 
-#[test]
-fn what_is_called_safe_is_safe_and_so_is_every_command_up_to_the_cap() {
+fn check_rounding(of: Range<u64>) {
     let (mut judged, mut wrong) = ([0, 0], Vec::new());
-    for case in cases(CASES) {
+    for case in cases(of) {
         let (told, is_capped) = case.command();
         let lowest = floor(&case.limits, case.ego.last, case.period);
         for lag in case.lags() {
@@ -259,13 +265,12 @@ fn what_is_called_safe_is_safe_and_so_is_every_command_up_to_the_cap() {
         }
     }
     assert!(wrong.is_empty(), "{} of {judged:?}, such as {:?}", wrong.len(), wrong[0]);
-    assert!(judged.into_iter().min() > Some(10_000), "{judged:?}");
+    assert!(judged.into_iter().min() > Some(1_000), "{judged:?}");
 }
 
-#[test]
-fn what_is_safe_is_safe_after_a_tick() {
+fn check_tick(of: Range<u64>) {
     let (mut judged, mut wrong) = (0, Vec::new());
-    for case in cases(CASES) {
+    for case in cases(of) {
         let (told, is_capped) = case.command();
         let delay = case.limits.delay;
         for lag in case.lags() {
@@ -290,17 +295,16 @@ fn what_is_safe_is_safe_after_a_tick() {
         }
     }
     assert!(wrong.is_empty(), "{} of {judged}, such as {:?}", wrong.len(), wrong[0]);
-    assert!(judged > 10_000, "{judged}");
+    assert!(judged > 1_000, "{judged}");
 }
 
 /// The same by the code alone, with the state after the tick in words that are rounded to the less safe side. What roundings
 /// are worth is stated: 31 µm, where no reserve of the theory makes up for them.
-#[test]
-fn what_is_called_safe_is_called_safe_after_a_tick_to_within_31_micrometres() {
+fn check_code_alone(of: Range<u64>) {
     let up = |x: Interval, fraction: i32| (x.high * 2f64.powi(fraction)).ceil() as i64;
     let down = |x: Interval, fraction: i32| (x.low * 2f64.powi(fraction)).floor() as i64;
     let mut judged = 0;
-    for case in cases(CASES).filter(|case| case.limits.lag_tolerance == Share::ZERO && case.is_safe()) {
+    for case in cases(of).filter(|case| case.limits.lag_tolerance == Share::ZERO && case.is_safe()) {
         let (told, _) = case.command();
         let world = World::new(&case, case.ego.lag);
         let then = world.after(&case.real(), told, world.period);
@@ -319,5 +323,28 @@ fn what_is_called_safe_is_called_safe_after_a_tick_to_within_31_micrometres() {
         judged += 1;
         assert!(Case { ego, obstacle, ..case }.is_safe(), "{case:?} {told:?} {then:?}");
     }
-    assert!(judged > 10_000, "{judged}");
+    assert!(judged > 1_000, "{judged}");
+}
+
+#[test]
+fn what_is_called_safe_is_safe_and_so_is_every_command_up_to_the_cap() {
+    check_rounding(SOME);
+}
+
+#[test]
+fn what_is_safe_is_safe_after_a_tick() {
+    check_tick(SOME);
+}
+
+#[test]
+fn what_is_called_safe_is_called_safe_after_a_tick_to_within_31_micrometres() {
+    check_code_alone(SOME);
+}
+
+#[test]
+#[ignore = "minutes: sixty times as many points"]
+fn all_of_it_holds_at_many_more_points() {
+    check_rounding(MANY);
+    check_tick(MANY);
+    check_code_alone(MANY);
 }
