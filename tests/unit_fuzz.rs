@@ -135,6 +135,7 @@ const ENVELOPE: Envelope = Envelope {
     jerk: Jerk::from_mm_per_s3(4_000),
     speed: Speed::from_mm_per_s(30_000),
     margin: Distance::from_mm(500),
+    ..Envelope::CAR
 };
 
 proptest! {

@@ -31,6 +31,7 @@
 //! the code calls safe, which is where it can fail. There everything is computed in intervals that are rounded outward.
 
 mod drives;
+mod extremes;
 mod interval;
 mod lattice;
 

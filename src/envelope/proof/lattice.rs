@@ -9,7 +9,7 @@ use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Share, S
 use std::ops::Range;
 
 /// One of the values, picked by the lowest digit of a number, which loses it.
-fn pick(number: &mut u64, values: &[i32]) -> i32 {
+pub fn pick(number: &mut u64, values: &[i32]) -> i32 {
     let count = values.len() as u64;
     let found = values[(*number % count) as usize];
     *number /= count;
@@ -23,8 +23,8 @@ pub struct Case {
     pub period: Duration,
     pub ego: Ego,
     pub obstacle: Obstacle,
-    /// The hardest that the ego can be told to brake, in mm/s².
-    pub braking: i32,
+    /// The hardest that the ego can be told to brake.
+    pub braking: Acceleration,
 }
 
 impl Case {
@@ -66,19 +66,19 @@ impl Case {
         let period = Duration::from_millis(pick(&[10, 1, 20, 100]).into());
         let longest = lag.plus(lag.share(limits.lag_tolerance)) <= FineSeconds::from_millis(1_998);
         let moves = speed > 0 || acceleration >= 0;
-        (longest && moves).then_some(Self { limits, period, ego, obstacle, braking })
+        (longest && moves).then_some(Self { limits, period, ego, obstacle, braking: mm(braking) })
     }
 
-    fn with_gap(self, word: i64) -> Self {
+    pub fn with_gap(self, word: i64) -> Self {
         Self { obstacle: Obstacle { position: Position::from_bits(word), ..self.obstacle }, ..self }
     }
 
-    fn is_safe(&self) -> bool {
+    pub fn is_safe(&self) -> bool {
         is_safe(&self.limits, &self.ego, &self.obstacle, self.period)
     }
 
     /// The nearest gap that is called safe, in words; `None` beyond 1.5 km.
-    fn nearest_safe(&self) -> Option<i64> {
+    pub fn nearest_safe(&self) -> Option<i64> {
         let (mut low, mut high) = (-1, 1_500 << 20);
         if !self.with_gap(high).is_safe() {
             return None;
@@ -111,7 +111,7 @@ impl Case {
     }
 
     /// What the worst driver gets out of the gate.
-    fn command(&self) -> (Acceleration, bool) {
+    pub fn command(&self) -> (Acceleration, bool) {
         let spare = spare(&self.limits, &self.ego, &self.obstacle);
         let situation = Situation { is_fresh: true, spare };
         let out = gate(&self.limits, Acceleration::MAX, &self.ego, &situation, self.period);
@@ -120,7 +120,7 @@ impl Case {
         (encodable(&self.limits, out), is_capped)
     }
 
-    fn real(&self) -> Real {
+    pub fn real(&self) -> Real {
         Real {
             way: Interval::exactly(0.0),
             speed: Interval::word(self.ego.speed.to_bits().into(), 23),
@@ -142,7 +142,7 @@ fn seconds(duration: Duration) -> Interval {
 
 /// Ego and near end as they really are: the ego's way and its speed and acceleration, the rear and its speed.
 #[derive(Clone, Copy, Debug)]
-struct Real {
+pub struct Real {
     way: Interval,
     speed: Interval,
     acceleration: Interval,
@@ -151,7 +151,7 @@ struct Real {
 }
 
 /// The parameters that do not change.
-struct World {
+pub struct World {
     braking: Interval,
     jerk: Interval,
     margin: Interval,
@@ -163,9 +163,9 @@ struct World {
 }
 
 impl World {
-    fn new(case: &Case, lag: FineSeconds) -> Self {
+    pub fn new(case: &Case, lag: FineSeconds) -> Self {
         let (limits, other) = (&case.limits, case.obstacle.braking);
-        let own = Acceleration::from_mm_per_s2(case.braking);
+        let own = case.braking;
         Self {
             braking: acceleration(own),
             jerk: Interval::word(limits.jerk.to_bits().into(), 25),
@@ -179,7 +179,7 @@ impl World {
     }
 
     /// Whether it is certain that emergency braking from this command on keeps behind: one of the two conditions.
-    fn is_safe(&self, now: &Real, command: Acceleration, drives_on: bool, delay: Duration) -> bool {
+    pub fn is_safe(&self, now: &Real, command: Acceleration, drives_on: bool, delay: Duration) -> bool {
         let z = now.speed + now.acceleration * self.lag;
         let z = if drives_on { z.positive() } else { z };
         let ramp = (acceleration(command) + self.braking).per(self.jerk) + self.period + seconds(delay);
@@ -233,7 +233,7 @@ impl World {
 }
 
 /// What stands and is told to brake.
-fn stands(now: &Real, command: Acceleration) -> bool {
+pub fn stands(now: &Real, command: Acceleration) -> bool {
     now.speed.high <= 0.0 && now.acceleration.high <= 0.0 && command <= Acceleration::ZERO
 }
 
