@@ -26,9 +26,23 @@
 //! # How
 //!
 //! 1 to 3 hold for **all** real values: each is an identity of polynomials whose rest has no negative coefficient
-//! ([`crate::polynomial`]). 4, and 2 through the real plant (the lag solved exactly over a tick, standstill included), are
-//! tried at **points**: a lattice of configurations, states and obstacles, each with the gap bisected to the nearest one that
-//! the code calls safe, which is where it can fail. There everything is computed in intervals that are rounded outward.
+//! ([`crate::polynomial`]). The demand and the obstacle are no part of it: any demand, and any near end that is not behind and
+//! not slower than the one of 3.
+//!
+//! 4, and 2 through the real plant (the lag solved exactly over a tick, standstill included), are tried at **points**, in
+//! intervals that are rounded outward:
+//!
+//! - `lattice`: speeds 0 to 65.5 m/s, braking 0.5 m/s² to what a command can say, jerks 1 to 63.9 m/s³, lags 0 to 1.998 s with their
+//!   tolerance, periods 1 to 100 ms, delays 0 to 0.5 s, ahead 0.1 to 20.46 m/s²; at each the gap is bisected to the nearest one
+//!   that the code calls safe, which is where it can fail, and widened by a word to 29 m from there. The code by itself calls
+//!   safe after the tick what it called safe before to within 31 µm of the gap, for a lag that is known.
+//! - `extremes`: words at the ends of every format, and words that no decimal makes.
+//! - `drives`: whole drives in float64, with late commands, missed ticks and lags within the tolerances.
+//!
+//! # What is not
+//!
+//! A braking below 2 mm/s² is none, as no command can say it; and jerks below 1 m/s³ are in `extremes` alone. That the state is
+//! known (`Reckoning`), that the near end is behind the truth (`crate::estimator::bound`), and what is ahead at all, are others'.
 
 mod drives;
 mod extremes;
