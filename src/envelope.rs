@@ -97,7 +97,7 @@ pub use reckoning::{Reckoning, Start};
 use crate::config::Envelope;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Position, Speed};
-use crate::wire::command::ACCELERATION_STEPS;
+use crate::wire::command::{ACCELERATION_MOST, ACCELERATION_STEPS};
 use crate::wire::quantity::Quantity;
 
 /// No more acceleration than the absolute limit.
@@ -160,6 +160,13 @@ pub fn encodable(envelope: &Envelope, command: Acceleration) -> Acceleration {
     if step(down) < envelope.braking.negated() { step(down.saturating_add(1)) } else { step(down) }
 }
 
+/// The hardest braking that is ever commanded, as a magnitude: the limit, on a step of the command and within what it can say.
+#[must_use]
+pub fn hardest(envelope: &Envelope) -> Acceleration {
+    let most = Acceleration::from_steps(ACCELERATION_MOST, ACCELERATION_STEPS);
+    encodable(envelope, envelope.braking.min(most).negated()).negated()
+}
+
 /// Where the ego has to be able to stop for a vehicle on a path that crosses its own: before the conflict area, until the
 /// rear of that one's near end has left it.
 #[must_use]
@@ -173,5 +180,7 @@ pub fn stop_before_conflict(
     if has_left { None } else { Some(area_begins) }
 }
 
+#[cfg(test)]
+mod proof;
 #[cfg(test)]
 mod tests;

@@ -262,18 +262,24 @@ const fn divide_by_bytes(dividend: u64, divisor: u64) -> u64 {
     (((high / small) as u64) << 32) | below as u64
 }
 
-/// `dividend / 10⁶` for a dividend below 2⁶³, by multiplying: `10⁶ = 2⁶·5⁶`, and a product with `⌈2⁷⁷/5⁶⌉`, which is off by
-/// less than 1, is off by less than `2⁵⁷/2⁷⁷` of a quotient whose fraction is at most `1 - 1/5⁶`.
+/// `dividend / 10⁶` for a dividend below 2⁶³: `10⁶ = 2⁶·5⁶`.
+#[must_use]
+pub const fn per_million(dividend: u64) -> u64 {
+    per_15_625(dividend >> 6)
+}
+
+/// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying: a product with `⌈2⁷⁷/5⁶⌉`, whose 5⁶-fold is less than 5⁶ beyond
+/// 2⁷⁷, is off by less than `2⁶³/2⁷⁷` of a quotient, and its fraction is at most `1 - 1/5⁶`.
 #[must_use]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴
-pub const fn per_million(dividend: u64) -> u64 {
+pub const fn per_15_625(dividend: u64) -> u64 {
     const FACTOR: u128 = (1u128 << 77).div_ceil(15_625);
     const { assert!(FACTOR < 1 << 64, "in two words") };
+    const { assert!((FACTOR * 15_625 - (1 << 77)) << 63 < 1 << 77, "off by less than what a fraction lacks of 1") };
     const HIGH: u64 = (FACTOR >> 32) as u64;
     const LOW: u64 = FACTOR as u64 & u32::MAX as u64;
-    let x = dividend >> 6;
-    let (high, low) = (x >> 32, x & u32::MAX as u64);
+    let (high, low) = (dividend >> 32, dividend & u32::MAX as u64);
     let carried = ((low * LOW) >> 32) + low * HIGH;
     let middle = high * LOW + (carried & u32::MAX as u64);
     (high * HIGH + (carried >> 32) + (middle >> 32)) >> 13
@@ -303,6 +309,10 @@ mod tests {
             let near = dividend / 1_000_000 * 1_000_000;
             for dividend in [dividend, dividend >> shift, near, near.saturating_sub(1), near + 1] {
                 prop_assert_eq!(per_million(dividend), dividend / 1_000_000, "{}", dividend);
+                let near = dividend / 15_625 * 15_625;
+                for dividend in [dividend, near, near.saturating_sub(1)] {
+                    prop_assert_eq!(per_15_625(dividend), dividend / 15_625, "{}", dividend);
+                }
             }
         }
 

@@ -38,6 +38,8 @@ mod held;
 pub mod lockstep;
 pub mod parameters;
 pub mod peers;
+#[cfg(test)]
+mod polynomial;
 pub mod time;
 mod unit;
 pub mod units;

@@ -4,6 +4,7 @@
 //! Everything is computed in whole micrometres, micrometres per second and their like, and rounded so that less is allowed.
 //! No product reaches 2⁶³: accelerations and jerks are below 2²⁶, speeds below 2²⁹, ways below 2³² of these.
 
+use super::hardest;
 use crate::config::Envelope;
 use crate::estimator::bound::{Bound, Reach};
 use crate::fixed::quotient;
@@ -63,17 +64,24 @@ impl Spare {
     pub const NONE: Self = Self(i64::MIN);
 }
 
-/// How much there is to spare behind an obstacle: the least of what there is at the two ends of the lag.
+/// How much there is to spare behind an obstacle.
 #[must_use]
 pub fn spare(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Spare {
+    spare_of_all_lags(envelope, ego, obstacle, false)
+}
+
+/// By the better condition, and by each what there is at the worse end of the lag. What a condition leaves is at its least at an
+/// end; but where one holds at one end and the other at the other, between them neither need do.
+fn spare_of_all_lags(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, comes_to_rest: bool) -> Spare {
     let rest = rest(envelope, obstacle);
-    let [shortest, longest] = lags(envelope, ego.lag).map(|lag| spare_at(envelope, ego, obstacle, rest, lag, false));
-    shortest.min(longest)
+    let at = |lag| spare_at(envelope, ego, obstacle, rest, lag, comes_to_rest);
+    let [shortest, longest] = lags(envelope, ego.lag).map(at);
+    shortest.0.min(longest.0).max(shortest.1.min(longest.1))
 }
 
 /// The way that the obstacle still makes to its point of rest, with the harder of the two brakings, in µm.
 fn rest(envelope: &Envelope, obstacle: &Obstacle) -> i64 {
-    let (v, harder) = (speed_down(obstacle.speed), micros(envelope.braking.max(obstacle.braking)));
+    let (v, harder) = (speed_down(obstacle.speed), micros_up(hardest(envelope).max(obstacle.braking)));
     quotient(v.saturating_mul(v), harder.saturating_mul(2))
 }
 
@@ -83,8 +91,8 @@ fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
     [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
 }
 
-/// How much there is to spare with this lag. An ego that is about to stand may make way backwards in `y`; once it stands, it
-/// does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
+/// How much there is to spare with this lag, by the points of rest and by closing. An ego that is about to stand may make way
+/// backwards in `y`; once it stands, it does not any more, so that nothing is built on that, unless it `comes_to_rest` for good.
 fn spare_at(
     envelope: &Envelope,
     ego: &Ego,
@@ -92,22 +100,26 @@ fn spare_at(
     rest: i64,
     lag: FineSeconds,
     comes_to_rest: bool,
-) -> Spare {
+) -> (Spare, Spare) {
     let z = speed_up(ego.speed).saturating_add(speed_up(ego.acceleration.over(lag)));
     let z = if comes_to_rest { z } else { z.max(0) };
-    let gap = distance_down(obstacle.position.ahead_of(ego.position).minus(envelope.margin));
-    let room = gap.saturating_sub(distance_up(way(ego.speed, lag)));
+    let gap = obstacle.position.ahead_of(ego.position).minus(envelope.margin);
+    if gap == Distance::MIN {
+        // Further behind than the format can say.
+        return (Spare::NONE, Spare::NONE);
+    }
+    let room = distance_down(gap).saturating_sub(distance_up(way(ego.speed, lag)));
 
-    let braking = micros(envelope.braking);
+    let braking = micros_down(hardest(envelope).to_bits());
     let by_rest = spare_of(braking, room.saturating_add(rest), z);
-    let less = braking.saturating_sub(micros(obstacle.braking));
+    let less = braking.saturating_sub(micros_up(obstacle.braking));
     if less <= 0 {
-        return by_rest;
+        return (by_rest, Spare::NONE);
     }
     // `q - r` is `T` times the speed ahead more, and `q` moves by `T` times the braking less fast than that.
     let room = room.saturating_add(distance_down(way(obstacle.speed, lag)).saturating_sub(2));
     let moves = speed_down(obstacle.speed).saturating_sub(speed_up(obstacle.braking.over(lag)));
-    by_rest.max(spare_of(less, room, z.saturating_sub(moves)))
+    (by_rest, spare_of(less, room, z.saturating_sub(moves)))
 }
 
 /// `sqrt(2 b S) - z`.
@@ -125,19 +137,19 @@ pub fn distance_cap(envelope: &Envelope, spare: Spare, period: Duration) -> Acce
     if spare == Spare::ENDLESS {
         return Acceleration::MAX;
     }
-    let jerk = i64::from(envelope.jerk.to_mm_per_s3()).saturating_mul(1000);
+    let jerk = micros_down(envelope.jerk.to_bits());
     // With nothing to spare the root is 0, and what comes out is below the hardest braking.
     let rise = root(2i64.saturating_mul(jerk).saturating_mul(spare.0.clamp(0, 1 << 30)));
     let reaction = period.plus(envelope.delay).fine_seconds();
-    let reacting = micros(envelope.jerk.over(reaction)).saturating_add(1);
-    from_micros(rise.saturating_sub(reacting).saturating_sub(micros(envelope.braking)).saturating_sub(1))
+    let reacting = micros_up(envelope.jerk.over(reaction)).saturating_add(1);
+    from_micros(rise.saturating_sub(reacting).saturating_sub(micros_up(hardest(envelope))).saturating_sub(1))
 }
 
 /// The lowest command that the limits on jerk and braking allow: emergency braking.
 #[must_use]
 pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Acceleration {
     let slew = envelope.jerk.over(period.fine_seconds());
-    last.minus(slew).max(envelope.braking.negated())
+    last.minus(slew).max(hardest(envelope).negated())
 }
 
 /// Whether emergency braking from now on never meets the obstacle: the predicate that the gate keeps.
@@ -156,12 +168,8 @@ pub fn is_safe(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, period: Dura
     // What stands and is told to brake goes on standing. What is about to stand and is told to brake makes no more way in `y`.
     let brakes = ego.last <= Acceleration::ZERO;
     let stands = ego.speed <= Speed::ZERO && ego.acceleration <= Acceleration::ZERO;
-    let rest = rest(envelope, obstacle);
-    let is_safe = |lag| {
-        let spare = spare_at(envelope, ego, obstacle, rest, lag, brakes);
-        distance_cap(envelope, spare, period) >= floor(envelope, ego.last, period)
-    };
-    (brakes && stands) || lags(envelope, ego.lag).into_iter().all(is_safe)
+    let spare = spare_of_all_lags(envelope, ego, obstacle, brakes);
+    (brakes && stands) || distance_cap(envelope, spare, period) >= floor(envelope, ego.last, period)
 }
 
 /// `v T`, to within two words.
@@ -171,8 +179,13 @@ fn way(speed: Speed, time: FineSeconds) -> Distance {
     Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1))
 }
 
-fn micros(acceleration: Acceleration) -> i64 {
-    acceleration.to_multiple_of(1_000_000)
+/// A word of an acceleration or a jerk, rounded down: a million per 2²⁵ is 5⁶ per 2¹⁹.
+fn micros_down(word: i32) -> i64 {
+    i64::from(word).saturating_mul(15_625).wrapping_shr(19)
+}
+
+fn micros_up(acceleration: Acceleration) -> i64 {
+    micros_down(acceleration.negated().to_bits()).saturating_neg()
 }
 
 /// One more than the nearest.

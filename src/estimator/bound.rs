@@ -9,10 +9,11 @@
 //! harder than it accelerates.
 //!
 //! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the truth.
-//! Products stay below 2⁶³ and need not saturate: speeds are at most 65.534e6 (and no word makes more than 2.6e8 of them),
-//! accelerations at most 6.4e7, the times for which they last are cut at an hour, 3.6e9.
+//! Products stay below 2⁶³ and need not saturate: speeds are at most 65.534e6 (and no word makes more than 2.6e8 of them, two
+//! words 5.2e8), accelerations at most 6.4e7, the times for which they last are cut at an hour, 3.6e9. Positions are exact
+//! within ±560,000 km. All of it is proved over the whole range in `proof` below this module.
 
-use crate::fixed::{per_million, quotient};
+use crate::fixed::{per_15_625, per_million, quotient};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::intent::Limits;
@@ -228,22 +229,25 @@ fn micro_up(word: i32, fraction: u32) -> i64 {
 
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn micro_up_64(word: i64, fraction: u32) -> i64 {
-    word.saturating_neg().saturating_mul(MICRO).wrapping_shr(fraction).saturating_neg()
+    micro_down_64(word.saturating_neg(), fraction).saturating_neg()
 }
 
+/// Of words with at least 6 fraction bits: a million and 2^fraction share 2⁶, without which 64 bits reach 64 times as far.
 fn micro_down_64(word: i64, fraction: u32) -> i64 {
-    word.saturating_mul(MICRO).wrapping_shr(fraction)
+    word.saturating_mul(15_625).wrapping_shr(fraction.wrapping_sub(6))
 }
 
-/// A position in µm, rounded down and up; exact up to ±8.8e6 m, beyond which it saturates.
+/// A position in µm, rounded down and up; exact up to ±5.6e8 m, beyond which it saturates.
 fn micro_position(position: Position) -> (i64, i64) {
     (micro_down_64(position.to_bits(), 20), micro_up_64(position.to_bits(), 20))
 }
 
-/// Millionths as a word with `fraction` bits, rounded down.
+/// Millionths as a word with `fraction` bits, at least 6 of them, rounded down; exact as far as [`micro_position`] is.
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
-    millionths(micros.saturating_mul(1i64.wrapping_shl(fraction)))
+    let x = micros.saturating_mul(1i64.wrapping_shl(fraction.wrapping_sub(6)));
+    let sign = x >> 63;
+    per_15_625((x ^ sign).cast_unsigned()).cast_signed() ^ sign
 }
 
 /// A millionth, rounded down.
@@ -278,5 +282,7 @@ const fn ceil(dividend: i64, divisor: i64) -> i64 {
     floor(dividend.saturating_neg(), divisor).saturating_neg()
 }
 
+#[cfg(test)]
+mod proof;
 #[cfg(test)]
 mod tests;

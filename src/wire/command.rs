@@ -82,6 +82,8 @@ impl ModeCode {
 
 /// Steps of the acceleration in 1 m/s².
 pub const ACCELERATION_STEPS: i64 = 500;
+/// The most of them that the frame can say, either way.
+pub const ACCELERATION_MOST: i64 = 8_191;
 
 const ACCELERATION: Field = Field::signed("Acceleration", 12, 14).steps(ACCELERATION_STEPS, "m/s2");
 const MODE: Field = ModeCode::field(26);

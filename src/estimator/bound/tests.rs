@@ -223,3 +223,15 @@ fn a_bound_that_is_moved_contains_what_it_contained_there() {
         assert_eq!(moved.at(), bound.at());
     }
 }
+
+#[test]
+fn a_position_stays_inside_its_bound_however_far_the_unit_has_driven() {
+    for km in [16, 8_796, 8_797, 40_075, 500_000, -8_797, -500_000] {
+        let position = Position::from_mm(km * 1_000_000 + 1);
+        let bound = Bound::around(AT, position, Speed::ZERO, &Doubt::default(), &REACH);
+        let (low, high) = (bound.lowest_position(), bound.highest_position());
+        assert!(low <= position && position <= high, "{km} km: {low:?} {high:?}");
+        let [behind, ahead] = [position.ahead_of(low), high.ahead_of(position)];
+        assert!(behind.max(ahead) <= Distance::from_bits(2), "{km} km: {behind:?} {ahead:?}");
+    }
+}
