@@ -41,7 +41,8 @@ pub enum ConfigError {
     Link,
     /// The vehicle of eqs 1-3 has no mass or no brakes.
     Body,
-    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle; or its
+    /// A limit of the envelope is zero, or one is negative; or it brakes harder than what is published of the vehicle, or with less
+    /// than 0.1 m/s² or 0.1 m/s³, which is hardly a step of a command; or its
     /// delay is beyond 0.5 s, its tolerance beyond the whole lag, or the longest lag beyond 1.998 s.
     Envelope,
 }
@@ -63,7 +64,7 @@ impl core::fmt::Display for ConfigError {
             Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
-            Self::Envelope => "a limit of the envelope is zero, its margin is negative, its braking is harder than emergency braking, its delay is beyond 0.5 s, or its lag_tolerance is beyond 1 or makes a lag beyond 1.998 s",
+            Self::Envelope => "a limit of the envelope is zero, its margin is negative, its braking is below 0.1 m/s² or its jerk below 0.1 m/s³, its braking is harder than emergency braking, its delay is beyond 0.5 s, or its lag_tolerance is beyond 1 or makes a lag beyond 1.998 s",
         })
     }
 }
@@ -71,6 +72,9 @@ impl core::fmt::Display for ConfigError {
 impl core::error::Error for ConfigError {}
 
 const LONGEST_LAG: FineSeconds = FineSeconds::from_millis(1_998);
+/// With less the last gate could hardly brake: a command has steps of 2 mm/s².
+const LEAST_BRAKING: Acceleration = Acceleration::from_mm_per_s2(100);
+const LEAST_JERK: Jerk = Jerk::from_mm_per_s3(100);
 const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
 const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
 
@@ -112,9 +116,9 @@ impl Config {
         ensure(
             self.envelope.is_none_or(|e| {
                 e.acceleration > Acceleration::ZERO
-                    && e.braking > Acceleration::ZERO
+                    && e.braking >= LEAST_BRAKING
                     && e.braking <= self.limits.emergency_braking
-                    && e.jerk > Jerk::ZERO
+                    && e.jerk >= LEAST_JERK
                     && e.speed > Speed::ZERO
                     && e.margin >= Distance::ZERO
                     && (Duration::ZERO..=millis(500)).contains(&e.delay)

@@ -49,8 +49,9 @@ impl Reckoning {
         let before = held.get().filter(|held| held.start == *start);
         let from = before.unwrap_or(Self { start: *start, at: start.at, position: start.position, speed: start.speed });
         let since = now.since(from.at).max(Duration::ZERO);
-        // A sample may be from before the last command, which was a tick's jerk higher for each tick.
-        let higher = if before.is_some() { Acceleration::ZERO } else { envelope.jerk.over(since.fine_seconds()) };
+        // A command may be late, and a sample from before the last one: the one in force was a jerk higher for each moment of that.
+        let before_last = if before.is_some() { Duration::ZERO } else { since };
+        let higher = envelope.jerk.over(envelope.delay.plus(before_last).fine_seconds());
         let reckoning = from.on(since, last.plus(higher).plus(UNPUBLISHED_ACCELERATION_ACCURACY));
         held.set(reckoning);
         reckoning

@@ -34,7 +34,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = self.ego.as_ref().ok_or(Refusal::Torn)?;
         let at = received.minus(seen.age);
         let since = at.since(ego.at);
-        if since > self.config.link.ego_timeout || since < Duration::ZERO.minus(self.config.link.ego_timeout) {
+        let earliest = Duration::ZERO.minus(RangeSample::OLDEST).minus(self.config.link.ego_timeout);
+        if since > self.config.link.ego_timeout || since < earliest {
             return Err(Refusal::Stale);
         }
         // The ego's own motion, brought to the sight's instant.

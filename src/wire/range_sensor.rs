@@ -33,6 +33,9 @@ pub const FIELDS: &[Field] = &[DISTANCE, SPEED_DIFFERENCE, DISTANCE_ACCURACY, SP
 const AGE_STEP_MICROS: i64 = 1000;
 
 impl RangeSample {
+    /// The oldest that a measurement can be said to be.
+    pub const OLDEST: Duration = Duration::from_millis(63);
+
     /// The frame's payload; what does not fit is limited to its field's range.
     #[must_use]
     pub fn encode(&self) -> [Payload; 1] {
