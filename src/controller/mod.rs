@@ -28,6 +28,8 @@ pub enum Course {
         driver: Driver,
         /// The target's reading and length.
         target: Option<(Reading, Option<Distance>)>,
+        /// No more acceleration than this, whatever the law asks for.
+        cap: Acceleration,
     },
     /// Adaptive cruise control: behind what is still known, seen from the rear bumper of the vehicle ahead.
     Cruise {
@@ -121,7 +123,7 @@ impl Controller {
                 self.blend = Blend::NONE;
                 *demand
             }
-            (Course::Law { driver, target }, Some(ego)) => self.by_law(config, driver, ego, *target),
+            (Course::Law { driver, target, cap }, Some(ego)) => self.by_law(config, driver, ego, *target, *cap),
             (Course::Cruise { ahead }, Some(ego)) => self.cruise(config, ego, ahead),
             (Course::Caution { since }, _) => {
                 let braking = growth(now.since(*since)).min(config.limits.braking);
@@ -140,6 +142,7 @@ impl Controller {
         driver: &Driver,
         ego: &State,
         target: Option<(Reading, Option<Distance>)>,
+        cap: Acceleration,
     ) -> Acceleration {
         let length = target.and_then(|(_, length)| length);
         let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
@@ -148,7 +151,7 @@ impl Controller {
         }
         let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
-        let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
+        let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed)).min(cap);
         if !config.prediction.model.limits {
             return demand;
         }

@@ -8,7 +8,7 @@ use crate::envelope;
 use crate::estimator::bound::Bound;
 use crate::estimator::{Reading, State};
 use crate::parameters::{
-    ACCELERATION_ROUNDING, DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
+    ACCELERATION_ROUNDING, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
     UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
@@ -38,8 +38,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The rear bumper at the near end of what is certain of a peer.
     fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        let position = bound.lowest_position().ahead(length.negated());
+        let position = bound.lowest_position().ahead(self.length_of(index).negated());
         // The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
         let ego = self.ego.as_ref()?.position;
         let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
@@ -76,22 +75,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let heard = match self.coordination.itinerary() {
             None => target.and_then(|index| self.stop_behind(index)),
-            Some(_) => [self.stop_on_lane(now, &ego), self.stop_at_crossing(now, rearmost)].into_iter().flatten().min(),
+            Some(_) => [self.stop_on_lane(), self.stop_at_crossing(now, rearmost)].into_iter().flatten().min(),
         };
         let stop_before = [heard, self.stop_behind_seen(now)].into_iter().flatten().min();
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), stop_before };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
-    }
-
-    /// On an itinerary: behind everyone ahead on the same leg. Who is estimated to be the nearest of them need not be: one that
-    /// is silent may have braked where it is estimated to have driven on, past another one that is heard.
-    fn stop_on_lane(&self, now: Instant, ego: &envelope::Ego) -> Option<Position> {
-        let choice = self.coordination.choice();
-        let leading = (0..PEERS)
-            .filter(|index| choice.leading.contains(*index))
-            .filter(|index| self.is_heeded(*index, now, ego.position, ego.speed));
-        leading.chain(choice.lane.map(usize::from)).filter_map(|index| self.stop_behind(index)).min()
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
@@ -104,7 +93,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let (standing, crossing) = (self.coordination.standing(index)?, self.coordination.crossing()?);
         let intersection = crossing.intersection;
         let point = self.coordination.crossing_point(crossing)?;
-        let area_begins = point.ahead(intersection.half.negated());
+        let area_begins = self.area_begins()?;
         if rearmost > area_begins || !intersection.conflict(crossing.leg, standing.leg) {
             return None;
         }
@@ -113,16 +102,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !is_inside && !self.coordination.choice().ahead.contains(index) {
             return None;
         }
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
+        envelope::stop_before_conflict(area_begins, near_end, self.length_of(index), point.ahead(intersection.half))
     }
 
     /// The point behind a peer before which the ego has to be able to stop.
-    fn stop_behind(&self, index: usize) -> Option<Position> {
+    pub(super) fn stop_behind(&self, index: usize) -> Option<Position> {
         let track = self.peers.get(index)?;
         let stop = track.certainty().bound()?.nearest_stop(&track.reach());
-        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        Some(envelope::stop_behind(stop, length))
+        Some(envelope::stop_behind(stop, self.length_of(index)))
     }
 
     /// The same behind whatever the range sensor sees that is not known to be the target.
