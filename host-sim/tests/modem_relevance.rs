@@ -221,3 +221,18 @@ fn a_modem_listens_before_it_gives_a_slot_away_and_whoever_is_just_ahead_has_one
     // The others are the nearest to the own 180 m.
     assert_eq!(heard.iter().filter(|station| **station < 2 * PEERS as u8).count(), 0, "{heard:?}");
 }
+
+#[test]
+fn the_first_on_every_other_leg_of_the_next_intersection_has_a_slot() {
+    let mut bus = Bus::new();
+    // All slots but the reserve go to stations nearer to the unit, which is 100 m before it, on one leg.
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 99 - i32::from(station))))));
+    }
+    assert!(bus.hear(0.1, &message(50, Some(route(4, 2, 5)))));
+    assert!(!bus.hear(SLOT_REUSE_S + 0.2, &message(51, Some(route(4, 2, 10)))), "it comes after that one");
+    assert!(bus.hear(SLOT_REUSE_S + 0.2, &message(52, Some(route(4, 3, 6)))));
+    // When the first has left, the next one is the first.
+    assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.3, &message(50, Some(route(4, 2, -17)))));
+    assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.4, &message(51, Some(route(4, 2, 5)))));
+}

@@ -21,7 +21,7 @@ use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, St
 
 mod relevance;
 
-pub use relevance::{Ahead, Course, LEADERS, Rank};
+pub use relevance::{Ahead, Course, Foremost, LEADERS, Rank};
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
 pub const PEERS: usize = 16;
@@ -318,7 +318,27 @@ impl Relay {
         let way_m =
             |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
         let route = placed.map(|placed| (placed.route, way_m(placed)));
-        self.course.rank(station, route, self.steps_to(station), placed.is_some_and(|placed| self.leads(placed)))
+        self.course.rank(
+            station,
+            route,
+            self.steps_to(station),
+            placed.map_or(Foremost::No, |placed| self.foremost(placed)),
+        )
+    }
+
+    fn foremost(&self, placed: &Placed) -> Foremost {
+        match (self.leads(placed), self.is_first_across(placed)) {
+            (true, _) => Foremost::Ahead,
+            (false, true) => Foremost::Across,
+            (false, false) => Foremost::No,
+        }
+    }
+
+    /// Whether a station is the first on its leg of the unit's next intersection, by what each said last.
+    fn is_first_across(&self, placed: &Placed) -> bool {
+        let Some((leg, way_m)) = self.course.across(&placed.route) else { return false };
+        let others = self.places.iter().filter_map(|other| self.course.across(&other.route));
+        !others.into_iter().any(|(other, other_m)| other == leg && other_m < way_m)
     }
 
     /// Whether a station is one of the nearest ahead on the unit's own leg, by what each said last: who is silent has not
