@@ -194,7 +194,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
         }
         let nearest = lane.map(|(index, _)| index);
-        let is_held = !is_committed && !self.has_room(nearest, now);
+        let is_inside = self.area_begins().is_some_and(|begins| front > begins);
+        // Who stops at the line is a hair from where it could not.
+        let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
+        let is_held = can_wait && !self.has_room(nearest, now);
         if is_held && self.waits_for_room(nearest, now, state.speed) {
             self.coordination.give_way(arrival);
         }
@@ -204,10 +207,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         self.coordination.note_lost(self.lost(now, front));
         let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
-        // Who cannot stop before the area any more does not wait in it for one that comes after it.
+        // Who is in the area does not wait in it for one that comes after it.
         let is_passed = |index: &usize| self.rear(*index, now).is_some_and(|(reading, _)| reading.position <= front);
         let order = self.coordination.choice().order.map(usize::from);
-        let order = order.filter(is_heeded).filter(|index| !(is_committed && is_passed(index)));
+        let order = order.filter(is_heeded).filter(|index| !(is_inside && is_passed(index)));
         let lane = nearest.filter(is_heeded);
         let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);
@@ -228,7 +231,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             || !self.coordination.choice().lost.contains(index) && !self.is_far_ahead(index, at, front, speed)
     }
 
-    fn is_in_reach(&self, index: usize, at: Instant) -> bool {
+    pub(super) fn is_in_reach(&self, index: usize, at: Instant) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
         silence.is_some_and(|silence| silence <= self.config.link.holdover)
     }

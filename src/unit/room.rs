@@ -16,7 +16,7 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 /// From when the ego enters until it has left a conflict area, about; as far as every unit looks ahead.
 const LEAVES: Duration = Duration::from_millis(3_900);
 
-/// Slower than this the ego waits.
+/// Slower than this a vehicle waits.
 const WAITING: Speed = Speed::from_mm_per_s(500);
 
 /// Slower than this a vehicle is in a queue.
@@ -51,10 +51,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Distance::from_mm(saturate_i32(reacting.saturating_add(braked(mm_per_s, mm_per_s2))))
     }
 
-    /// Whether there will be room beyond the next conflict area behind that one, the nearest ahead on the ego's leg.
+    /// Whether there will be room beyond the next conflict area behind that one, the nearest ahead on the ego's leg. Who stands is
+    /// there still: that it wants to move off is not that it can.
     pub(super) fn has_room(&self, ahead: Option<usize>, now: Instant) -> bool {
         let (Some(index), Some(end)) = (ahead, self.coordination.end_of(self.coordination.next())) else { return true };
-        let Some((_, rear)) = self.rear(index, now.plus(LEAVES)).or_else(|| self.rear(index, now)) else { return true };
+        let Some((reading, rear)) = self.rear(index, now) else { return true };
+        let later = self.rear(index, now.plus(LEAVES)).filter(|_| reading.speed > WAITING);
+        let rear = later.map_or(rear, |(_, rear)| rear);
         rear >= end.ahead(self.config.length).ahead(self.config.law.standstill)
     }
 
@@ -95,11 +98,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. That one which
-    /// was hardly moving when it was heard last has moved on since is not for certain: whom it waits for may have changed.
+    /// was hardly moving when it was heard last has moved on since is not believed for as long as a holdover lasts: whom it waits
+    /// for may have changed.
     fn stops_at(&self, index: usize, now: Instant) -> Option<Position> {
         let track = self.peers.get(index)?;
         let was_slow = track.newest().is_some_and(|newest| newest.speed <= SLOW);
-        if was_slow && !track.link().is_on(now, &self.config.link) {
+        if was_slow && !track.link().is_on(now, &self.config.link) && self.is_in_reach(index, now) {
             let rear = self.bound(index, now)?.lowest_position().ahead(self.length_of(index).negated());
             return Some(rear.ahead(LINE.negated()));
         }
