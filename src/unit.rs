@@ -25,8 +25,10 @@ mod caution;
 mod coordinate;
 mod foresee;
 mod inbox;
+mod lane;
 mod outbox;
 mod range;
+mod room;
 mod sight;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
@@ -186,7 +188,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
         let ego = self.ego_at(now);
         let last = self.controller.last_demand();
-        let course = self.course(now, target);
+        let course = self.course(now, target, ego.as_ref());
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
         let (acceleration, limited) = match self.config.envelope {
             Some(limits) if self.mode != Mode::Standby => {
@@ -325,7 +327,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.wish.as_ref().map_or(self.config.law.target_speed, |wish| wish.target_speed)
     }
 
-    fn course(&self, now: Instant, target: Option<usize>) -> Course {
+    fn course(&self, now: Instant, target: Option<usize>, ego: Option<&State>) -> Course {
         match self.mode {
             Mode::Standby => Course::Yield { demand: self.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
             Mode::Cooperative | Mode::Holdover { .. } => {
@@ -334,7 +336,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                     let length = self.peers.get(index)?.intent().map(|intent| intent.length);
                     Some((self.estimated(index, next)?, length))
                 });
-                Course::Law { driver: self.driver(), target: reading }
+                let cap = ego.map_or(Acceleration::MAX, |ego| self.careful(now, ego));
+                Course::Law { driver: self.driver(), target: reading, cap }
             }
             Mode::Fallback { .. } => match self.still_known(now, target) {
                 Some(ahead) => Course::Cruise { ahead, target_speed: self.target_speed() },

@@ -46,8 +46,12 @@ fn gives_way(at: f64) -> bool {
 
 #[test]
 fn who_cannot_stop_before_the_conflict_area_any_more_makes_way_for_nobody() {
-    let braking = f64::from(rig::config().limits.braking.to_mm_per_s2()) * 1e-3;
-    let stops = CROSSING - HALF - 11.0 * 11.0 / (2.0 * braking);
+    let limits = rig::config().limits;
+    let (braking, jerk) =
+        (f64::from(limits.braking.to_mm_per_s2()) * 1e-3, f64::from(limits.jerk.to_mm_per_s3()) * 1e-3);
+    // Half of the ramp, the lag, and the braking itself.
+    let reaction = braking / jerk / 2.0 + 0.3;
+    let stops = CROSSING - HALF - 11.0 * reaction - 11.0 * 11.0 / (2.0 * braking);
     for metres in [0.3, 1.0, 3.0] {
         assert!(gives_way(stops - metres) && !gives_way(stops + metres), "{metres}");
     }

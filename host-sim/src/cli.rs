@@ -100,6 +100,15 @@ pub struct RunSettings {
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub vehicles: Option<Vec<usize>>,
 
+    /// More traffic: so many vehicles a minute in all, each with the envelope and without it, by the scenario's link and by a
+    /// perfect one, instead of everything else; for a corridor
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub demand: Option<Vec<f64>>,
+
+    /// How many peers every unit has slots for, instead of the scenario's; several numbers with `--demand`; for a corridor
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub slots: Option<Vec<usize>>,
+
     /// Draw a one-page picture, for a corridor: trajectories, errors, and ours beside seven other methods
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,

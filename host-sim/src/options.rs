@@ -119,6 +119,8 @@ impl RunOptions {
         let foreign = [
             ("--seeds", settings.seeds.is_some()),
             ("--vehicles", settings.vehicles.is_some()),
+            ("--demand", settings.demand.is_some()),
+            ("--slots", settings.slots.is_some()),
             ("--picture", settings.picture.is_some()),
         ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {

@@ -152,6 +152,11 @@ impl Vehicle {
         self.unit.set_out(itinerary)
     }
 
+    /// Lets its modem use no more than so many of the unit's slots, if nothing has been heard yet.
+    pub fn limit_slots(&mut self, slots: usize) {
+        self.relay.limit(slots);
+    }
+
     /// Lets the driver want another speed from now on.
     pub fn want(&mut self, target_speed_mps: f64) {
         self.wish.target_speed = speed(target_speed_mps);

@@ -43,6 +43,8 @@ impl Bus {
         let mut relay = Relay::new(BaseId::DEFAULT);
         relay.set_out(Course::through(WAY.to_vec()));
         relay.take(&Said::Route(route(4, OWN_LEG, 100)));
+        // It has listened for long; this one names no intersection of the way.
+        relay.hear(-10.0, &message(255, Some(route(9, 0, 50))), &mut Vec::new());
         Self { relay, receiver: Receiver::new(BaseId::DEFAULT, Role::Unit) }
     }
 
@@ -198,4 +200,39 @@ fn who_fell_silent_before_the_intersection_keeps_its_slot_wherever_it_may_be_by_
     let mut frames = Vec::new();
     bus.relay.hear(8.1, &silent, &mut frames);
     assert!(!frames.is_empty());
+}
+
+#[test]
+fn a_modem_listens_before_it_gives_a_slot_away_and_whoever_is_just_ahead_has_one_from_the_beginning() {
+    let mut relay = Relay::new(BaseId::DEFAULT);
+    relay.set_out(Course::through(WAY.to_vec()));
+    let receiver = Receiver::new(BaseId::DEFAULT, Role::Unit);
+    let mut bus = Bus { relay, receiver };
+    // Three times as many as there are slots, on all legs, and the one just ahead is the last to be heard.
+    let others = (1..3 * PEERS as u8).map(|station| (station, route(4, station % 3 + 2, 2 * i32::from(station))));
+    let all: Vec<(u8, Route)> = others.chain([(200, route(4, OWN_LEG, 150))]).collect();
+    let mut round = |at_s: f64| -> Vec<u8> {
+        let heard = all.iter().filter(|(station, route)| bus.hear(at_s, &message(*station, Some(*route))));
+        heard.map(|(station, _)| *station).collect()
+    };
+    assert_eq!([0.0, 0.2, 0.4].map(|at_s| round(at_s).len()), [0; 3]);
+    let heard = round(0.6);
+    assert!(heard.contains(&200) && heard.len() == PEERS - 1, "{heard:?}");
+    // The others are the nearest to the own 180 m.
+    assert_eq!(heard.iter().filter(|station| **station < 2 * PEERS as u8).count(), 0, "{heard:?}");
+}
+
+#[test]
+fn the_first_on_every_other_leg_of_the_next_intersection_has_a_slot() {
+    let mut bus = Bus::new();
+    // All slots but the reserve go to stations nearer to the unit, which is 100 m before it, on one leg.
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 99 - i32::from(station))))));
+    }
+    assert!(bus.hear(0.1, &message(50, Some(route(4, 2, 5)))));
+    assert!(!bus.hear(SLOT_REUSE_S + 0.2, &message(51, Some(route(4, 2, 10)))), "it comes after that one");
+    assert!(bus.hear(SLOT_REUSE_S + 0.2, &message(52, Some(route(4, 3, 6)))));
+    // When the first has left, the next one is the first.
+    assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.3, &message(50, Some(route(4, 2, -17)))));
+    assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.4, &message(51, Some(route(4, 2, 5)))));
 }

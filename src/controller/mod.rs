@@ -28,6 +28,8 @@ pub enum Course {
         driver: Driver,
         /// The target's reading and length.
         target: Option<(Reading, Option<Distance>)>,
+        /// No more acceleration than this, whatever the law asks for.
+        cap: Acceleration,
     },
     /// Adaptive cruise control: behind what is still known, seen from the rear bumper of the vehicle ahead, and no faster than
     /// the free road would be driven.
@@ -127,7 +129,7 @@ impl Controller {
                 self.blend = Blend::NONE;
                 *demand
             }
-            (Course::Law { driver, target }, Some(ego)) => self.by_law(config, driver, ego, *target),
+            (Course::Law { driver, target, cap }, Some(ego)) => self.by_law(config, driver, ego, *target, *cap),
             (Course::Cruise { ahead, target_speed }, Some(ego)) => self.cruise(config, ego, ahead, *target_speed),
             (Course::Caution, _) => {
                 let since = *self.caution.get_or_insert(now);
@@ -147,6 +149,7 @@ impl Controller {
         driver: &Driver,
         ego: &State,
         target: Option<(Reading, Option<Distance>)>,
+        cap: Acceleration,
     ) -> Acceleration {
         let length = target.and_then(|(_, length)| length);
         let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
@@ -155,7 +158,7 @@ impl Controller {
         }
         let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
-        let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed));
+        let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed)).min(cap);
         if !config.prediction.model.limits {
             return demand;
         }

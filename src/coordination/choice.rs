@@ -12,13 +12,17 @@ pub struct Choice {
     pub order: Option<u8>,
     /// The slot of the one that is estimated to be just ahead on the same leg.
     pub lane: Option<u8>,
+    /// Whether the ego is to stop before the next conflict area, whomever it follows.
+    pub is_held: bool,
     /// How gently the ego brakes for the target.
     pub gentleness: Gentleness,
     /// All that are ahead in the order; also those that are only estimated to have left.
     pub ahead: Slots,
     /// All that are ahead on the same leg. Nobody passes there: who was ahead for certain is, whatever is believed of him since.
     pub leading: Slots,
-    /// Who got out of reach far ahead, and has not been heard since.
+    /// Of those, who was out of the radio's reach when it was heard last.
+    pub beyond: Slots,
+    /// Who is estimated to have got out of reach far ahead, and has not been heard since: it is not followed.
     pub lost: Slots,
 }
 
@@ -28,9 +32,11 @@ impl Choice {
         target: None,
         order: None,
         lane: None,
+        is_held: false,
         gentleness: Gentleness::NONE,
         ahead: Slots::NONE,
         leading: Slots::NONE,
+        beyond: Slots::NONE,
         lost: Slots::NONE,
     };
 
@@ -41,6 +47,7 @@ impl Choice {
         }
         self.ahead.set(index, false);
         self.leading.set(index, false);
+        self.beyond.set(index, false);
         self.lost.set(index, false);
     }
 }

@@ -16,11 +16,13 @@
 pub mod axis;
 mod choice;
 mod gentleness;
+mod lane;
 pub mod map;
 pub mod order;
 pub mod path;
 mod patience;
 mod present;
+mod review;
 
 pub use axis::{Axis, Standing};
 pub use choice::{Choice, Slots};
@@ -30,6 +32,7 @@ pub use order::{Arrival, Entry, Regard};
 pub use path::{Path, Place, Scale, Segment};
 pub(crate) use present::{Present, Side};
 
+use lane::Lane;
 use patience::Patience;
 
 use crate::held::Held;
@@ -80,6 +83,7 @@ pub struct Coordination<const PEERS: usize> {
     axes: [Axis; PEERS],
     /// With those that do not heed the ego.
     patience: [Patience; PEERS],
+    lane: Lane<PEERS>,
     claim: Held<StationHash>,
     choice: Choice,
     /// When the next review is due: others have been told what will be found then.
@@ -98,6 +102,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             registration: Held::Nothing,
             axes: [Axis::UNKNOWN; PEERS],
             patience: [Patience::FULL; PEERS],
+            lane: Lane::UNKNOWN,
             claim: Held::Nothing,
             choice: Choice::NONE,
             due: Held::Nothing,
@@ -123,6 +128,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.registration.clear();
         self.axes = [Axis::UNKNOWN; PEERS];
         self.patience = [Patience::FULL; PEERS];
+        self.lane = Lane::UNKNOWN;
         self.claim.clear();
         self.choice = Choice::NONE;
         self.due.clear();
@@ -273,69 +279,18 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
-    /// Reviews who is here. Gives whether the ego gave way to one that did not heed it.
-    pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
-        self.at_once = false;
-        self.due.set(match self.due.get() {
-            Some(due) if now < due => due,
-            Some(due) if now.since(due) < REVIEW => due.plus(REVIEW),
-            _ => now.plus(REVIEW),
-        });
-        let Some(registration) = self.registration.get() else { return false };
-        let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
-        // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
-        // is ahead takes the ego along. Or else three could wait for one another, two by the order and two on the leg.
-        let ahead = present.iter().filter(|other| other.lane == Some(Side::Ahead) && !other.has_left);
-        let after =
-            ahead.filter_map(|other| other.entry.arrival).filter(|arrival| registration.arrival.is_before(*arrival));
-        if let Some(latest) = after.reduce(|a, b| if a.is_before(b) { b } else { a }) {
-            self.registration.set(Registration { arrival: latest.next(), ..registration });
-        }
-        let arrival = self.registration.get().map(|registration| registration.arrival);
-        let ego = Entry { arrival, ..ego };
-        let mut given_way = None;
-        for Present { index, entry, heard, is_far_behind, .. } in
-            present.iter().filter(|other| other.lane != Some(Side::Behind))
-        {
-            // What was said before the ego could be heard of does not count.
-            let counts = !is_far_behind && heard.since(registration.since) >= REVIEW;
-            let regard = Regard::of(entry, &ego, present.iter().map(|other| &other.entry));
-            let regard = if counts { regard } else { Regard::Heeds };
-            let is_over = self.patience.get_mut(*index).is_some_and(|patience| patience.is_over(*heard, regard));
-            if is_over && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
-                given_way = Some(entry);
-            }
-        }
-        let ego = match given_way.and_then(|other| other.arrival) {
-            Some(arrival) => {
-                self.registration.set(Registration { arrival: arrival.next(), since: now });
-                Entry { arrival: Some(arrival.next()), ..ego }
-            }
-            None => ego,
-        };
-        let (mut last, mut followed) = (None::<Entry>, None::<(usize, Entry)>);
-        self.choice.ahead = Slots::NONE;
-        let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
-        for Present { index, entry, has_left, is_announced, .. } in present.iter().filter(is_ahead) {
-            self.choice.ahead.set(*index, true);
-            if !has_left && last.is_none_or(|last| last.is_before(entry)) {
-                last = Some(*entry);
-            }
-            if !has_left && *is_announced && followed.is_none_or(|(_, last)| last.is_before(entry)) {
-                followed = Some((*index, *entry));
-            }
-        }
-        self.choice.order = followed.and_then(|(index, _)| u8::try_from(index).ok());
-        self.claim = last.map(|entry| entry.station).into();
-        given_way.is_some()
-    }
-
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         self.choice.vacate(index);
         if let Some(patience) = self.patience.get_mut(index) {
             *patience = Patience::FULL;
         }
+        self.forget_lane(index);
+    }
+
+    /// Nothing is known any more of who is behind that one on the ego's leg, and of whom it is behind.
+    pub(crate) fn forget_lane(&mut self, index: usize) {
+        self.lane.forget(index);
     }
 
     /// Chooses whom to follow, and how gently to brake for it, and takes note of who is ahead on the lane.
@@ -344,9 +299,24 @@ impl<const PEERS: usize> Coordination<PEERS> {
         (self.choice.target, self.choice.gentleness, self.choice.lane) = (slot(target), gentleness, slot(lane));
     }
 
-    /// Takes note of who is ahead on the same leg.
-    pub(crate) fn note_leading(&mut self, leading: Slots) {
-        self.choice.leading = leading;
+    /// Takes note of who is ahead on the same leg, and who of them is beyond the radio's reach.
+    pub(crate) fn note_leading(&mut self, leading: Slots, beyond: Slots) {
+        (self.choice.leading, self.choice.beyond) = (leading, beyond);
+    }
+
+    /// Takes note that the one is ahead of the other on the same leg, for certain. Nobody passes there: it remains so.
+    pub(crate) fn note_behind(&mut self, ahead: usize, behind: usize) {
+        self.lane.note_behind(ahead, behind);
+    }
+
+    /// Takes note that one on the same leg has come there at least: everyone ahead of it has.
+    pub(crate) fn note_passed(&mut self, index: usize, near: Position) {
+        self.lane.note_passed(index, near);
+    }
+
+    /// How far the rear bumper of one that was ahead of somebody else has come at least, by where that one is.
+    pub(crate) fn passed(&self, index: usize) -> Option<Position> {
+        self.lane.passed(index)
     }
 
     /// Takes note of who got out of reach.

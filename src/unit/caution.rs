@@ -46,8 +46,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The rear bumper at the near end of what is certain of a peer.
     fn certain_rear(&self, now: Instant, index: usize) -> Option<Reading> {
         let bound = self.bound(index, now)?;
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        self.near(bound.lowest_position().ahead(length.negated()), bound.lowest_speed())
+        self.near(bound.lowest_position().ahead(self.length_of(index).negated()), bound.lowest_speed())
     }
 
     /// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
@@ -93,8 +92,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 target.and_then(|index| self.obstacle(now, index)).map(spare)
             }
             Some(_) => {
-                let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing);
-                self.stop_on_lane(now, &ego).chain(crossing).map(spare).min()
+                let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing).map(spare);
+                [self.spare_on_lane(now, &spare), crossing].into_iter().flatten().min()
             }
         };
         let seen = self.obstacles_seen(now, rearmost).map(spare).min();
@@ -102,17 +101,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), spare };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
-    }
-
-    /// On an itinerary: behind everyone ahead on the same leg. Who is estimated to be the nearest of them need not be: one that
-    /// is silent may have braked where it is estimated to have driven on, past another one that is heard.
-    fn stop_on_lane(&self, now: Instant, ego: &envelope::Ego) -> impl Iterator<Item = Obstacle> {
-        let choice = self.coordination.choice();
-        let leading = (0..PEERS)
-            .filter(move |index| choice.leading.contains(*index))
-            .filter(move |index| self.is_heeded(*index, now, ego.position, ego.speed));
-        let ahead = leading.chain(choice.lane.map(usize::from)).filter(move |index| !self.is_seen_past(*index, now));
-        ahead.filter_map(move |index| self.obstacle(now, index))
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
@@ -125,7 +113,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let (standing, crossing) = (self.coordination.standing(index)?, self.coordination.crossing()?);
         let intersection = crossing.intersection;
         let point = self.coordination.crossing_point(crossing)?;
-        let area_begins = point.ahead(intersection.half.negated());
+        let area_begins = self.area_begins()?;
         if rearmost > area_begins || !intersection.conflict(crossing.leg, standing.leg) {
             return None;
         }
@@ -134,15 +122,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if !is_inside && !self.coordination.choice().ahead.contains(index) {
             return None;
         }
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
+        envelope::stop_before_conflict(area_begins, near_end, self.length_of(index), point.ahead(intersection.half))
     }
 
     /// The rear of a peer at its near end, behind which the ego has to stay.
-    fn obstacle(&self, now: Instant, index: usize) -> Option<Obstacle> {
-        let track = self.peers.get(index)?;
-        let length = track.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        Some(Obstacle::rear(&self.bound(index, now)?, length, &track.reach()))
+    pub(super) fn obstacle(&self, now: Instant, index: usize) -> Option<Obstacle> {
+        let reach = self.peers.get(index)?.reach();
+        Some(Obstacle::rear(&self.bound(index, now)?, self.length_of(index), &reach))
     }
 
     /// The same of everyone whom the range sensor has seen and who is not known to be the target. Past whom the ego has got by more

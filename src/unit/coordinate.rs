@@ -144,6 +144,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if moved.magnitude() > REACH {
             track.restart();
             self.estimator.forget(index);
+            self.coordination.forget_lane(index);
         } else {
             track.shift(moved);
             self.estimator.shift(index, moved);
@@ -189,13 +190,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 lane = Some((index, reading.position));
             }
         }
+        let nearest = lane.map(|(index, _)| index);
+        let is_inside = self.area_begins().is_some_and(|begins| front > begins);
+        // Who stops at the line is a hair from where it could not.
+        let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
+        let is_held = can_wait && !self.has_room(nearest, now);
+        if is_held && self.waits_for_room(nearest, now, state.speed) {
+            self.coordination.give_way(arrival);
+        }
+        self.coordination.hold(is_held);
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
         self.coordination.note_lost(self.lost(now, front));
         let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
-        let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
-        let lane = lane.map(|(index, _)| index).filter(is_heeded);
+        // Who is in the area does not wait in it for one that comes after it.
+        let is_passed = |index: &usize| self.rear(*index, now).is_some_and(|(reading, _)| reading.position <= front);
+        let order = self.coordination.choice().order.map(usize::from);
+        let order = order.filter(is_heeded).filter(|index| !(is_inside && is_passed(index)));
+        let lane = nearest.filter(is_heeded);
         let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);
         let followed = self.coordination.choice().target.map(usize::from);
@@ -204,10 +217,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
-        self.coordination.note_leading(self.leading(now, front));
+        self.note_lane(now, front);
     }
 
-    /// Whether a peer matters to the ego with its front bumper there: who was far ahead when it was heard last has got out of
+    /// Whether the ego, with its front bumper there, follows a peer; the gate minds it all the same. Who was far ahead when it was heard last has got out of
     /// reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
     /// whom nobody hears any more.
     pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
@@ -215,7 +228,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             || !self.coordination.choice().lost.contains(index) && !self.is_far_ahead(index, at, front, speed)
     }
 
-    fn is_in_reach(&self, index: usize, at: Instant) -> bool {
+    pub(super) fn is_in_reach(&self, index: usize, at: Instant) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
         silence.is_some_and(|silence| silence <= self.config.link.holdover)
     }
@@ -236,21 +249,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             lost.set(index, !self.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
         }
         lost
-    }
-
-    /// Who is ahead of the ego's front bumper on its own leg by what is certain of it; who may be on either side is where it was.
-    fn leading(&self, now: Instant, front: Position) -> Slots {
-        let mut leading = self.coordination.choice().leading;
-        for index in 0..PEERS {
-            let standing = self.coordination.standing(index);
-            let bound = standing.filter(|standing| self.coordination.is_on_lane(standing)).and(self.bound(index, now));
-            let is_ahead = bound.is_some_and(|bound| {
-                let may_be_behind = bound.lowest_position() <= front;
-                !may_be_behind || bound.highest_position() > front && leading.contains(index)
-            });
-            leading.set(index, is_ahead);
-        }
-        leading
     }
 
     /// Of the one just ahead in the order and the one just ahead on the leg, whom the ego follows with its front bumper there, at
@@ -302,7 +300,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// `q_j` of a vehicle ahead with that crossing next, in words of a position.
-    fn asks(&self, index: usize, at: Instant, next: usize) -> i64 {
+    pub(super) fn asks(&self, index: usize, at: Instant, next: usize) -> i64 {
         self.rear(index, at).map_or(i64::MAX, |(reading, rear)| {
             let damped = reading.speed.over(self.config.law.damping);
             rear.ahead(damped).ahead(self.standstill_at(next, index).negated()).to_bits()
@@ -336,8 +334,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// Where a peer is estimated to be, and its rear bumper.
     pub(super) fn rear(&self, index: usize, now: Instant) -> Option<(Reading, Position)> {
         let reading = self.estimated(index, now)?;
-        let length = self.peers.get(index)?.intent().map_or(DEFAULT_LENGTH, |intent| intent.length);
-        Some((reading, reading.position.ahead(length.negated())))
+        Some((reading, reading.position.ahead(self.length_of(index).negated())))
     }
 
     /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it has to be to follow it over the crossing.
@@ -346,18 +343,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let half = crossing.intersection.half;
         let needs = self.config.length.plus(half).plus(half).plus(self.config.law.standstill);
         front.ahead_of(peer.position) >= needs.plus(peer.speed.over(self.time_gap()))
-    }
-
-    /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area: it gives way to
-    /// nobody any more, as it would stand in the area and wait for one who cannot get past it.
-    fn is_committed(&self, front: Position, speed: Speed) -> bool {
-        let Some(crossing) = self.coordination.crossing() else { return false };
-        let Some(point) = self.coordination.crossing_point(crossing) else { return false };
-        let (mm_per_s, braking) =
-            (i64::from(speed.to_mm_per_s()), i64::from(self.config.limits.braking.to_mm_per_s2()));
-        let stops_mm = quotient(mm_per_s.saturating_mul(mm_per_s), braking.saturating_mul(2).max(1));
-        let way = point.ahead_of(front).minus(crossing.intersection.half);
-        way <= Distance::from_mm(saturate_i32(stops_mm))
     }
 
     /// Whether a rear bumper there on the virtual lane is out of the conflict area of the next crossing.

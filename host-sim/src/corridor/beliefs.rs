@@ -12,7 +12,6 @@ use holdover::wire::StationHash;
 
 use super::network::Network;
 use super::watch::{Sighting, Watch};
-use crate::vehicle::station;
 
 /// For so long after a target's own association has changed, errors stand apart.
 pub const CHANGED_S: f64 = 1.0;
@@ -145,7 +144,7 @@ impl Watch for Beliefs<'_> {
         for own in sightings {
             let (Some(belief), Some(followed)) = (own.belief, own.followed) else { continue };
             // A target that has left is not looked at any more.
-            let Some(target) = sightings.iter().find(|other| station(other.trip) == followed) else { continue };
+            let Some(target) = sightings.iter().find(|other| other.station == followed) else { continue };
             let Some(truth_m) = self.truth(own, target) else { continue };
             let error_m = belief.position_m - own.odometer_m - truth_m;
             let worst = Worst { error_m, at_s, by: own.trip, target: target.trip, age_s: belief.age_s };
@@ -183,6 +182,7 @@ impl Watch for Beliefs<'_> {
 mod tests {
     use super::super::example;
     use super::*;
+    use crate::vehicle::station;
     use crate::world::{Bounds, TargetBelief};
 
     fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {

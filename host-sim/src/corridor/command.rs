@@ -9,7 +9,7 @@ use super::experiment::{Experiment, STEPS_S, Sides};
 use super::figures::{StepRow, WrongRow};
 use super::journal::Journal;
 use super::options::CorridorOptions;
-use super::{cost, page, picture, scale, table, verdict};
+use super::{cost, demand, page, picture, scale, table, verdict};
 use crate::error::Error;
 use crate::motions::rows::{self, Row};
 use crate::output;
@@ -66,6 +66,9 @@ pub struct Results {
 /// A scenario that the units refuse, and places that cannot be written.
 pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let experiment = Experiment::new(options.corridor.clone());
+    if !options.demand.is_empty() {
+        return run_demand(options, &experiment);
+    }
     let is_drawn = options.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len()) as u64);
@@ -132,4 +135,21 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         std::fs::write(file, drawn).map_err(|error| Error::unwritable(file, &error))?;
     }
     Ok(if results.failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+}
+
+/// Tries more traffic, and nothing else.
+fn run_demand(options: &CorridorOptions, experiment: &Experiment) -> Result<Verdict, Error> {
+    let runs = 4 * options.demand.len() * options.slots.len() * options.seeds.len();
+    let bar = ProgressBar::new(runs as u64);
+    let rows = demand::run(experiment, &options.demand, &options.slots, &options.seeds, || bar.inc(1))?;
+    bar.finish_and_clear();
+    let failures = demand::failures(&rows);
+    if options.json {
+        let json = serde_json::to_string(&rows).map_err(|error| Error::new(error.to_string(), "report this"))?;
+        output::print(&format!("{json}\n"))?;
+    } else {
+        output::print(&demand::text(&rows))?;
+    }
+    failures.iter().for_each(|failure| output::say(failure));
+    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
 }

@@ -31,6 +31,8 @@ pub struct Conditions {
     pub when_lost: WhenLost,
     /// Prediction step.
     pub step_s: f64,
+    /// How many peers a unit has slots for.
+    pub slots: usize,
 }
 
 impl Conditions {
@@ -43,15 +45,16 @@ impl Conditions {
             envelope: corridor.envelope,
             when_lost: WhenLost::Holdover,
             step_s: corridor.step_s,
+            slots: corridor.slots,
         }
     }
 }
 
-/// The configuration of a vehicle's unit.
+/// The configuration of the unit of the vehicle with that station's number.
 #[must_use]
-pub fn config(corridor: &Corridor, conditions: &Conditions, index: usize, kind: Kind) -> Config {
+pub fn config(corridor: &Corridor, conditions: &Conditions, number: usize, kind: Kind) -> Config {
     let traffic = &corridor.traffic;
-    let mut config = Config::car(station(index));
+    let mut config = Config::car(station(number));
     config.period = duration(corridor.period_s);
     config.length = distance(kind.length_m());
     config.lag = fine_seconds(kind.lag_s());

@@ -19,6 +19,8 @@ pub struct Corridor {
     pub horizon_s: f64,
     /// How often every vehicle sends its messages; 1 to 100 Hz.
     pub message_rate_hz: f64,
+    /// How many peers every unit has slots for; 2 to 16.
+    pub slots: usize,
     /// Whose road the figures over time are about.
     pub ego_road: usize,
     /// The ego is the first to arrive there from then on.
@@ -37,6 +39,30 @@ pub struct Corridor {
     pub roads: Vec<RoadPlan>,
     /// The intersections: one to 16.
     pub intersections: Vec<IntersectionPlan>,
+}
+
+impl Corridor {
+    /// The same with so many vehicles a minute in all, each road's share as it was.
+    #[must_use]
+    pub fn demanding(&self, vehicles_per_min: f64) -> Self {
+        let mut other = self.clone();
+        let scale = vehicles_per_min / self.vehicles_per_min();
+        other.roads.iter_mut().for_each(|road| road.vehicles_per_min *= scale);
+        other
+    }
+
+    /// How many arrive in a minute, on all roads together.
+    #[must_use]
+    pub fn vehicles_per_min(&self) -> f64 {
+        self.roads.iter().map(|road| road.vehicles_per_min).sum()
+    }
+
+    /// More than so many vehicles a minute in all do not fit the least headway on some road.
+    #[must_use]
+    pub fn most_per_min(&self) -> f64 {
+        let busiest = self.roads.iter().map(|road| road.vehicles_per_min).fold(0.0, f64::max);
+        60.0 / self.traffic.headway_s * self.vehicles_per_min() / busiest
+    }
 }
 
 /// How they drive.

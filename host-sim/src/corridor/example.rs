@@ -6,6 +6,7 @@ use std::path::Path;
 use super::description::Corridor;
 use super::read;
 use super::watch::Sighting;
+use crate::vehicle::station;
 
 /// The file that comes with the program.
 pub const TEXT: &str = include_str!("../../scenarios/corridor.toml");
@@ -24,6 +25,7 @@ pub fn corridor() -> Corridor {
 pub fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
     Sighting {
         trip,
+        station: station(trip),
         road,
         way_m,
         length_m: 4.8,

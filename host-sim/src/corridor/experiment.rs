@@ -157,14 +157,16 @@ impl Experiment {
         Some((config, self.itineraries[trip.road]))
     }
 
+    /// The same roads with another traffic.
+    #[must_use]
+    pub(super) fn of(&self, corridor: Corridor) -> Self {
+        Self { corridor, network: self.network.clone(), itineraries: self.itineraries.clone() }
+    }
+
     /// The same with no more arrivals than an excerpt has.
     fn excerpt(&self) -> Self {
         let duration_s = self.corridor.duration_s.min(EXCERPT_S);
-        Self {
-            corridor: Corridor { duration_s, ..self.corridor.clone() },
-            network: self.network.clone(),
-            itineraries: self.itineraries.clone(),
-        }
+        self.of(Corridor { duration_s, ..self.corridor.clone() })
     }
 
     fn all(&self, jobs: &[(u64, Conditions)], done: impl Fn() + Sync) -> Result<Vec<Outcome>, Error> {

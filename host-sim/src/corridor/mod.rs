@@ -11,6 +11,7 @@ pub mod beliefs;
 pub mod command;
 pub mod conditions;
 pub mod cost;
+pub mod demand;
 pub mod description;
 #[cfg(test)]
 mod example;

@@ -7,6 +7,7 @@ use super::read;
 use super::scale::VEHICLES;
 use crate::cli::RunSettings;
 use crate::error::Error;
+use crate::modem::PEERS;
 use crate::options::{can_be_file, can_be_folder};
 use crate::scenario::Overrides;
 use crate::seeds;
@@ -31,6 +32,10 @@ pub struct CorridorOptions {
     pub report: Option<PathBuf>,
     /// How fast so many vehicles at once are simulated is to be measured.
     pub vehicles: Vec<usize>,
+    /// So much traffic is to be tried instead of the scenario's; usually empty.
+    pub demand: Vec<f64>,
+    /// With so many slots.
+    pub slots: Vec<usize>,
     /// Where to draw the one-page picture.
     pub picture: Option<PathBuf>,
 }
@@ -58,7 +63,14 @@ impl CorridorOptions {
             envelope: settings.envelope,
             ..Overrides::default()
         };
-        let corridor = read::corridor(file, text, &overrides)?;
+        let mut corridor = read::corridor(file, text, &overrides)?;
+        let demand = settings.demand.clone().unwrap_or_default();
+        let most = corridor.most_per_min();
+        if let Some(beyond) = demand.iter().find(|per_min| !(**per_min > 0.0 && **per_min < most)) {
+            let remedy = format!("give numbers above 0 and below {most:.0}");
+            return Err(Error::new(format!("is {beyond}"), remedy).in_option("--demand"));
+        }
+        let slots = slots(settings.slots.clone(), &mut corridor, !demand.is_empty())?;
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
         let report = (!settings.no_report).then_some(settings.out);
@@ -85,11 +97,42 @@ impl CorridorOptions {
         if settings.envelope {
             command += " --envelope";
         }
+        let listed = |numbers: Vec<String>| numbers.join(",");
+        if !demand.is_empty() {
+            command += &format!(" --demand {}", listed(demand.iter().map(f64::to_string).collect()));
+        }
+        if settings.slots.is_some() {
+            command += &format!(" --slots {}", listed(slots.iter().map(usize::to_string).collect()));
+        }
         if is_given {
-            let numbers: Vec<String> = vehicles.iter().map(usize::to_string).collect();
-            command += &format!(" --vehicles {}", numbers.join(","));
+            command += &format!(" --vehicles {}", listed(vehicles.iter().map(usize::to_string).collect()));
         }
         let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { corridor, name, command, seeds, json: settings.json, report, vehicles, picture: settings.picture })
+        Ok(Self {
+            corridor,
+            name,
+            command,
+            seeds,
+            json: settings.json,
+            report,
+            vehicles,
+            demand,
+            slots,
+            picture: settings.picture,
+        })
     }
+}
+
+/// How many slots: those of the command line, which then are the corridor's, or else the corridor's.
+fn slots(said: Option<Vec<usize>>, corridor: &mut Corridor, may_be_several: bool) -> Result<Vec<usize>, Error> {
+    let slots = said.unwrap_or_else(|| vec![corridor.slots]);
+    if let Some(beyond) = slots.iter().find(|slots| !(read::LEAST_SLOTS..=PEERS).contains(*slots)) {
+        let remedy = format!("give from {} to {PEERS}", read::LEAST_SLOTS);
+        return Err(Error::new(format!("is {beyond}"), remedy).in_option("--slots"));
+    }
+    if slots.len() > 1 && !may_be_several {
+        return Err(Error::new("has several numbers", "give one, or `--demand` too").in_option("--slots"));
+    }
+    corridor.slots = slots.first().copied().unwrap_or(corridor.slots);
+    Ok(slots)
 }

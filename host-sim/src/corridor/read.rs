@@ -8,6 +8,7 @@ use super::fit::{self, Part};
 use super::globe::Shift;
 use crate::error::{Error, quoted};
 use crate::ground::Point;
+use crate::modem::PEERS;
 use crate::scenario::keys::{Document, Number, Section};
 use crate::scenario::{Overrides, Span, envelope};
 
@@ -44,6 +45,8 @@ const DEGREES: Number = Number { key: "points", unit: "degrees", limits: -180.0.
 const ERROR_LIMIT: Number = Number { key: "position_error_m", unit: "metres", limits: 0.0..=1000.0, default: 0.0 };
 const RATIO_LIMIT: Number = Number { key: "travel_time_ratio", unit: "a factor", limits: 1.0..=100.0, default: 1.0 };
 
+/// Whoever is just ahead needs one, and so does whoever comes next.
+pub const LEAST_SLOTS: usize = 2;
 const ROADS: usize = 32;
 const INTERSECTIONS: usize = 16;
 
@@ -60,6 +63,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let (duration, period) = (top.number(&DURATION)?, top.number(&PERIOD)?);
     let (step, horizon, rate) = (top.number(&STEP)?, top.number(&HORIZON)?, top.number(&RATE)?);
+    let slots = top.whole("slots")?;
     let (ego_road, ego_after) = (top.text("ego_road")?, top.number(&EGO_AFTER)?);
     let traffic = traffic(&document, top.section("traffic")?)?;
     let radio = radio(top.section("channel")?)?;
@@ -79,6 +83,11 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         let remedy = format!("give `message_rate_hz` up to {}", 1.0 / period.value);
         return Err(document.error_at(rate.line.or(period.line), cause, remedy));
     }
+    let slots = slots.map_or(Ok(PEERS), |slots| {
+        let given = usize::try_from(slots.value).ok().filter(|given| (LEAST_SLOTS..=PEERS).contains(given));
+        let cause = format!("`slots` is {}", slots.value);
+        given.ok_or_else(|| document.error_at(slots.line, cause, format!("give from {LEAST_SLOTS} to {PEERS}")))
+    })?;
     let ego_road = match &ego_road {
         None => 0,
         Some(name) => roads.iter().position(|road| road.name == name.value).ok_or_else(|| {
@@ -97,6 +106,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         },
         horizon_s: horizon.value,
         message_rate_hz: rate.value,
+        slots,
         ego_road,
         ego_after_s: ego_after.value,
         traffic,

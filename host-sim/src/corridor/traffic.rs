@@ -9,7 +9,6 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io;
 use std::rc::Rc;
 
-use holdover::controller::Mode;
 use holdover::coordination::Itinerary;
 use holdover::health::Refusal;
 use holdover::time::Instant;
@@ -29,20 +28,22 @@ use crate::bus::{Bus, Frame};
 use crate::channel::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::ground::Point;
 use crate::modem::V2xMessage;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, station};
 use crate::world::{Air, Arrived, TargetBelief};
 
 mod arrivals;
+mod departures;
+mod numbers;
 
 use arrivals::LISTENING_S;
-
-/// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
-pub const RUN_OUT_M: f64 = 60.0;
+pub use departures::RUN_OUT_M;
+use numbers::Numbers;
 
 /// A vehicle on the roads.
 struct Traveller {
     trip: usize,
-    has_left: bool,
+    /// When it has left, if it has.
+    left_s: Option<f64>,
     vehicle: Box<Vehicle>,
     ground: Ground,
     dark: Window,
@@ -63,6 +64,10 @@ impl Traveller {
         Ok(())
     }
 
+    fn has_left(&self) -> bool {
+        self.left_s.is_some()
+    }
+
     fn is_dark(&self, at_s: f64) -> bool {
         (self.dark.from_s..self.dark.to_s).contains(&at_s)
     }
@@ -80,6 +85,7 @@ pub struct Traffic<'a> {
     next: usize,
     waiting: Vec<VecDeque<usize>>,
     travellers: BTreeMap<usize, Traveller>,
+    numbers: Numbers,
     air: Air,
     /// What has been broadcast of late: when, by whom, and from where.
     aired: VecDeque<(f64, usize, Point, Rc<V2xMessage>)>,
@@ -135,6 +141,7 @@ impl<'a> Traffic<'a> {
             next: 0,
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
+            numbers: Numbers::new(),
             air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
             aired: VecDeque::new(),
             remains: Remains::default(),
@@ -157,7 +164,7 @@ impl<'a> Traffic<'a> {
         while !self.is_over() && self.at_s() <= longest_s {
             self.tick(watches, log)?;
         }
-        let on_way = self.travellers.values().filter(|traveller| !traveller.has_left).count();
+        let on_way = self.travellers.values().filter(|traveller| !traveller.has_left()).count();
         let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
         for mut traveller in std::mem::take(&mut self.travellers).into_values() {
             self.remains.add(&traveller.vehicle);
@@ -191,7 +198,7 @@ impl<'a> Traffic<'a> {
 
     fn is_over(&self) -> bool {
         self.next == self.trips.len()
-            && self.travellers.values().all(|traveller| traveller.has_left)
+            && self.travellers.values().all(|traveller| traveller.has_left())
             && self.waiting.iter().all(VecDeque::is_empty)
     }
 
@@ -200,7 +207,7 @@ impl<'a> Traffic<'a> {
         self.ticks += 1;
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
-                self.tally.heard += u64::from(!traveller.has_left);
+                self.tally.heard += u64::from(!traveller.has_left());
                 traveller.vehicle.hear(at_s, &message)?;
             }
         }
@@ -216,7 +223,7 @@ impl<'a> Traffic<'a> {
         }
         self.run_out();
         let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
-            self.travellers.values().partition(|traveller| traveller.has_left);
+            self.travellers.values().partition(|traveller| traveller.has_left());
         let [beyond, on_way] = [beyond, on_way]
             .map(|some| some.into_iter().map(|traveller| self.sight(at_s, traveller)).collect::<Vec<Sighting>>());
         self.tally.on_way += on_way.len() as u64;
@@ -256,6 +263,7 @@ impl<'a> Traffic<'a> {
         let vehicle = &traveller.vehicle;
         Sighting {
             trip: traveller.trip,
+            station: station(vehicle.index),
             road: self.trips[traveller.trip].road,
             way_m: traveller.way_m(),
             length_m: vehicle.length_m,
@@ -279,51 +287,6 @@ impl<'a> Traffic<'a> {
             let choice = vehicle.unit.coordination().choice();
             vehicle.override_with(alone::still_given_way(lost, choice, wanted, vehicle.command_mps2));
         }
-    }
-
-    /// Who has left and has lost whom it follows drives on by sight: the one ahead of it vanishes without a word, and for all that
-    /// is known it stands there. Each would wait for that, and all behind it, back onto the way. With the envelope everyone who
-    /// has left does, as what is certain of the one ahead counts then.
-    fn run_out(&mut self) {
-        let is_lost = |vehicle: &Vehicle| matches!(vehicle.unit.mode(), Mode::Fallback { .. });
-        let by_sight = |traveller: &Traveller| {
-            traveller.has_left && (self.conditions.envelope.engaged || is_lost(&traveller.vehicle))
-        };
-        let all: Vec<usize> =
-            self.travellers.values().filter(|one| by_sight(one)).map(|traveller| traveller.trip).collect();
-        if all.is_empty() {
-            return;
-        }
-        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
-        for traveller in self.travellers.values_mut().filter(|traveller| all.contains(&traveller.trip)) {
-            let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
-            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, true);
-            traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
-        }
-    }
-
-    /// Those who have driven to the end of their way leave, and vanish a little later.
-    fn dismiss(&mut self, at_s: f64, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
-        let trips = self.trips;
-        let beyond_m =
-            |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
-        for (index, traveller) in &mut self.travellers {
-            if !traveller.has_left && beyond_m(traveller) >= 0.0 {
-                traveller.has_left = true;
-                watches.iter_mut().for_each(|watch| watch.left(at_s + self.corridor.period_s, *index));
-            }
-        }
-        let has_gone = |traveller: &Traveller| beyond_m(traveller) >= RUN_OUT_M;
-        let gone: Vec<usize> =
-            self.travellers.iter().filter(|(_, traveller)| has_gone(traveller)).map(|(index, _)| *index).collect();
-        for index in gone {
-            if let Some(mut traveller) = self.travellers.remove(&index) {
-                self.remains.add(&traveller.vehicle);
-                traveller.hand_in(log)?;
-            }
-            self.air.forget(index);
-        }
-        Ok(())
     }
 }
 

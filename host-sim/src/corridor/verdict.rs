@@ -21,7 +21,8 @@ pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     failures
 }
 
-fn safety(how: &str, side: &Side) -> Vec<String> {
+/// What keeps people safe, and whether everybody is served; `how` they were driving.
+pub(super) fn safety(how: &str, side: &Side) -> Vec<String> {
     let mut failures = Vec::new();
     if side.collisions() > 0 {
         let (roads, crossings) = (side.collisions_on_roads, side.collisions_at_intersections);

@@ -9,6 +9,8 @@ use crate::world::TargetBelief;
 pub struct Sighting {
     /// Its trip.
     pub trip: usize,
+    /// What it is called on the air.
+    pub station: StationHash,
     /// Its road.
     pub road: usize,
     /// The way of its front bumper along its road.

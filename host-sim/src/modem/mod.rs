@@ -21,7 +21,7 @@ use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, St
 
 mod relevance;
 
-pub use relevance::{Ahead, Course, LEADERS, Rank};
+pub use relevance::{Ahead, Course, Foremost, LEADERS, Rank};
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
 pub const PEERS: usize = 16;
@@ -42,8 +42,15 @@ const FIRST_INTENTS: u8 = 3;
 /// A station that has not been relayed for longer than this has paused.
 const PAUSE_S: f64 = 0.45;
 
-/// Where a station said it was is forgotten after so long.
+/// Where a station said it was is forgotten after so long, if it has no slot.
 const FORGOTTEN_S: f64 = 10.0;
+
+/// Who has said where it is within so long is on the air.
+const HEARD_S: f64 = 1.0;
+
+/// On a route nobody is relayed before the modem has listened for so long, so that it knows who matters most: a slot that was given
+/// to the wrong station rests for longer than that before it can be another one's. Everyone says where it is five times a second.
+const LISTENS_S: f64 = 0.6;
 
 /// Time between two relays of an intent that does not change.
 pub const INTENT_EVERY_S: f64 = 0.5;
@@ -131,6 +138,8 @@ pub struct Relay {
     places: Vec<Placed>,
     course: Course,
     turned_away: u64,
+    /// When it heard the first message.
+    begun_s: Option<f64>,
 }
 
 impl Relay {
@@ -140,7 +149,7 @@ impl Relay {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
         let (left, is_begun) = (vec![None; PEERS], vec![false; PEERS]);
         let (sender, course) = (Sender::new(base), Course::default());
-        Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0 }
+        Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
     }
 
     /// Limits it to the slots that the unit has, if nothing has been heard yet.
@@ -168,6 +177,7 @@ impl Relay {
     /// Puts a message that was heard at `at_s` on the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage, frames: &mut Vec<Frame>) {
         let station = message.motion.station;
+        self.begun_s.get_or_insert(at_s);
         self.place(at_s, message);
         let rank = self.rank(station, at_s);
         if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
@@ -224,7 +234,10 @@ impl Relay {
     fn place(&mut self, at_s: f64, message: &V2xMessage) {
         let Some(route) = message.route else { return };
         let station = message.motion.station;
-        self.places.retain(|placed| placed.station != station && at_s - placed.at_s < FORGOTTEN_S);
+        let slots = &self.slots;
+        let is_tenant = |station| slots.iter().flatten().any(|tenant| tenant.station == station);
+        let is_known = |placed: &Placed| at_s - placed.at_s < FORGOTTEN_S || is_tenant(placed.station);
+        self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
         self.places.push(Placed { station, route, speed_mps, at_s });
     }
@@ -234,8 +247,12 @@ impl Relay {
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
-        if self.course.is_on_route() && rank != Rank::Irrelevant && !self.makes_room(rank, at_s) {
-            return None;
+        if self.course.is_on_route() {
+            let has_listened = self.begun_s.is_some_and(|begun_s| at_s - begun_s >= LISTENS_S - 1e-9);
+            let is_served = has_listened && self.is_among_the_first(rank, at_s);
+            if rank != Rank::Irrelevant && (!is_served || !self.makes_room(rank, at_s)) {
+                return None;
+            }
         }
         if let Some(slot) = self.left.iter().position(held) {
             self.slots[slot] = self.left[slot].take().map(|tenant| Tenant { from_s: at_s, ..tenant });
@@ -255,6 +272,14 @@ impl Relay {
         self.slots[slot] =
             Some(Tenant { station, relayed_s: at_s, from_s, relayed: false, intents: 0, gone: 0, intent: None });
         Some(slot)
+    }
+
+    /// Whether so few of those that are heard matter more than one of that rank that there is a slot for it too, beside the one in
+    /// reserve: or else it would be in the way of somebody who matters more and is heard next.
+    fn is_among_the_first(&self, rank: Rank, at_s: f64) -> bool {
+        let heard = self.places.iter().filter(|placed| at_s - placed.at_s < HEARD_S);
+        let first = heard.filter(|placed| self.rank(placed.station, at_s) < rank).count();
+        first + 1 < self.slots.len()
     }
 
     /// On a route one slot is held in reserve and rests, so that whoever comes up near by is heard at once: the last free one is
@@ -293,7 +318,27 @@ impl Relay {
         let way_m =
             |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
         let route = placed.map(|placed| (placed.route, way_m(placed)));
-        self.course.rank(station, route, self.steps_to(station), placed.is_some_and(|placed| self.leads(placed)))
+        self.course.rank(
+            station,
+            route,
+            self.steps_to(station),
+            placed.map_or(Foremost::No, |placed| self.foremost(placed)),
+        )
+    }
+
+    fn foremost(&self, placed: &Placed) -> Foremost {
+        match (self.leads(placed), self.is_first_across(placed)) {
+            (true, _) => Foremost::Ahead,
+            (false, true) => Foremost::Across,
+            (false, false) => Foremost::No,
+        }
+    }
+
+    /// Whether a station is the first on its leg of the unit's next intersection, by what each said last.
+    fn is_first_across(&self, placed: &Placed) -> bool {
+        let Some((leg, way_m)) = self.course.across(&placed.route) else { return false };
+        let others = self.places.iter().filter_map(|other| self.course.across(&other.route));
+        !others.into_iter().any(|(other, other_m)| other == leg && other_m < way_m)
     }
 
     /// Whether a station is one of the nearest ahead on the unit's own leg, by what each said last: who is silent has not

@@ -2,6 +2,7 @@
 //!
 //! First comes whom the unit says it follows. On a route, next are the two nearest ahead on the unit's own leg by what they
 //! said last, wherever they are: it must not run into them, and if one of them is silent the other need not be the nearest. Then
+//! the first one on every other leg of the next intersection: nobody passes there, so those behind it come after it. Then
 //! come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
 //! next one, there those ahead before those behind, of those ahead first who are leaving it, because the unit may be waiting for
 //! that, and otherwise the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
@@ -22,6 +23,8 @@ pub enum Rank {
     Followed,
     /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
     Leads,
+    /// It is the next one into the conflict area that the unit comes to next, of all on its leg.
+    Enters,
     /// It comes to an intersection that the unit comes to.
     Meets {
         /// How many intersections the unit crosses before that one.
@@ -39,6 +42,20 @@ pub enum Rank {
     Other,
     /// It cannot matter.
     Irrelevant,
+}
+
+/// So far beyond the crossing point, in metres, the rear of most vehicles has left the conflict area.
+const LEFT_M: f64 = 16.0;
+
+/// Whether a station is the first of all that the unit could meet next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Foremost {
+    /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
+    Ahead,
+    /// It is the first on another leg of the next intersection: nobody behind it there comes into the area before it.
+    Across,
+    /// Neither.
+    No,
 }
 
 /// So many of those ahead on the unit's own leg matter before all but the one followed.
@@ -116,14 +133,22 @@ impl Course {
     }
 
     /// The rank of a station that is now on that route, if it says so, and that many steps up the chain, if it is there; and
-    /// whether it leads.
+    /// whether it is foremost.
     #[must_use]
-    pub fn rank(&self, station: StationHash, route: Option<(Route, f64)>, steps: Option<usize>, leads: bool) -> Rank {
+    pub fn rank(
+        &self,
+        station: StationHash,
+        route: Option<(Route, f64)>,
+        steps: Option<usize>,
+        foremost: Foremost,
+    ) -> Rank {
         if self.followed == Some(station) {
             return Rank::Followed;
         }
-        if leads {
-            return Rank::Leads;
+        match foremost {
+            Foremost::Ahead => return Rank::Leads,
+            Foremost::Across => return Rank::Enters,
+            Foremost::No => {}
         }
         let chain = steps.map_or(Rank::Other, Rank::OnChain);
         if self.crossings.is_empty() {
@@ -131,6 +156,15 @@ impl Course {
         }
         let meets = route.and_then(|(other, way_m)| self.meets(&other, way_m));
         meets.unwrap_or(if chain == Rank::Other { Rank::Irrelevant } else { chain })
+    }
+
+    /// The leg, and the way to the crossing point when it said that, of a station that comes by another leg to the intersection which
+    /// the unit comes to next, and has not left it.
+    #[must_use]
+    pub fn across(&self, other: &Route) -> Option<(u8, f64)> {
+        let (id, leg, _) = self.crossings.get(self.here()?)?;
+        let way_m = other.distance.get().to_num::<f64>();
+        (other.intersection == *id && other.leg != *leg && way_m > -LEFT_M).then_some((other.leg, way_m))
     }
 
     /// How far ahead on the unit's own leg a station was when it said that.

@@ -44,8 +44,9 @@ impl Traffic<'_> {
         for road in 0..self.waiting.len() {
             let Some(&index) = self.waiting[road].front() else { continue };
             if self.has_room(at_s, &self.trips[index]) {
+                let Some(called) = self.numbers.take(at_s, index) else { continue };
                 self.waiting[road].pop_front();
-                let traveller = self.appear(at_s, index)?;
+                let traveller = self.appear(at_s, index, called)?;
                 self.travellers.insert(index, traveller);
             }
         }
@@ -79,7 +80,7 @@ impl Traffic<'_> {
         }
     }
 
-    fn appear(&mut self, at_s: f64, index: usize) -> io::Result<Traveller> {
+    fn appear(&mut self, at_s: f64, index: usize, called: usize) -> io::Result<Traveller> {
         let trip = &self.trips[index];
         let lane = &self.network.lanes[trip.road];
         let wrong = &self.conditions.wrong;
@@ -98,12 +99,14 @@ impl Traffic<'_> {
             target_speed: speed(self.corridor.traffic.target_speed_mps),
             time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
         };
-        let config = config(self.corridor, &self.conditions, index, trip.kind);
+        let config = config(self.corridor, &self.conditions, called, trip.kind);
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let sensors = Sensors::blind(ACCURACY);
         let mut vehicle = Box::new(
-            Vehicle::new(index, &config, plant, length_m, wish, offset_us, sensors).map_err(|cause| refused(&cause))?,
+            Vehicle::new(called, &config, plant, length_m, wish, offset_us, sensors)
+                .map_err(|cause| refused(&cause))?,
         );
+        vehicle.limit_slots(self.conditions.slots);
         let ground = Ground { road: lane.road, odometer_m };
         let crossings =
             lane.stops.iter().map(|stop| (number(stop.intersection), number(stop.leg), stop.at_m - lane.entry_m));
@@ -119,7 +122,7 @@ impl Traffic<'_> {
             vehicle.hear(at_s, &message)?;
         }
         let dark = trip.dark(at_s, &self.conditions.radio);
-        Ok(Traveller { trip: index, has_left: false, vehicle, ground, dark, log })
+        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log })
     }
 }
 

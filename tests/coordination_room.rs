@@ -1,0 +1,74 @@
+//! How a unit without the envelope keeps able to stop at intersections, by what it estimates, frames in and frames out: behind the one
+//! ahead, however fast it comes, and before a conflict area that it could not leave again.
+
+mod rig;
+
+use rig::junction::{CROSSING, Driver, HALF, Junction};
+use rig::plant::Plant;
+
+const LENGTH: f64 = 4.8;
+
+fn stand(driver: &mut Driver, position: f64) {
+    driver.body = Plant { position, speed: 0.0, acceleration: 0.0, ..driver.body };
+}
+
+#[test]
+fn who_comes_fast_stops_behind_one_that_stands() {
+    for speed in [11.0, 14.0, 17.0, 20.0] {
+        let mut junction =
+            Junction::new(vec![Driver::new(1, 0, 5.0, speed, false), Driver::new(2, 0, 300.0, 0.0, false)]);
+        let mut gap = f64::MAX;
+        junction.run(60.0, |junction| {
+            stand(&mut junction.drivers[1], 300.0);
+            gap = gap.min(300.0 - LENGTH - junction.drivers[0].body.position);
+        });
+        assert!(gap > 0.5, "{speed} m/s: {gap}");
+        assert!(gap < 4.0, "{speed} m/s: {gap}");
+    }
+}
+
+#[test]
+fn who_hardly_moved_when_it_was_heard_last_is_not_taken_to_have_moved_on() {
+    let mut junction = Junction::new(vec![Driver::new(1, 0, 53.0, 8.0, false), Driver::new(2, 0, 60.0, 8.0, false)]);
+    let mut gap = f64::MAX;
+    let mut stands = None;
+    junction.run(12.0, |junction| {
+        let seconds = junction.now as f64 * 1e-6;
+        let [ego, ahead] = &mut junction.drivers[..] else { panic!("two") };
+        if seconds < 4.0 {
+            stand(ego, 53.0);
+            stand(ahead, 60.0);
+        } else if seconds > 5.5 {
+            // It has just begun to move, and falls silent and stops for somebody whom the ego has not heard of.
+            let at = *stands.get_or_insert(ahead.body.position);
+            stand(ahead, at);
+            ahead.speaks = seconds > 9.5;
+        }
+        gap = gap.min(ahead.body.position - LENGTH - ego.body.position);
+    });
+    let began = stands.unwrap();
+    assert!((60.2..63.0).contains(&began), "{began}");
+    assert!(gap > 0.5, "{gap}");
+}
+
+#[test]
+fn nobody_enters_a_conflict_area_that_it_could_not_leave_and_who_waits_for_that_lets_the_others_go() {
+    let blocked = CROSSING + HALF + LENGTH + 3.0;
+    let mut drivers = vec![Driver::new(1, 0, 100.0, 8.0, false), Driver::new(2, 0, 140.0, 8.0, false)];
+    // Comes later than the ego, by the other street.
+    drivers.push(Driver::new(3, 1, 40.0, 8.0, false));
+    let mut junction = Junction::new(drivers);
+    let mut inside = f64::MIN;
+    junction.run(60.0, |junction| {
+        let [ego, ahead, _] = &mut junction.drivers[..] else { panic!("three") };
+        if ahead.body.position > blocked {
+            stand(ahead, blocked);
+        }
+        inside = inside.max(ego.body.position - (CROSSING - HALF));
+    });
+    assert!(junction.drivers[1].body.position > blocked - 0.1, "{}", junction.drivers[1].body.position);
+    assert!(junction.drivers[2].body.position > 260.0, "{}", junction.drivers[2].body.position);
+    junction.run(30.0, |_| {});
+    assert!(inside < 0.0, "{inside} m inside");
+    assert!(junction.drivers[0].body.position > 260.0, "{}", junction.drivers[0].body.position);
+}
