@@ -28,6 +28,9 @@ pub const FADE: Duration = Duration::from_millis(2000);
 /// and to expect a lorry of 18.75 m until then is to brake hard at every association.
 pub const DEFAULT_LENGTH: Distance = Distance::from_mm(4800);
 
+/// No vehicle on a road is shorter.
+pub const SHORTEST: Distance = Distance::from_mm(1_500);
+
 /// Farther away than this a peer has nothing to do with the unit: V2X does not reach it, and a horizon's positions,
 /// which are modulo 4096 m, stay unambiguous.
 pub const REACH: Distance = Distance::from_mm(1_500_000);

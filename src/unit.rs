@@ -18,6 +18,7 @@ use crate::units::{Acceleration, Distance, Seconds, Speed};
 use crate::wire::command::Command;
 use crate::wire::ego_intent::EgoIntent;
 use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
+use caution::Displaced;
 
 mod admission;
 mod answer;
@@ -55,6 +56,10 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     ranging: sight::Ranging,
     /// The ego as the last gate sees it.
     reckoning: Held<Reckoning>,
+    /// The slot of whom the driver named and who was heard of, until another one is both.
+    named: Option<u8>,
+    /// The same, once somebody else has its slot.
+    displaced: Held<Displaced>,
     coordination: Coordination<PEERS>,
     last_tick: Option<Instant>,
 }
@@ -80,6 +85,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             outbox: outbox::Outbox::new(),
             ranging: sight::Ranging::new(),
             reckoning: Held::Nothing,
+            named: None,
+            displaced: Held::Nothing,
             coordination: Coordination::idle(),
             last_tick: None,
         }
@@ -108,6 +115,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.outbox = outbox::Outbox::new();
         self.ranging = sight::Ranging::new();
         self.reckoning.clear();
+        self.named = None;
+        self.displaced.clear();
         self.coordination.reset();
         self.last_tick = None;
         Ok(())
@@ -169,6 +178,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let now = self.monotonic(now);
         self.coordinate(now);
         let target = self.target();
+        self.note_named(target);
         let before = match self.mode {
             Mode::Holdover { .. } => target.and_then(|index| self.estimated(index, now)),
             _ => None,
@@ -191,9 +201,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let course = self.course(now, target, ego.as_ref());
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
         let (acceleration, limited) = match self.config.envelope {
-            Some(limits) if self.mode != Mode::Standby => {
-                self.gate(&limits, now, demand, last, ego.as_ref(), &facts, target)
-            }
+            Some(limits) if self.mode != Mode::Standby => self.gate(&limits, now, demand, last, ego.as_ref(), &facts),
             _ => {
                 // Of what somebody else commands nothing is known.
                 self.reckoning.clear();

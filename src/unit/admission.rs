@@ -8,7 +8,7 @@ use super::OnboardUnit;
 use crate::coordination::Axis;
 use crate::estimator::bound::{Bound, Reach};
 use crate::health::Refusal;
-use crate::parameters::REACH;
+use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
 use crate::peers::{Admission, Off, Sample, Track, timely};
 use crate::time::Instant;
@@ -21,6 +21,8 @@ use crate::wire::{Slot, StationHash};
 struct Seat {
     /// It is another station's so far, whose time is over.
     is_taken_over: bool,
+    /// It is another station's so far, which was heard just now: the same vehicle by another name, or a mistake.
+    is_renamed: bool,
     /// The slot in which the station was.
     left: Option<usize>,
 }
@@ -97,15 +99,32 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let sample = Sample::of(&motion, stamped, at, ego.or_else(newest));
             (sample, self.judge(track, &sample, &placed))
         });
+        if seat.is_renamed
+            && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
+        {
+            return Err(Refusal::StationConflict);
+        }
         Ok(Plan { seat, placed, sample })
+    }
+
+    /// Whether a motion by another name is of the vehicle that has the slot: it follows on what is certain of that, and that
+    /// leaves no room for another vehicle. Stations change their names for privacy.
+    fn continues(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, judgement: &Judgement) -> bool {
+        let Some((bound, newest)) = track.and_then(|track| track.certainty().bound().zip(track.newest())) else {
+            return false;
+        };
+        let bound = bound.after(sample.at, &track.map_or(Reach::WORST, Track::reach));
+        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
+        let room = bound.highest_position().ahead_of(bound.lowest_position()).plus(off).plus(off);
+        matches!(judgement.verdict, Ok(Belief::Agrees)) && sample.at > newest.at && room < SHORTEST
     }
 
     /// A station speaks in one slot at a time, and a slot is one station's. If it was another one's, that one's time is over.
     ///
     /// # Errors
-    /// [`Refusal::StationConflict`]: the other station was heard in the slot, or the station in another slot, within
-    /// `slot_reuse`. Or else whoever takes its name could end what is certain of it, and with that the check of whether what is
-    /// said of it can be.
+    /// [`Refusal::StationConflict`]: the station was heard in another slot within `slot_reuse`, or the other one in this slot, and
+    /// it is not certain that both are the same vehicle ([`continues`](Self::continues)). Or else whoever takes its name could
+    /// end what is certain of it, and with that the check of whether what is said of it can be.
     fn seat(
         &self,
         at: Instant,
@@ -114,17 +133,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         station: StationHash,
     ) -> Result<Seat, Refusal> {
         if holder == Some(station) {
-            return Ok(Seat { is_taken_over: false, left: None });
+            return Ok(Seat { is_taken_over: false, is_renamed: false, left: None });
         }
         let left = self.peers.index_of(station);
         let is_heard = |index: usize| {
             let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
             silence.is_some_and(|silence| silence < self.config.link.slot_reuse)
         };
-        if holder.is_some() && is_heard(index) || left.is_some_and(is_heard) {
+        let is_renamed = holder.is_some() && is_heard(index);
+        // Where there are intersections a new name has to tell its way first.
+        if is_renamed && self.coordination.itinerary().is_some() || left.is_some_and(is_heard) {
             return Err(Refusal::StationConflict);
         }
-        Ok(Seat { is_taken_over: holder.is_some(), left })
+        Ok(Seat { is_taken_over: holder.is_some() && !is_renamed, is_renamed, left })
     }
 
     /// A motion on the ego's axis.
@@ -193,7 +214,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if let Some(moved) = plan.placed.moved.filter(|_| !plan.placed.is_elsewhere()) {
             certainty.shift(moved);
         }
-        let is_first = track.station().is_none();
+        let is_first = track.station() != Some(sample.station);
         let admission = track.admit(sample, certainty, belief);
         if is_first {
             self.estimator.note_change(&self.peers);
@@ -233,6 +254,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// What was known of a station in a slot that it has left is from before, and ends.
     fn vacate(&mut self, index: usize) {
+        self.displace(index);
         if let Some(track) = self.peers.get_index_mut(index) {
             *track = Track::new(self.config.link.period);
         }

@@ -13,6 +13,15 @@ use crate::parameters::{
 use crate::peers::Sample;
 use crate::time::Instant;
 use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::Predecessor;
+
+/// What is certain of a vehicle that has no slot any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Displaced {
+    bound: Bound,
+    reach: Reach,
+    length: Distance,
+}
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// What is certain of a peer at an instant, now or later.
@@ -39,7 +48,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &Reach::WORST));
         let stood = stood.and_then(|bound| self.near(bound.lowest_position(), bound.lowest_speed()));
         let target = target.filter(|index| !self.is_seen_past(*index, now));
-        let certain = target.and_then(|index| self.certain_rear(now, index));
+        let certain = match target {
+            Some(index) => self.certain_rear(now, index),
+            None => self.named_ahead(now).and_then(|rear| self.near(rear.position, rear.speed)),
+        };
         [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
     }
 
@@ -56,6 +68,40 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(Reading { position: ego.ahead(gap), speed })
     }
 
+    /// Takes note of whom the driver has put ahead. A name that nobody has been heard by says nothing of where that one is, so
+    /// whoever was ahead before is minded until then, or until the driver says that nobody is.
+    pub(super) fn note_named(&mut self, target: Option<usize>) {
+        if target.is_some() {
+            self.named = target.and_then(|index| u8::try_from(index).ok());
+            self.displaced.clear();
+        } else if self.predecessor() == Predecessor::None {
+            self.named = None;
+            self.displaced.clear();
+        }
+    }
+
+    /// Keeps what is certain of whom the driver has put ahead, where it loses its slot to somebody else: it is still there.
+    pub(super) fn displace(&mut self, index: usize) {
+        if self.named.map(usize::from) != Some(index) {
+            return;
+        }
+        self.named = None;
+        if let Some(track) = self.peers.get(index)
+            && let Some(bound) = track.certainty().bound()
+        {
+            self.displaced.set(Displaced { bound: *bound, reach: track.reach(), length: self.length_of(index) });
+        }
+    }
+
+    /// The rear of whom the driver has put ahead, at its near end, unless the range sensor sees that it is not there.
+    fn named_ahead(&self, now: Instant) -> Option<Obstacle> {
+        if let Some(index) = self.named.map(usize::from) {
+            return if self.is_seen_past(index, now) { None } else { self.obstacle(now, index) };
+        }
+        let Displaced { bound, reach, length } = self.displaced.get()?;
+        Some(Obstacle::rear(&bound.after(now, &reach), length, &reach))
+    }
+
     /// The last gate, with the ego at the less safe end of its accuracies: the command as it is encoded, and whether the
     /// gate changed the demand.
     #[allow(clippy::too_many_arguments)] // all of them are of one tick
@@ -67,7 +113,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         last: Acceleration,
         ego: Option<&State>,
         facts: &Facts,
-        target: Option<usize>,
     ) -> (Acceleration, bool) {
         let sample = self.ego.get().unwrap_or(Sample::UNKNOWN);
         let state = ego.copied().unwrap_or_default();
@@ -87,10 +132,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let heard = match self.coordination.itinerary() {
-            None => {
-                let target = target.filter(|index| !self.is_seen_past(*index, now));
-                target.and_then(|index| self.obstacle(now, index)).map(spare)
-            }
+            None => self.named_ahead(now).map(spare),
             Some(_) => {
                 let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing).map(spare);
                 [self.spare_on_lane(now, &spare), crossing].into_iter().flatten().min()

@@ -14,16 +14,14 @@ use super::sight::{Sight, Verdict};
 use crate::estimator::bound::{Bound, Doubt};
 use crate::health::Refusal;
 use crate::parameters::{
-    LENGTH_ROUNDING, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
+    LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
+    UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
-
-/// No vehicle on a road is shorter.
-const SHORTEST: Distance = Distance::from_mm(1_500);
 
 /// A correction of less than this share is not worth computing the horizon anew.
 const LEAST_SHARE: i64 = 16;
@@ -76,8 +74,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let clock_error = self.config.link.clock_error;
         let late = ego.speed.plus(own_speed).over(clock_error.seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
+        let moved = own_speed.plus(faster).over(apart.seconds());
         Doubt {
-            position: seen.distance_accuracy.plus(own).plus(faster.over(apart.seconds())).plus(late).plus(roundings),
+            position: seen.distance_accuracy.plus(own).plus(moved).plus(late).plus(roundings),
             speed: seen.speed_accuracy.plus(own_speed).plus(faster).plus(SPEED_ROUNDING).plus(SPEED_ROUNDING),
             earlier: clock_error,
             // Its age is rounded up to a whole millisecond.

@@ -195,7 +195,8 @@ fn stranger(scenario: &mut Scenario, random: &mut Random) {
     }
     for _ in 0..random.below(6) {
         let at = random.between(scenario.ego.engages, scenario.length);
-        scenario.event.push(Event { at, what: What::Blind { seconds: random.between(0.1, 2.0) } });
+        let longest = if speed > 0.0 { 0.9 } else { 9.0 };
+        scenario.event.push(Event { at, what: What::Blind { seconds: random.between(0.1, longest) } });
     }
     manoeuvre::disturb(scenario, random, 0, 1);
 }
@@ -296,7 +297,8 @@ fn slots(scenario: &mut Scenario, random: &mut Random) {
 fn garbage(scenario: &mut Scenario, random: &mut Random) {
     following(scenario, random);
     for _ in 0..random.below(6) {
-        let at = random.between(0.0, scenario.length);
+        // Before the first honest motion nothing is certain that a false one could contradict.
+        let at = random.between(2.0, scenario.length);
         let count = 1 + random.below(50) as u32;
         let what = match random.below(3) {
             0 => What::Garbage { count },

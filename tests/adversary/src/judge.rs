@@ -46,6 +46,10 @@ fn bound(world: &mut World, now: f64) {
     let Some(other) = world.others.iter().find(|other| other.station == world.followed && other.station != 0) else {
         return;
     };
+    // A range sensor tells of the named vehicle only while that is on the lane.
+    if world.scenario.range.fitted && !other.on_lane {
+        return;
+    }
     world.outcome.checked += 1;
     let off = wrapped(other.body.position + world.scenario.shifted - told.position);
     let (behind, ahead) = (-told.behind - off, off - told.ahead);
@@ -116,8 +120,10 @@ pub fn end(world: &mut World, at: f64) {
         return;
     }
     let (speed, mode) = (world.ego.body.speed, world.ego.said.mode);
-    if speed < 2.0 || mode != 1 {
-        let gap = world.nearest().map_or(f64::NAN, |nearest| nearest.rear() - world.ego.body.position);
+    let gap = world.nearest().map_or(f64::NAN, |nearest| nearest.rear() - world.ego.body.position);
+    // Whom the driver names is there to be followed if it is the vehicle ahead, and not out of reach.
+    let is_there = world.nearest().is_some_and(|nearest| nearest.station == world.followed) && gap < 1_400.0;
+    if speed < 2.0 || is_there && mode != 1 {
         let told = world.ego.said.told.map_or(f64::NAN, |told| told.behind);
         world.outcome.find(Fault::Deadlock, at, at - since, || {
             format!(

@@ -54,7 +54,8 @@ pub fn disturb(scenario: &mut Scenario, random: &mut Random, peer: usize, most: 
             9 => What::Missed { ticks: 1 + random.below(3) as u32 },
             10 => What::NoEgo { seconds: random.between(0.01, 0.4) },
             11 => What::Wanted { speed: random.between(3.0, 30.0) },
-            _ => What::Blind { seconds },
+            // Whom a sensor has seen driving it sees again within a second.
+            _ => What::Blind { seconds: seconds.min(0.9) },
         };
         scenario.event.push(Event { at, what });
     }

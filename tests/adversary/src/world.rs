@@ -325,7 +325,6 @@ impl<'a> World<'a> {
             if is_silent && is_free && !is_taken {
                 self.slot_wishes.swap_remove(place);
                 self.others[number].slot = slot;
-                self.others[number].known = None;
             }
         }
     }
