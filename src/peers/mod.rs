@@ -57,6 +57,13 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.get_mut(index)
     }
 
+    /// A station that was in the one slot is in the other one now.
+    pub fn follow_on(&mut self, from: usize, to: usize) {
+        if let Ok([before, now]) = self.tracks.get_disjoint_mut([from, to]) {
+            now.follow_on(before);
+        }
+    }
+
     /// All slots in their order.
     pub fn iter(&self) -> impl Iterator<Item = &Track<SAMPLES>> {
         self.tracks.iter()

@@ -124,6 +124,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.certainty = Certainty::NONE;
     }
 
+    /// Takes over what the same station said of how it drives in the slot in which it was before.
+    pub fn follow_on(&mut self, before: &Self) {
+        if self.intent.as_ref().is_none() {
+            (self.intent, self.limits) = (before.intent, before.limits);
+        }
+    }
+
     /// What it said of how it drives.
     #[must_use]
     pub const fn intent(&self) -> Option<&Intent> {

@@ -204,6 +204,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if plan.seat.is_taken_over {
             self.vacate(index);
         }
+        if let Some(left) = plan.seat.left {
+            self.peers.follow_on(left, index);
+        }
         if let Some(axis) = plan.placed.axis {
             self.place_on(index, axis, plan.placed.moved);
         }
