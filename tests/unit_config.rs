@@ -159,12 +159,14 @@ fn the_envelope() {
         lag_tolerance: Share::from_milli(200),
     };
     type Set = fn(&mut Envelope, i32);
-    // In bits of their formats; braking up to the car's emergency braking.
+    // In bits of their formats; braking and jerk from what a command can say, braking up to the car's emergency braking.
+    let least_braking = i64::from(Acceleration::from_mm_per_s2(100).to_bits());
+    let least_jerk = i64::from(Jerk::from_mm_per_s3(100).to_bits());
     let hardest = i64::from(Config::car(StationHash(1)).limits.emergency_braking.to_bits());
     let bounded: [(Set, [i64; 2]); 7] = [
         (|envelope, bits| envelope.acceleration = Acceleration::from_bits(bits), [1, i64::MAX / 2]),
-        (|envelope, bits| envelope.braking = Acceleration::from_bits(bits), [1, hardest]),
-        (|envelope, bits| envelope.jerk = Jerk::from_bits(bits), [1, i64::MAX / 2]),
+        (|envelope, bits| envelope.braking = Acceleration::from_bits(bits), [least_braking, hardest]),
+        (|envelope, bits| envelope.jerk = Jerk::from_bits(bits), [least_jerk, i64::MAX / 2]),
         (|envelope, bits| envelope.speed = Speed::from_bits(bits), [1, i64::MAX / 2]),
         (|envelope, bits| envelope.margin = Distance::from_bits(bits), [0, i64::MAX / 2]),
         (|envelope, micros| envelope.delay = Duration::from_micros(micros.into()), [0, 500 * MS]),

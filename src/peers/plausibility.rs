@@ -5,12 +5,13 @@
 //! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Refusal::Jump`], or
 //! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). A speed that does not fit the
 //! positions over many samples is implausible too, as soon as they have drifted apart by more than the published accuracies
-//! ([`Course`]); for half a second at most, as after that the course begins anew. An acceleration
+//! (`Course`); for half a second at most, as after that the course begins anew. An acceleration
 //! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
 //!
 //! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
 //! track starts anew from them. Only what is stamped at least half a period after the last that counted counts, and a copy of a
-//! refused sample is a duplicate: a burst of copies is no evidence, and the next honest sample is believed at once. A liar whose lie takes longer than that to show would be believed again and again, so each
+//! refused sample is a duplicate: a burst of copies is no evidence, and the next honest sample is believed at once. A liar whose
+//! lie takes longer than that to show would be believed again and again, so each
 //! recovery doubles the number that the next one takes, up to 2⁵ times; [`FORGIVEN_AFTER`] samples in a row that agree
 //! halve it again. So who is forged for long enough to be believed, five samples over four half periods without an honest one
 //! between them, keeps the honest ones out for ten of theirs, 1 s at 10 Hz; if that is done again and again before it is

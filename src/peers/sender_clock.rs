@@ -28,7 +28,7 @@ pub enum Off {
     /// Not to be seen.
     #[default]
     No,
-    /// Ahead by this or up to [`UNDER_WAY`] more.
+    /// Ahead by this or up to 100 ms more, as messages may be under way for so long.
     Ahead(Duration),
     /// Perhaps behind, by this at the most.
     Behind(Duration),
