@@ -195,7 +195,8 @@ fn stranger(scenario: &mut Scenario, random: &mut Random) {
     }
     for _ in 0..random.below(6) {
         let at = random.between(scenario.ego.engages, scenario.length);
-        let longest = if speed > 0.0 { 0.9 } else { 9.0 };
+        // Six of them make no 10 s, after which a standing one is forgotten.
+        let longest = if speed > 0.0 { 0.9 } else { 1.6 };
         scenario.event.push(Event { at, what: What::Blind { seconds: random.between(0.1, longest) } });
     }
     manoeuvre::disturb(scenario, random, 0, 1);

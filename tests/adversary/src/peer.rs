@@ -6,6 +6,9 @@ use crate::scenario::{Peer, Radio, Sensor};
 use crate::vehicle::{measured, published};
 use crate::wire::{BOOK, Can, Counters, stamp, wrapped};
 
+/// Harder limits are published for so long before they are used, s.
+const ANNOUNCED: f64 = 10.0;
+
 /// Published limits, m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -106,7 +109,7 @@ pub struct Other {
     #[allow(missing_docs)]
     pub length: f64,
     /// Limits that the unit took last.
-    pub known: Option<Limits>,
+    pub known: Vec<(f64, Limits)>,
     /// It is silent until then.
     pub mute_until: f64,
     /// When it was put on the bus last; and, in which slot it was to be before.
@@ -151,7 +154,7 @@ impl Other {
             on_lane: set_up.on_lane,
             limits,
             length: set_up.length,
-            known: None,
+            known: Vec::new(),
             mute_until: 0.0,
             delivered: f64::NEG_INFINITY,
             air: Vec::new(),
@@ -186,7 +189,12 @@ impl Other {
             Message::Intent { limits, .. } => Some(*limits),
             Message::Motion(_) => None,
         });
-        for limits in in_air.chain(self.known) {
+        // Harder ones it uses only when they have been known for a while: the last that are older count still.
+        let now = self.since;
+        if let Some(old) = self.known.iter().rposition(|(since, _)| now - since > ANNOUNCED) {
+            self.known.drain(..old);
+        }
+        for limits in in_air.chain(self.known.iter().map(|(_, limits)| *limits)) {
             least.braking = least.braking.min(limits.braking);
             least.pulling = least.pulling.min(limits.pulling);
         }

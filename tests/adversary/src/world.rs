@@ -248,7 +248,7 @@ impl<'a> World<'a> {
                     verdict = self.ego.put(at + 0.0003 * part as f64, frame);
                 }
                 if verdict == Verdict::Taken {
-                    self.others[number].known = Some(limits);
+                    self.others[number].known.push((at, limits));
                 }
             }
         }
