@@ -77,13 +77,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// What is to spare behind everyone ahead on the same leg. Who is estimated to be the nearest of them need not be: one that is
-    /// silent may have braked where it is estimated to have driven on, past another one that is heard. Where nobody at all is heard,
-    /// the ego itself may be deaf, and nobody is out of the radio's reach for certain.
+    /// silent may have braked where it is estimated to have driven on, past another one that is heard.
     pub(super) fn spare_on_lane(&self, now: Instant, spare: &impl Fn(Obstacle) -> Spare) -> Option<Spare> {
         let choice = self.coordination.choice();
-        let hears = self.peers.iter().any(|track| track.link().is_on(now, &self.config.link));
-        let leading =
-            (0..PEERS).filter(|index| choice.leading.contains(*index) && !(hears && choice.beyond.contains(*index)));
+        let leading = (0..PEERS).filter(|index| choice.leading.contains(*index) && !choice.beyond.contains(*index));
         let ahead = leading.chain(choice.lane.map(usize::from)).filter(|index| !self.is_seen_past(*index, now));
         // Its rear is not behind its own near end, nor behind the place that it is known to have passed: so the better of both holds.
         let behind = |index: usize| {
