@@ -60,19 +60,29 @@ fn who_is_silent_has_come_as_far_as_anybody_behind_it() {
     assert!(comes_to(true) > 300.0, "{}", comes_to(true));
 }
 
+/// Where the ego is in the end if the one that is so far ahead of it is not heard any more, though it drives on; a third one, beyond the
+/// second intersection or behind the ego, may be heard throughout.
+fn comes_near(ahead: f64, third: Option<f64>) -> f64 {
+    let mut drivers = vec![Driver::new(1, 0, 5.0, 11.0, true), Driver::new(2, 0, 5.0 + ahead, 11.0, false)];
+    drivers.extend(third.map(|at| Driver::new(3, 0, at, 11.0, false)));
+    let mut junction = Junction::new(drivers);
+    junction.run(45.0, |junction| {
+        let seconds = junction.now / 1_000_000;
+        junction.drivers[1].speaks &= seconds < 2;
+    });
+    junction.drivers[0].body.position
+}
+
 #[test]
 fn who_was_beyond_the_radio_s_reach_when_it_was_heard_last_is_not_waited_for() {
-    let comes_to = |ahead: f64| {
-        let mut junction =
-            Junction::new(vec![Driver::new(1, 0, 5.0, 11.0, true), Driver::new(2, 0, 5.0 + ahead, 11.0, false)]);
-        junction.run(45.0, |junction| {
-            let seconds = junction.now / 1_000_000;
-            junction.drivers[1].speaks &= seconds < 2;
-        });
-        junction.drivers[0].body.position
-    };
-    assert!(comes_to(310.0) > 400.0, "{}", comes_to(310.0));
-    assert!(comes_to(280.0) < 330.0, "{}", comes_to(280.0));
+    assert!(comes_near(310.0, Some(-60.0)) > 400.0, "{}", comes_near(310.0, Some(-60.0)));
+    assert!(comes_near(280.0, Some(-60.0)) < 330.0, "{}", comes_near(280.0, Some(-60.0)));
+}
+
+#[test]
+fn where_nobody_is_heard_nobody_is_beyond_the_radio_s_reach() {
+    let comes_to = comes_near(310.0, None);
+    assert!((300.0..350.0).contains(&comes_to), "{comes_to}");
 }
 
 /// Whether two bodies met, on a leg or in the conflict area of the first crossing.
