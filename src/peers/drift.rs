@@ -111,7 +111,7 @@ fn slope(from: Speed, to: Speed, gap: Duration) -> i64 {
 fn bulge(reach: &Reach, slope: Option<i64>, gap: Duration) -> Distance {
     let (a, b) = (coarse(reach.acceleration), coarse(reach.braking));
     let steepest = a.saturating_sub(b) / 2;
-    let s = slope.unwrap_or(steepest).clamp(b.saturating_neg(), a);
+    let s = slope.unwrap_or(steepest).min(a).max(b.saturating_neg());
     let product = a.saturating_sub(s).saturating_mul(b.saturating_add(s));
     let height = quotient(product, a.saturating_add(b).max(1)).saturating_add(2);
     let gained = Acceleration::from_bits(saturate_i32(height.saturating_mul(1 << 10))).over(gap.fine_seconds());

@@ -55,7 +55,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let (near, far) = (bound.lowest_position(), bound.highest_position());
             Some(Certain { index, near, far, rear: near.ahead(self.length_of(index).negated()) })
         };
-        (0..PEERS).filter_map(certain).collect()
+        let mut lane = Vec::new();
+        for one in (0..PEERS).filter_map(certain) {
+            // There is room for all: no more than there are slots.
+            let _ = lane.push(one);
+        }
+        lane
     }
 
     /// The length of a peer.
