@@ -6,12 +6,12 @@
 
 use super::OnboardUnit;
 use crate::coordination::Axis;
-use crate::estimator::bound::{Bound, Reach};
+use crate::estimator::bound::{Bound, Doubt, Reach};
 use crate::health::Refusal;
 use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
 use crate::peers::{Admission, Off, Sample, Track, timely};
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::units::Distance;
 use crate::wire::motion::Motion;
 use crate::wire::{Slot, StationHash};
@@ -59,6 +59,25 @@ impl Plan {
     }
 }
 
+/// Judges a sample where nothing of its place is held.
+#[inline(never)] // what it needs on the stack is not to be there beside what the other case needs
+fn weigh_anew<const SAMPLES: usize>(
+    track: Option<&Track<SAMPLES>>,
+    sample: &Sample,
+    doubt: Doubt,
+    period: Duration,
+) -> Judgement {
+    let (at, position, speed) = (sample.at, sample.position, sample.speed);
+    let (around, reach) = match track {
+        Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
+        None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
+    };
+    let grounds = Grounds { around, doubt, reach, from_last: reach, period };
+    let judgement = Certainty::NONE.judge(sample, None, &grounds);
+    let held = track.map_or(Certainty::NONE, |track| *track.certainty());
+    if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
+}
+
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a peer's motion.
     ///
@@ -71,9 +90,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let plan = self.plan(at, index, holder, motion);
         let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
         let is_own = holder == Some(motion.station);
-        match (verdict, plan) {
-            (Ok(()), Ok(plan)) => self.carry_out(index, &plan),
-            (_, plan) => self.note_refused(index, is_own, plan.ok()),
+        match plan.as_ref() {
+            Ok(plan) if verdict.is_ok() => self.carry_out(index, plan),
+            plan => self.note_refused(index, is_own, plan.ok()),
         }
         // Who is ahead is refused before it has a slot of its own.
         if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Refusal::Future)) {
@@ -185,21 +204,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let back = placed.moved.unwrap_or(Distance::ZERO).negated();
                 track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt, period)
             }
-            _ => {
-                let (at, position, speed) = (sample.at, sample.position, sample.speed);
-                let (around, reach) = match track {
-                    Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
-                    None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
-                };
-                let grounds = Grounds { around, doubt, reach, from_last: reach, period };
-                let judgement = Certainty::NONE.judge(sample, None, &grounds);
-                let held = track.map_or(Certainty::NONE, |track| *track.certainty());
-                if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
-            }
+            _ => weigh_anew(track, sample, doubt, period),
         }
     }
 
     /// Changes all that a motion changes.
+    #[inline(never)] // likewise
     fn carry_out(&mut self, index: usize, plan: &Plan) {
         if plan.seat.is_taken_over {
             self.vacate(index);
@@ -232,10 +242,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Takes note of the evidence in a motion that is refused. After another station's, what else is said in the slot may be that
     /// one's.
-    fn note_refused(&mut self, index: usize, is_own: bool, plan: Option<Plan>) {
+    #[inline(never)] // what it needs on the stack is not to stay there while a motion is judged
+    fn note_refused(&mut self, index: usize, is_own: bool, plan: Option<&Plan>) {
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if is_own {
-            if let Some((_, judgement)) = plan.and_then(|plan| plan.sample) {
+            if let Some((_, judgement)) = plan.and_then(|plan| plan.sample.as_ref()) {
                 track.note(judgement.certainty);
             }
             return;

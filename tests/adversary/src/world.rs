@@ -277,7 +277,7 @@ impl<'a> World<'a> {
             }
         }
         judge::note_motion(self, at, number, &motion, verdicts);
-        self.misuse(at, number, slot, &motion);
+        self.misuse(at, number, slot, &motion, verdicts[1] == Verdict::Taken);
     }
 
     fn cut_in(&mut self, now: f64) {

@@ -69,10 +69,9 @@ impl World<'_> {
     }
 
     /// Copies, forgeries and another station's words, just after a message of that peer.
-    pub(super) fn misuse(&mut self, at: f64, number: usize, slot: u8, motion: &Motion) {
-        // What is false contradicts what is certain: after a long silence it waits until something is again.
-        let certain = self.ego.said.told.map_or(f64::INFINITY, |told| told.behind.max(told.ahead));
-        let is_seen_false = |off: f64| off == 0.0 || off.abs() > certain + 30.0;
+    pub(super) fn misuse(&mut self, at: f64, number: usize, slot: u8, motion: &Motion, is_taken: bool) {
+        // What is false contradicts what is certain: it waits for an honest motion that was taken.
+        let is_seen_false = |off: f64| off == 0.0 || is_taken;
         if let Some((_, count, off)) = self.copies.filter(|(peer, _, off)| *peer == number && is_seen_false(*off)) {
             self.copies = None;
             let copy = Motion {
