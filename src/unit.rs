@@ -31,6 +31,7 @@ mod outbox;
 mod range;
 mod room;
 mod sight;
+mod view;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
 
@@ -360,47 +361,5 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let age = now.since(track.newest()?.at);
         let link_on = track.link().is_on(now, &self.config.link);
         Some(Estimate { reading, age, link_on, bound: self.bound(index, now) })
-    }
-
-    /// What is refused, by cause.
-    #[must_use]
-    pub const fn health(&self) -> &Health {
-        &self.health
-    }
-
-    /// The mode of the last tick.
-    #[must_use]
-    pub const fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// The peers as they are known.
-    #[must_use]
-    pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
-        &self.peers
-    }
-
-    /// The order at the intersections as it is known.
-    #[must_use]
-    pub const fn coordination(&self) -> &Coordination<PEERS> {
-        &self.coordination
-    }
-
-    /// The horizons as they are held.
-    #[must_use]
-    pub const fn estimator(&self) -> &Estimator<PEERS, STEPS> {
-        &self.estimator
-    }
-
-    /// The configuration as it was checked.
-    #[must_use]
-    pub const fn config(&self) -> &Config {
-        &self.config
-    }
-
-    /// Whether GNSS time is known.
-    #[must_use]
-    pub fn is_synchronised(&self, now: Instant) -> bool {
-        self.clock.is_synchronised(now, self.config.link.sync_timeout)
     }
 }

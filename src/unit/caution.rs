@@ -48,10 +48,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &Reach::WORST));
         let stood = stood.and_then(|bound| self.near(bound.lowest_position(), bound.lowest_speed()));
         let target = target.filter(|index| !self.is_seen_past(*index, now));
-        let certain = match target {
-            Some(index) => self.certain_rear(now, index),
-            None => self.named_ahead(now).and_then(|rear| self.near(rear.position, rear.speed)),
-        };
+        let certain = target.and_then(|index| self.certain_rear(now, index));
         [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
     }
 

@@ -1,0 +1,54 @@
+//! What can be looked at from outside: the unit enters; its parts, and whether it knows the time, leave.
+
+use super::OnboardUnit;
+use crate::config::Config;
+use crate::controller::Mode;
+use crate::coordination::Coordination;
+use crate::estimator::Estimator;
+use crate::health::Health;
+use crate::peers::Peers;
+use crate::time::Instant;
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+    /// What is refused, by cause.
+    #[must_use]
+    pub const fn health(&self) -> &Health {
+        &self.health
+    }
+
+    /// The mode of the last tick.
+    #[must_use]
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The peers as they are known.
+    #[must_use]
+    pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
+        &self.peers
+    }
+
+    /// The order at the intersections as it is known.
+    #[must_use]
+    pub const fn coordination(&self) -> &Coordination<PEERS> {
+        &self.coordination
+    }
+
+    /// The horizons as they are held.
+    #[must_use]
+    pub const fn estimator(&self) -> &Estimator<PEERS, STEPS> {
+        &self.estimator
+    }
+
+    /// The configuration as it was checked.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Whether GNSS time is known.
+    #[must_use]
+    pub fn is_synchronised(&self, now: Instant) -> bool {
+        self.clock.is_synchronised(now, self.config.link.sync_timeout)
+    }
+}
