@@ -47,9 +47,10 @@ if [ $# -gt 1 ]; then
     # It boots in two seconds. A unit in lock step says nothing of itself, and a silent device is for the command to find.
     candump -n 1 -T 3000 "$can" >/dev/null || true
     kill -0 $device 2>/dev/null || { say "the device did not start" && exit 125; }
-    # The bus is the emulator's first thread. It comes before the command, and both before the core, which never sleeps.
+    # Both come before everything else, and the command, which tells the time on the bus, before the emulator: each rests when it
+    # has nothing to do. All threads of the emulator alike, since they wait for one another in loops.
     first=()
-    if chrt --rr 1 true 2>/dev/null; then chrt --rr -p 2 $device && first=(chrt --rr 1); fi
+    if chrt --rr 1 true 2>/dev/null; then chrt --rr -a -p 1 $device && first=(chrt --rr 2); fi
     "${first[@]}" "$@"
     exit
 fi
@@ -64,14 +65,10 @@ done
 # QEMU starts every core but the first one powered off. The R5 is switched on from outside, as the chip's boot loader does.
 power_on='{"execute": "qmp_capabilities"}
 {"execute": "qom-set", "arguments": {"path": "/machine/soc/rpu-cluster/rpu-cpu[0]", "property": "start-powered-off", "value": false}}
+{"execute": "qom-set", "arguments": {"path": "/machine/soc/ttc[0]", "property": "sysbus-irq[0]", "value": "/machine/soc/rpu-cluster/rpu-cpu[0]/unnamed-gpio-in[0]"}}
+{"execute": "qom-set", "arguments": {"path": "/machine/soc/can[0]", "property": "sysbus-irq[0]", "value": "/machine/soc/rpu-cluster/rpu-cpu[0]/unnamed-gpio-in[1]"}}
 {"execute": "system_reset"}
 {"execute": "cont"}'
-
-# The core polls, and a program that takes all the time that there is, and comes before all others, loses 50 ms of each second at
-# one blow to those others: Linux sees to it. So it rests for one of every five milliseconds.
-rest='my $device = getppid; system "chrt --rr -p 3 $$ 2>/dev/null";
-    while (getppid == $device) { kill $_->[0], $device and select undef, undef, undef, $_->[1] for ["STOP", 0.001], ["CONT", 0.004] }'
-perl -e "$rest" &
 
 # One thread for all cores, because one processor is what user-mode Linux has. The four application cores stay off.
 exec qemu-system-aarch64 -accel tcg,thread=single,tb-size=16 -M xlnx-zcu102,canbus0=can0 -smp 5 -S \

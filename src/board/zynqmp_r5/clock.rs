@@ -46,6 +46,12 @@ impl Clock {
         }
     }
 
+    /// How long it is until a period begins, in microseconds.
+    pub fn left(&mut self) -> u64 {
+        self.now();
+        self.next.saturating_sub(self.micros)
+    }
+
     /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up
     /// for.
     pub fn tick(&mut self) -> Option<Instant> {

@@ -1,10 +1,11 @@
 //! A real-time core of the ZynqMP, a Cortex-R5F: frames of its CAN controller and the core's cycles enter, frames with their
 //! time of arrival and ticks leave.
 //!
-//! The board is polled: nothing interrupts, and a frame's time of arrival is when the loop came to it, at most one tick's
+//! The board is polled: no interrupt is taken, and a frame's time of arrival is when the loop came to it, at most one tick's
 //! work late. Clocks, pins and memory are as the chip's boot loader leaves them, which always runs first. It runs in the
 //! emulator; on the chip it has not run.
 
+mod alarm;
 mod can;
 mod clock;
 mod layout;
@@ -15,6 +16,7 @@ mod start;
 use super::frame::CanFrame;
 use super::outbox::{Outbox, Pass};
 use super::port::Port;
+use alarm::Alarm;
 use can::Controller;
 use clock::Clock;
 use embedded_can::Frame;
@@ -40,6 +42,7 @@ pub struct Board {
     outbox: Outbox<CanFrame>,
     overruns: u32,
     clock: Clock,
+    alarm: Option<Alarm>,
 }
 
 impl Board {
@@ -47,9 +50,9 @@ impl Board {
     fn start() -> Option<Self> {
         // The chip's real-time cores are numbers 0 and 1. The emulator's model counts the four application cores first; its
         // CAN controller takes frames in another layout, its cycles are nanoseconds, and it has no pins.
-        let (layout, cycles_per_micro, pins) = match registers::core_number() {
-            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO)),
-            _ => (Layout::Model, 1000, None),
+        let (layout, cycles_per_micro, pins, alarm) = match registers::core_number() {
+            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO), None),
+            _ => (Layout::Model, 1000, None, Some(Alarm::start(Block::TIMERS))),
         };
         Some(Self {
             busy: Pin::start(pins),
@@ -59,6 +62,7 @@ impl Board {
             outbox: Outbox::new(),
             overruns: 0,
             clock: Clock::start(cycles_per_micro),
+            alarm,
         })
     }
 
@@ -90,10 +94,17 @@ impl Board {
         [(Incident::Overrun, overruns), transmit, bus_off]
     }
 
-    /// Sends what can be sent, and waits for a moment. It never sleeps, since nothing would wake it.
+    /// Sends what can be sent. Then, in the emulator, it sleeps until there is something to do; on the chip, and while frames
+    /// wait for room in the controller, it waits for a moment.
     pub fn idle(&mut self) {
-        while self.outbox.pass(&mut self.port) == Pass::Taken {}
-        self.clock.wait();
+        let mut pass = Pass::Taken;
+        while pass == Pass::Taken {
+            pass = self.outbox.pass(&mut self.port);
+        }
+        match &mut self.alarm {
+            Some(alarm) if pass == Pass::Nothing => alarm.sleep(self.clock.left()),
+            _ => self.clock.wait(),
+        }
     }
 }
 
