@@ -52,8 +52,10 @@ impl Board {
         // CAN controller takes frames in another layout, its cycles are nanoseconds, and it has no pins.
         let (layout, cycles_per_micro, pins, alarm) = match registers::core_number() {
             0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO), None),
-            _ => (Layout::Model, 1000, None, Some(Alarm::start(Block::TIMERS))),
+            _ => (Layout::Model, 1000, None, Some(Block::TIMERS)),
         };
+        let clock = Clock::start(cycles_per_micro);
+        let alarm = alarm.map(|block| Alarm::start(block, clock.left()));
         Some(Self {
             busy: Pin::start(pins),
             watchdog: Watchdog,
@@ -61,7 +63,7 @@ impl Board {
             port: Controller::start(Block::CAN0, layout),
             outbox: Outbox::new(),
             overruns: 0,
-            clock: Clock::start(cycles_per_micro),
+            clock,
             alarm,
         })
     }
@@ -84,7 +86,11 @@ impl Board {
 
     /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
     pub fn tick(&mut self) -> Option<Instant> {
-        self.clock.tick()
+        let now = self.clock.tick()?;
+        if let Some(alarm) = &mut self.alarm {
+            alarm.set(self.clock.left());
+        }
+        Some(now)
     }
 
     /// What was lost since the last call, and how often; to be called every period.
@@ -101,8 +107,8 @@ impl Board {
         while pass == Pass::Taken {
             pass = self.outbox.pass(&mut self.port);
         }
-        match &mut self.alarm {
-            Some(alarm) if pass == Pass::Nothing => alarm.sleep(self.clock.left()),
+        match &self.alarm {
+            Some(alarm) if pass == Pass::Nothing && !self.clock.is_due() => alarm.sleep(),
             _ => self.clock.wait(),
         }
     }
