@@ -47,10 +47,11 @@ if [ $# -gt 1 ]; then
     # It boots in two seconds. A unit in lock step says nothing of itself, and a silent device is for the command to find.
     candump -n 1 -T 3000 "$can" >/dev/null || true
     kill -0 $device 2>/dev/null || { say "the device did not start" && exit 125; }
-    # Both come before everything else, and the command, which tells the time on the bus, before the emulator: each rests when it
-    # has nothing to do. All threads of the emulator alike, since they wait for one another in loops.
+    # Both come before everything else, and neither before the other: each rests when it has nothing to do. An emulator that comes
+    # second is interrupted at each of its frames by who hears them, and misses periods; its threads wait for one another in
+    # loops, so that none of them may come before another one.
     first=()
-    if chrt --rr 1 true 2>/dev/null; then chrt --rr -a -p 1 $device && first=(chrt --rr 2); fi
+    if chrt --rr 1 true 2>/dev/null; then chrt --rr -a -p 1 $device && first=(chrt --rr 1); fi
     "${first[@]}" "$@"
     exit
 fi
@@ -62,7 +63,8 @@ for size in 0:1M 1:1M 2:64M 3:64M 4:64M 5:64M; do
     flash+=(-drive "if=mtd,index=${size%:*},driver=null-co,read-zeroes=off,size=${size#*:}")
 done
 
-# QEMU starts every core but the first one powered off. The R5 is switched on from outside, as the chip's boot loader does.
+# QEMU starts every core but the first one powered off. The R5 is switched on from outside, as the chip's boot loader does. The model
+# has no interrupt controller for this core: a timer is wired to it as IRQ, and the CAN controller as FIQ, to wake it when it sleeps.
 power_on='{"execute": "qmp_capabilities"}
 {"execute": "qom-set", "arguments": {"path": "/machine/soc/rpu-cluster/rpu-cpu[0]", "property": "start-powered-off", "value": false}}
 {"execute": "qom-set", "arguments": {"path": "/machine/soc/ttc[0]", "property": "sysbus-irq[0]", "value": "/machine/soc/rpu-cluster/rpu-cpu[0]/unnamed-gpio-in[0]"}}

@@ -1,6 +1,6 @@
-//! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled; its interrupt, for what there is to
-//! receive, is for a core that sleeps until then. The controller sends again by
-//! itself what lost arbitration or was not acknowledged.
+//! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled. What is there to
+//! receive interrupts, for a core that sleeps until then. The controller sends again by itself what lost arbitration or was not
+//! acknowledged.
 
 use super::layout::Layout;
 use crate::board::frame::CanFrame;
