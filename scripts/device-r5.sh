@@ -47,9 +47,11 @@ if [ $# -gt 1 ]; then
     # It boots in two seconds. A unit in lock step says nothing of itself, and a silent device is for the command to find.
     candump -n 1 -T 3000 "$can" >/dev/null || true
     kill -0 $device 2>/dev/null || { say "the device did not start" && exit 125; }
-    # The bus is the emulator's first thread. It comes before the command, and both before the core, which never sleeps.
+    # Both come before everything else, and neither before the other: each rests when it has nothing to do. An emulator that comes
+    # second is interrupted at each of its frames by who hears them, and misses periods; its threads wait for one another in
+    # loops, so that none of them may come before another one.
     first=()
-    if chrt --rr 1 true 2>/dev/null; then chrt --rr -p 2 $device && first=(chrt --rr 1); fi
+    if chrt --rr 1 true 2>/dev/null; then chrt --rr -a -p 1 $device && first=(chrt --rr 1); fi
     "${first[@]}" "$@"
     exit
 fi
@@ -61,17 +63,14 @@ for size in 0:1M 1:1M 2:64M 3:64M 4:64M 5:64M; do
     flash+=(-drive "if=mtd,index=${size%:*},driver=null-co,read-zeroes=off,size=${size#*:}")
 done
 
-# QEMU starts every core but the first one powered off. The R5 is switched on from outside, as the chip's boot loader does.
+# QEMU starts every core but the first one powered off. The R5 is switched on from outside, as the chip's boot loader does. The model
+# has no interrupt controller for this core: a timer is wired to it as IRQ, and the CAN controller as FIQ, to wake it when it sleeps.
 power_on='{"execute": "qmp_capabilities"}
 {"execute": "qom-set", "arguments": {"path": "/machine/soc/rpu-cluster/rpu-cpu[0]", "property": "start-powered-off", "value": false}}
+{"execute": "qom-set", "arguments": {"path": "/machine/soc/ttc[0]", "property": "sysbus-irq[0]", "value": "/machine/soc/rpu-cluster/rpu-cpu[0]/unnamed-gpio-in[0]"}}
+{"execute": "qom-set", "arguments": {"path": "/machine/soc/can[0]", "property": "sysbus-irq[0]", "value": "/machine/soc/rpu-cluster/rpu-cpu[0]/unnamed-gpio-in[1]"}}
 {"execute": "system_reset"}
 {"execute": "cont"}'
-
-# The core polls, and a program that takes all the time that there is, and comes before all others, loses 50 ms of each second at
-# one blow to those others: Linux sees to it. So it rests for one of every five milliseconds.
-rest='my $device = getppid; system "chrt --rr -p 3 $$ 2>/dev/null";
-    while (getppid == $device) { kill $_->[0], $device and select undef, undef, undef, $_->[1] for ["STOP", 0.001], ["CONT", 0.004] }'
-perl -e "$rest" &
 
 # One thread for all cores, because one processor is what user-mode Linux has. The four application cores stay off.
 exec qemu-system-aarch64 -accel tcg,thread=single,tb-size=16 -M xlnx-zcu102,canbus0=can0 -smp 5 -S \

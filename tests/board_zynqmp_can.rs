@@ -36,6 +36,8 @@ struct Chip {
     enabled: bool,
     timing: Option<(u32, u32)>,
     events: u32,
+    /// Which of them interrupt.
+    interrupts: u32,
     received: VecDeque<Words>,
     /// The words of the frame that is being queued, and the queue.
     writing: Vec<u32>,
@@ -57,6 +59,11 @@ impl Chip {
     fn send(&mut self, most: usize) -> Vec<CanFrame> {
         let most = most.min(self.queued.len());
         self.queued.drain(..most).map(|words| Layout::Silicon.frame(words).unwrap()).collect()
+    }
+
+    /// Whether a core that sleeps is woken, or does not fall asleep.
+    fn wakes(&self) -> bool {
+        self.events & self.interrupts != 0
     }
 
     /// Too many errors.
@@ -107,7 +114,8 @@ impl Registers for Mock {
                     chip.events |= can::NOT_EMPTY;
                 }
             }
-            offset::MODE | offset::FILTERS | offset::INTERRUPTS => assert_eq!(word, 0),
+            offset::INTERRUPTS => chip.interrupts = word,
+            offset::MODE | offset::FILTERS => assert_eq!(word, 0),
             _ => {
                 let at = offset::TRANSMIT
                     .iter()
@@ -204,6 +212,23 @@ fn what_is_heard_is_received_in_order_until_nothing_is_left() {
         part.iter().for_each(|frame| assert!(same(&port.receive().unwrap(), frame)));
         assert!(matches!(port.receive(), Err(nb::Error::WouldBlock)));
     }
+}
+
+#[test]
+fn a_core_that_sleeps_is_woken_until_it_has_received_everything() {
+    let (mut port, mock) = controller();
+    assert!(!mock.0.borrow().wakes());
+    for id in 0..DEPTH as u16 + 1 {
+        mock.0.borrow_mut().hear(&standard(id, &[]));
+        assert!(mock.0.borrow().wakes());
+    }
+    assert!(matches!(port.receive(), Err(nb::Error::Other(Overrun))));
+    for _ in 0..DEPTH {
+        assert!(mock.0.borrow().wakes());
+        assert!(port.receive().is_ok());
+    }
+    assert!(matches!(port.receive(), Err(nb::Error::WouldBlock)));
+    assert!(!mock.0.borrow().wakes());
 }
 
 #[test]

@@ -1,5 +1,6 @@
-//! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled. The controller sends again by
-//! itself what lost arbitration or was not acknowledged.
+//! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled. What is there to
+//! receive interrupts, for a core that sleeps until then. The controller sends again by itself what lost arbitration or was not
+//! acknowledged.
 
 use super::layout::Layout;
 use crate::board::frame::CanFrame;
@@ -102,7 +103,7 @@ impl<R: Registers> Controller<R> {
         self.registers.write(offset::PRESCALER, QUANTUM);
         self.registers.write(offset::TIMING, BIT);
         self.registers.write(offset::FILTERS, 0);
-        self.registers.write(offset::INTERRUPTS, 0);
+        self.registers.write(offset::INTERRUPTS, NOT_EMPTY | OVERRUN);
         self.registers.write(offset::MODE, 0);
         self.registers.write(offset::CONTROL, ENABLE);
     }

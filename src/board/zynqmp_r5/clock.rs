@@ -46,6 +46,17 @@ impl Clock {
         }
     }
 
+    /// How long it is from the last reading until a period begins, in microseconds.
+    pub fn left(&self) -> u64 {
+        self.next.saturating_sub(self.micros)
+    }
+
+    /// Whether a period has begun.
+    pub fn is_due(&mut self) -> bool {
+        self.now();
+        self.micros >= self.next
+    }
+
     /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up
     /// for.
     pub fn tick(&mut self) -> Option<Instant> {

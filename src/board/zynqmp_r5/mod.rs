@@ -1,10 +1,11 @@
 //! A real-time core of the ZynqMP, a Cortex-R5F: frames of its CAN controller and the core's cycles enter, frames with their
 //! time of arrival and ticks leave.
 //!
-//! The board is polled: nothing interrupts, and a frame's time of arrival is when the loop came to it, at most one tick's
+//! The board is polled: no interrupt is taken, and a frame's time of arrival is when the loop came to it, at most one tick's
 //! work late. Clocks, pins and memory are as the chip's boot loader leaves them, which always runs first. It runs in the
 //! emulator; on the chip it has not run.
 
+mod alarm;
 mod can;
 mod clock;
 mod layout;
@@ -15,6 +16,7 @@ mod start;
 use super::frame::CanFrame;
 use super::outbox::{Outbox, Pass};
 use super::port::Port;
+use alarm::Alarm;
 use can::Controller;
 use clock::Clock;
 use embedded_can::Frame;
@@ -40,6 +42,7 @@ pub struct Board {
     outbox: Outbox<CanFrame>,
     overruns: u32,
     clock: Clock,
+    alarm: Option<Alarm>,
 }
 
 impl Board {
@@ -47,10 +50,12 @@ impl Board {
     fn start() -> Option<Self> {
         // The chip's real-time cores are numbers 0 and 1. The emulator's model counts the four application cores first; its
         // CAN controller takes frames in another layout, its cycles are nanoseconds, and it has no pins.
-        let (layout, cycles_per_micro, pins) = match registers::core_number() {
-            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO)),
-            _ => (Layout::Model, 1000, None),
+        let (layout, cycles_per_micro, pins, alarm) = match registers::core_number() {
+            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO), None),
+            _ => (Layout::Model, 1000, None, Some(Block::TIMERS)),
         };
+        let clock = Clock::start(cycles_per_micro);
+        let alarm = alarm.map(|block| Alarm::start(block, clock.left()));
         Some(Self {
             busy: Pin::start(pins),
             watchdog: Watchdog,
@@ -58,7 +63,8 @@ impl Board {
             port: Controller::start(Block::CAN0, layout),
             outbox: Outbox::new(),
             overruns: 0,
-            clock: Clock::start(cycles_per_micro),
+            clock,
+            alarm,
         })
     }
 
@@ -80,7 +86,11 @@ impl Board {
 
     /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
     pub fn tick(&mut self) -> Option<Instant> {
-        self.clock.tick()
+        let now = self.clock.tick()?;
+        if let Some(alarm) = &mut self.alarm {
+            alarm.set(self.clock.left());
+        }
+        Some(now)
     }
 
     /// What was lost since the last call, and how often; to be called every period.
@@ -90,10 +100,17 @@ impl Board {
         [(Incident::Overrun, overruns), transmit, bus_off]
     }
 
-    /// Sends what can be sent, and waits for a moment. It never sleeps, since nothing would wake it.
+    /// Sends what can be sent. Then, in the emulator, it sleeps until there is something to do; on the chip, and while frames
+    /// wait for room in the controller, it waits for a moment.
     pub fn idle(&mut self) {
-        while self.outbox.pass(&mut self.port) == Pass::Taken {}
-        self.clock.wait();
+        let mut pass = Pass::Taken;
+        while pass == Pass::Taken {
+            pass = self.outbox.pass(&mut self.port);
+        }
+        match &self.alarm {
+            Some(alarm) if pass == Pass::Nothing && !self.clock.is_due() => alarm.sleep(),
+            _ => self.clock.wait(),
+        }
     }
 }
 

@@ -13,7 +13,10 @@ impl Block {
     /// General-purpose pins.
     pub const GPIO: Self = Self(0xff0a_0000);
 
-    /// Any word of these two.
+    /// Timers.
+    pub const TIMERS: Self = Self(0xff11_0000);
+
+    /// Any word of these.
     const LAST: usize = 0xffc;
 }
 
@@ -27,7 +30,7 @@ impl Registers for Block {
 
     fn write(&mut self, offset: usize, word: u32) {
         let place = self.0 + (offset & Self::LAST);
-        // SAFETY: as for `read`; neither block makes the hardware write to memory.
+        // SAFETY: as for `read`; no block makes the hardware write to memory.
         unsafe { (place as *mut u32).write_volatile(word) }
     }
 }
@@ -53,6 +56,12 @@ pub fn start_cycles() {
             options(nomem, nostack, preserves_flags)
         );
     }
+}
+
+/// Halts the core until an interrupt is there, masked or not; at once, if one is.
+pub fn halt() {
+    // SAFETY: it has no effect but to wait.
+    unsafe { asm!("wfi", options(nomem, nostack, preserves_flags)) };
 }
 
 /// The core's cycles since then, modulo 2^32.
