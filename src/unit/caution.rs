@@ -130,16 +130,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let heard = match self.coordination.itinerary() {
             None => self.named_ahead(now).map(spare),
-            Some(_) => {
-                let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing).map(spare);
-                [self.spare_on_lane(now, &spare), crossing].into_iter().flatten().min()
-            }
+            Some(_) => self.spare_on_way(now, rearmost, &spare),
         };
         let seen = self.obstacles_seen(now, rearmost).map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), spare };
         let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
         (envelope::encodable(limits, command), command != demand)
+    }
+
+    /// On an itinerary: what is to spare behind whoever is ahead for certain, as far as the ego may be back.
+    pub(super) fn spare_on_way(
+        &self,
+        now: Instant,
+        rearmost: Position,
+        spare: &impl Fn(Obstacle) -> Spare,
+    ) -> Option<Spare> {
+        let stop =
+            [self.stop_at_crossing(now, rearmost), self.stop_for_unknown(now, rearmost)].into_iter().flatten().min();
+        let stop = stop.map(Obstacle::standing).map(spare);
+        [self.spare_on_lane(now, spare), stop].into_iter().flatten().min()
     }
 
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is

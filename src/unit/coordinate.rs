@@ -194,11 +194,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_inside = self.area_begins().is_some_and(|begins| front > begins);
         // Who stops at the line is a hair from where it could not.
         let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
-        let is_held = can_wait && !self.has_room(nearest, now);
-        if is_held && self.waits_for_room(nearest, now, state.speed) {
+        let has_room = self.has_room(nearest, now);
+        if can_wait && !has_room && self.waits_for_room(nearest, now, state.speed) {
             self.coordination.give_way(arrival);
         }
-        self.coordination.hold(is_held);
+        self.coordination.hold(can_wait && (!has_room || self.is_crossed_by_unknown(now)));
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }

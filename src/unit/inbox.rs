@@ -18,6 +18,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Message::EgoIntent(wish) => self.wish.set(*wish),
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
             Message::Range(seen) => self.take_range(at, *seen)?,
+            Message::Unserved(unserved) => self.unknown.take(at, *unserved),
             Message::Ego(Said::Geo(geo)) => self.take_ego_place(at, geo)?,
             Message::Ego(_) => {}
             Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}

@@ -77,7 +77,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let choice = self.coordination.choice();
         let behind = choice.lane.and_then(|index| self.stops_at(index.into(), now));
         let line = self.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
-        let Some(stop) = [behind, line].into_iter().flatten().min() else { return Acceleration::MAX };
         let limits = &self.config.limits;
         let normal = Envelope {
             acceleration: limits.acceleration,
@@ -95,7 +94,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             last: self.controller.last_demand(),
             lag: self.config.lag,
         };
-        let spare = envelope::spare(&normal, &ego, &Obstacle::standing(stop));
+        let spare = |obstacle| envelope::spare(&normal, &ego, &obstacle);
+        let stop = [behind, line].into_iter().flatten().min().map(Obstacle::standing).map(spare);
+        let certain = self.unknown.is_anybody(now).then(|| self.spare_on_way(now, ego.position, &spare)).flatten();
+        let Some(spare) = [stop, certain].into_iter().flatten().min() else { return Acceleration::MAX };
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
     }
 

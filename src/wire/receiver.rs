@@ -22,6 +22,7 @@ use super::range_sensor::RangeSample;
 use super::route::Route;
 use super::status::Status;
 use super::sync::{FollowUp, Sync};
+use super::unserved::Unserved;
 use super::{Message, Said, Slot};
 use crate::health::Refusal;
 use crate::time::{Duration, Instant};
@@ -219,6 +220,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
             Content::Command => Some(Message::Command(Command::decode(&whole))),
             Content::EgoIntent => Some(Message::EgoIntent(EgoIntent::decode(&whole))),
             Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
+            Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
             Content::Status => Some(Message::Status(Status::decode(&whole)?)),
             Content::EstimateA => self.add_estimate(&piece.of(0))?,
             Content::EstimateB => self.add_estimate(&piece.of(1))?,
