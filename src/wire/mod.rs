@@ -29,6 +29,7 @@ pub mod route;
 pub mod sender;
 pub mod status;
 pub mod sync;
+mod tie;
 
 pub use catalogue::BaseId;
 pub use frame::Frame;
