@@ -92,11 +92,9 @@ impl Ranging {
         }
     }
 
-    /// Takes note that the driver names another one from now on: what was seen before says nothing of whether that one was there.
+    /// Takes note that the driver names another one from now on: what was seen before is not of that one.
     pub(super) fn note_named(&mut self, at: Instant) {
-        self.named = at;
-        self.contradictions = 0;
-        self.contradiction.clear();
+        (self.named, self.contradictions) = (at, 0);
     }
 
     /// Whether a view may be of whom the driver names: who was not on the way yet was not hidden by what was seen.

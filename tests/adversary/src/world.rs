@@ -15,6 +15,8 @@ use crate::wire::SLOTS;
 
 /// Seconds of one step.
 pub const STEP: f64 = 0.01;
+/// After so long the modem gives a slot to another station, and a station another slot, s.
+const SLOT_REUSE: f64 = 2.05;
 
 /// Runs a drive.
 pub fn run(scenario: &Scenario) -> Outcome {
@@ -60,7 +62,8 @@ pub struct World<'a> {
     next_event: usize,
     cutting_in: Vec<usize>,
     slot_wishes: Vec<(usize, u8)>,
-    slot_used: [f64; SLOTS],
+    /// When the modem used a slot last, and for whom.
+    slot_used: [(f64, u8); SLOTS],
     deaf_until: f64,
     timeless_until: f64,
     blind_until: f64,
@@ -96,7 +99,7 @@ impl<'a> World<'a> {
             next_event: 0,
             cutting_in: Vec::new(),
             slot_wishes: Vec::new(),
-            slot_used: [f64::NEG_INFINITY; SLOTS],
+            slot_used: [(f64::NEG_INFINITY, 0); SLOTS],
             deaf_until: 0.0,
             timeless_until: 0.0,
             blind_until: 0.0,
@@ -250,8 +253,17 @@ impl<'a> World<'a> {
         if usize::from(slot) >= SLOTS {
             return;
         }
+        let station = match message {
+            Message::Motion(motion) => motion.station,
+            Message::Intent { .. } => self.others[number].station,
+        };
+        // The modem gives a slot to another station when that has been free for so long.
+        let (used, by) = self.slot_used[usize::from(slot)];
+        if by != station && at - used < SLOT_REUSE {
+            return;
+        }
         self.others[number].delivered = at;
-        self.slot_used[usize::from(slot)] = at;
+        self.slot_used[usize::from(slot)] = (at, station);
         match message {
             Message::Motion(motion) => self.deliver_motion(at, number, slot, motion),
             Message::Intent { tag, limits, length } => {
@@ -338,8 +350,8 @@ impl<'a> World<'a> {
     fn change_slots(&mut self, now: f64) {
         for place in (0..self.slot_wishes.len()).rev() {
             let (number, slot) = self.slot_wishes[place];
-            let is_silent = now - self.others[number].delivered > 2.05;
-            let is_free = now - self.slot_used[usize::from(slot)] > 2.05;
+            let is_silent = now - self.others[number].delivered > SLOT_REUSE;
+            let is_free = now - self.slot_used[usize::from(slot)].0 > SLOT_REUSE;
             let is_taken = self.others.iter().enumerate().any(|(other, peer)| other != number && peer.slot == slot);
             if is_silent && is_free && !is_taken {
                 self.slot_wishes.swap_remove(place);

@@ -13,9 +13,12 @@ impl World<'_> {
             What::Length { peer, published } => {
                 self.others[peer].length = published.max(self.others[peer].set_up.length);
             }
-            What::Mute { peer, seconds } => self.others[peer].mute_until = now + seconds,
-            What::Deaf { seconds } => self.deaf_until = now + seconds,
-            What::NoTime { seconds } => self.timeless_until = now + seconds,
+            What::Mute { peer, seconds } => {
+                let until = &mut self.others[peer].mute_until;
+                *until = until.max(now + seconds);
+            }
+            What::Deaf { seconds } => self.deaf_until = self.deaf_until.max(now + seconds),
+            What::NoTime { seconds } => self.timeless_until = self.timeless_until.max(now + seconds),
             What::Torn { peer, half, messages } => self.torn = Some((peer, half, messages)),
             What::Overtaken { peer, half } => self.overtaken = Some((peer, half, None)),
             What::Slot { peer, slot } => self.slot_wishes.push((peer, slot)),
