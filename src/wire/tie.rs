@@ -35,7 +35,7 @@ impl Tie {
     #[must_use]
     pub(super) const fn new(parts: u8, have_own: bool) -> Self {
         assert!(parts >= 1 && parts <= 5, "the counters are held in 4 bits each");
-        let beyond = match u16::MAX.checked_shl(NIBBLE.wrapping_mul(parts as u32 - 1)) {
+        let beyond = match u16::MAX.checked_shl(NIBBLE.wrapping_mul((parts as u32).wrapping_sub(1))) {
             Some(beyond) => beyond,
             None => 0,
         };
@@ -66,8 +66,8 @@ impl Tie {
 
     /// What the counters of the parts after the first are ahead of that one's.
     fn ahead(&self, parts: u8) -> u16 {
-        let of = |part: u8| (self.counters.wrapping_shr(u32::from(part).wrapping_mul(NIBBLE)) & 0xF) as u16;
-        let ahead = |part: u8| of(part).wrapping_add(COUNTERS.into()).wrapping_sub(of(0)) % u16::from(COUNTERS);
+        let of = |part: u8| (self.counters.wrapping_shr(u32::from(part).wrapping_mul(NIBBLE)) & 0xF) as u8;
+        let ahead = |part: u8| u16::from(of(part).wrapping_add(COUNTERS).wrapping_sub(of(0)) % COUNTERS);
         (1..parts).rev().fold(0, |all, part| all.wrapping_shl(NIBBLE) | ahead(part))
     }
 }
