@@ -153,16 +153,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Reviews who is ahead, when that is due.
     pub(super) fn coordinate(&mut self, now: Instant) {
-        if !self.coordination.is_due(now) || !self.is_synchronised(now) {
+        if !self.coordination.is_due(now) {
             return;
         }
-        let (Some(sample), Some(state), Some(gnss)) = (self.ego.as_ref(), self.ego_at(now), self.clock.gnss(now))
-        else {
-            return;
-        };
+        let (Some(sample), Some(state)) = (self.ego.as_ref(), self.ego_at(now)) else { return };
         let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));
-        let arrival = Arrival::of_micros(gnss.as_micros());
-        self.coordination.advance(front, self.config.length, now, arrival);
+        // Without the time the ego cannot tell when it arrives: it minds the others all the same, and arrives nowhere.
+        let gnss = self.clock.gnss(now).filter(|_| self.is_synchronised(now));
+        let arrival = gnss.map(|gnss| Arrival::of_micros(gnss.as_micros()));
+        if let Some(arrival) = arrival {
+            self.coordination.advance(front, self.config.length, now, arrival);
+        }
 
         let is_committed = self.is_committed(front, state.speed);
         let mut present: Vec<Present, PEERS> = Vec::new();
@@ -195,7 +196,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         // Who stops at the line is a hair from where it could not.
         let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
         let has_room = self.has_room(nearest, now);
-        if can_wait && !has_room && self.waits_for_room(nearest, now, state.speed) {
+        let gives_way = can_wait && !has_room && self.waits_for_room(nearest, now, state.speed);
+        if let Some(arrival) = arrival.filter(|_| gives_way) {
             self.coordination.give_way(arrival);
         }
         self.coordination.hold(can_wait && (!has_room || self.is_crossed_by_unknown(now)));

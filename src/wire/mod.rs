@@ -29,6 +29,7 @@ pub mod route;
 pub mod sender;
 pub mod status;
 pub mod sync;
+mod tie;
 pub mod unserved;
 
 pub use catalogue::BaseId;
