@@ -308,10 +308,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// How the ego itself drives: the law of its mode.
     fn driver(&self) -> Driver {
-        let halting = self.driver_halting(self.coordination.next()).filter(|_| self.coordination.choice().halts);
-        if let Some(driver) = halting {
-            return driver;
-        }
         let association = self.association.map(|(_, gains)| (gains, self.standstill()));
         self.driver_with(association, self.coordination.choice().gentleness)
     }

@@ -14,8 +14,6 @@ pub struct Choice {
     pub lane: Option<u8>,
     /// Whether the ego is to stop before the next conflict area, whomever it follows.
     pub is_held: bool,
-    /// Whether it stops for that now, rather than follow the target.
-    pub halts: bool,
     /// How gently the ego brakes for the target.
     pub gentleness: Gentleness,
     /// All that are ahead in the order; also those that are only estimated to have left.
@@ -35,7 +33,6 @@ impl Choice {
         order: None,
         lane: None,
         is_held: false,
-        halts: false,
         gentleness: Gentleness::NONE,
         ahead: Slots::NONE,
         leading: Slots::NONE,

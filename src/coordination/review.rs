@@ -68,11 +68,6 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.choice.is_held = is_held;
     }
 
-    /// Takes note of whether it stops for that now.
-    pub(crate) fn halt(&mut self, halts: bool) {
-        self.choice.halts = halts;
-    }
-
     /// The ego lets all go first who arrived before then: it tells that arrival, if it is later than its own.
     pub(crate) fn give_way(&mut self, arrival: Arrival) {
         if let Held::Value(registration) = &mut self.registration

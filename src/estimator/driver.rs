@@ -38,17 +38,6 @@ pub enum Aim {
         /// `v_∞`.
         target_speed: Speed,
     },
-    /// To stand at a line (Algorithm 4, behind one that stands there).
-    Halt {
-        /// Where its front bumper is to stand.
-        line: RingPosition,
-        /// `k`.
-        gain: Gain,
-        /// `γ`.
-        damping: Seconds,
-        /// `t_g`.
-        time_gap: Seconds,
-    },
 }
 
 /// A vehicle's parameters.
@@ -116,9 +105,6 @@ impl Driver {
                 let catch_up = model.limits.then(|| catch_up(target_speed));
                 Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
             }
-            Aim::Halt { line, gain, damping, time_gap } => {
-                Course::Halt(Follower::over(step, gain, damping, time_gap, Distance::ZERO, None), line)
-            }
         };
         let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
         let fading = Model { lag: true, ..*model };
@@ -142,7 +128,6 @@ enum Course {
     Fade,
     Lead(Leader),
     Follow(Follower),
-    Halt(Follower, RingPosition),
 }
 
 /// One prediction step of one vehicle, ready to be taken many times.
@@ -162,7 +147,6 @@ impl Stride {
         let wish = match (&self.course, ahead) {
             (Course::Lead(leader), _) => leader.wish(state.speed),
             (Course::Follow(follower), Some((position, speed))) => follower.wish(state, position, speed),
-            (Course::Halt(follower, line), _) => follower.wish(state, *line, Speed::ZERO),
             (Course::Follow(_), None) | (Course::Fade, _) => return Acceleration::ZERO,
         };
         self.actuator.limit(wish.min(cap), state.demand)
@@ -184,7 +168,7 @@ impl Stride {
                 let wish = |state: &State, ahead: &Step| follower.wish(state, ahead.position, ahead.speed);
                 (self.actuator.run(state, steps, wish), done)
             }
-            Course::Lead(_) | Course::Halt(..) | Course::Fade => {
+            Course::Lead(_) | Course::Fade => {
                 let done = out.len().min(ahead.len());
                 self.run_alone(state, out.get_mut(..done).unwrap_or_default())
             }
@@ -200,9 +184,6 @@ impl Stride {
         let steps = out.iter_mut().map(|out| (out, ()));
         let state = match &self.course {
             Course::Lead(leader) => self.actuator.run(state, steps, |state, ()| leader.wish(state.speed)),
-            Course::Halt(follower, line) => {
-                self.actuator.run(state, steps, |state, ()| follower.wish(state, *line, Speed::ZERO))
-            }
             Course::Follow(_) | Course::Fade => self.actuator.coast(state, steps.map(|(out, ())| out)),
         };
         (state, done)

@@ -165,7 +165,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.coordination.advance(front, self.config.length, now, arrival);
         }
 
-        let is_committed = self.is_committed(self.coordination.next(), front, state.speed);
+        let is_committed = self.is_committed(front, state.speed);
         let mut present: Vec<Present, PEERS> = Vec::new();
         let mut lane: Option<(usize, Position)> = None;
         for index in 0..PEERS {
@@ -193,13 +193,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         let nearest = lane.map(|(index, _)| index);
         let is_inside = self.area_begins().is_some_and(|begins| front > begins);
-        let next = self.coordination.next();
-        let can_wait = self.can_wait(self.coordination.choice().is_held, next, front, state.speed);
-        let gives_way = can_wait && !self.has_room(nearest, next, now) && self.waits_for_room(nearest, now, state.speed);
+        // Who stops at the line is a hair from where it could not.
+        let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
+        let has_room = self.has_room(nearest, now);
+        let gives_way = can_wait && !has_room && self.waits_for_room(nearest, now, state.speed);
         if let Some(arrival) = arrival.filter(|_| gives_way) {
             self.coordination.give_way(arrival);
         }
-        self.coordination.hold(can_wait && self.has_to_wait(nearest, next, now, now));
+        self.coordination.hold(can_wait && (!has_room || self.is_crossed_by_unknown(now)));
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
@@ -210,15 +211,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let order = self.coordination.choice().order.map(usize::from);
         let order = order.filter(is_heeded).filter(|index| !(is_inside && is_passed(index)));
         let lane = nearest.filter(is_heeded);
+        let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);
         let followed = self.coordination.choice().target.map(usize::from);
         let target = target.filter(|target| self.is_in_the_way(*target, now, next, front, followed));
-        let (before, may) = (*self.coordination.choice(), self.gentleness(target, next, front, state.speed));
+        let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
         self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
-        let asked = target.map_or(i64::MAX, |target| self.asks(target, now, next));
-        self.coordination.halt(before.is_held && self.is_decided_by_order() && self.is_halt_due(next, front, asked));
         self.note_lane(now, front);
     }
 
@@ -295,14 +295,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         front: Position,
         followed: Option<usize>,
     ) -> bool {
-        let apart = if followed == Some(index) { APART } else { Distance::ZERO };
-        self.asks(index, at, next) < self.free_from(front).ahead(apart).to_bits()
-    }
-
-    /// From where on the law asks for no braking at the speed that the ego wants, with its front bumper there.
-    pub(super) fn free_from(&self, front: Position) -> Position {
         let wanted = self.target_speed();
-        front.ahead(wanted.over(self.time_gap())).ahead(wanted.over(self.config.law.damping))
+        let free = front.ahead(wanted.over(self.time_gap())).ahead(wanted.over(self.config.law.damping));
+        let apart = if followed == Some(index) { APART } else { Distance::ZERO };
+        self.asks(index, at, next) < free.ahead(apart).to_bits()
     }
 
     /// `q_j` of a vehicle ahead with that crossing next, in words of a position.
@@ -328,8 +324,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The standstill distance behind a peer with that crossing next.
     pub(super) fn standstill_at(&self, next: usize, index: usize) -> Distance {
         let law = self.config.law.standstill;
-        let crossing = self.coordination.itinerary().and_then(|itinerary| itinerary.crossings.get(next));
-        match (crossing, self.coordination.standing(index)) {
+        let Some(itinerary) = self.coordination.itinerary() else { return law };
+        let law = law.plus(QUEUE);
+        match (itinerary.crossings.get(next), self.coordination.standing(index)) {
             (Some(crossing), Some(standing)) if standing.crossing == next => {
                 standstill_behind(law, crossing, standing.leg)
             }
@@ -369,6 +366,11 @@ const OUT_OF_REACH: Distance = Distance::from_mm(250_000);
 
 /// What lets the ego go on following who gets away from it, so that it does not take turns.
 const APART: Distance = Distance::from_mm(3_000);
+
+/// What a vehicle on a way through intersections keeps beside the law's standstill distance. Where a queue has formed, vehicles brake
+/// for what they alone know, as who is ahead has no slot or is silent; those behind who do not hear them do not foresee that, and
+/// have to find room for what their estimates are off by.
+const QUEUE: Distance = Distance::from_mm(8_000);
 
 /// A peer that told its route less than this ago is not placed by the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);

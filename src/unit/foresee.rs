@@ -8,81 +8,39 @@
 
 use super::OnboardUnit;
 use crate::controller::Gains;
-use crate::coordination::{Choice, Entry, Gentleness, REVIEW, Slots, Standing};
-use crate::estimator::{Driver, Reading};
+use crate::coordination::{Entry, REVIEW, Slots, Standing};
+use crate::estimator::Reading;
 use crate::peers::{Sample, Track};
 use crate::time::Instant;
 use crate::units::Position;
 
-/// A stretch of the own horizon over which the ego drives in one way.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Stretch {
-    /// The crossing that comes next.
-    crossing: usize,
-    /// Whom it follows, unless it halts.
-    target: Option<usize>,
-    /// Whether it halts before that crossing.
-    halts: bool,
-    gentleness: Gentleness,
-}
-
-impl Stretch {
-    fn followed(&self) -> Option<usize> {
-        self.target.filter(|_| !self.halts)
-    }
-}
-
-/// What a review will find.
-struct Outlook {
-    /// Whom the ego will follow.
-    target: Option<usize>,
-    /// Who will be just ahead on its leg.
-    lane: Option<usize>,
-}
-
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Computes the ego's own horizon from its own state.
     pub(super) fn foresee(&mut self, now: Instant, sample: &Sample, target: Option<usize>) {
-        let choice = self.coordination.choice();
-        let Choice { halts, gentleness, mut is_held, .. } = *choice;
-        let mut stretch = Stretch { crossing: self.coordination.next(), target, halts, gentleness };
-        let mut gains = self.association.map(|(_, gains)| gains);
-        let mut manner = self.estimator.manner(self.driver(), stretch.followed(), &self.peers);
+        let mut manner = self.estimator.manner(self.driver(), target, &self.peers);
         let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
         self.estimator.foresee_own(now, review, sample, &manner);
         let Some(mut review) = review.map(|review| review.max(now)) else { return };
-        let minded = self.minded(now, stretch.crossing);
+        let (mut crossing, mut gentleness) = (self.coordination.next(), self.coordination.choice().gentleness);
+        let mut gains = self.association.map(|(_, gains)| gains);
+        let minded = self.minded(now, crossing);
         while self.estimator.is_own_short(now) {
             let Some(own) = self.estimator.read_own(review) else { return };
-            let crossing = self.coordination.next_of(stretch.crossing, own.position, self.config.length);
-            let Outlook { target, lane } = self.outlook(review, &own, crossing, minded, stretch.target);
+            crossing = self.coordination.next_of(crossing, own.position, self.config.length);
+            let target = self.outlook(review, &own, crossing, minded, manner.target);
+            let is_new = target != manner.target;
             let may = self.gentleness(target, crossing, own.position, own.speed);
-            let is_new = target != stretch.target;
-            if is_new {
-                gains = target.and_then(|index| self.gains_behind(index, &own, review));
-            }
-            let gentleness = if is_new { may } else { may.min(stretch.gentleness) };
-            is_held = self.can_wait(is_held, crossing, own.position, own.speed)
-                && self.has_to_wait(lane, crossing, now, review);
-            let asked = target.map_or(i64::MAX, |index| self.asks(index, review, crossing));
-            let halts = is_held && self.is_halt_due(crossing, own.position, asked);
-            let next = Stretch { crossing, target, halts, gentleness };
-            if next != stretch {
-                stretch = next;
-                manner = self.estimator.manner(self.driver_over(&stretch, gains), stretch.followed(), &self.peers);
+            if is_new || may < gentleness {
+                gentleness = may;
+                if is_new {
+                    gains = target.and_then(|index| self.gains_behind(index, &own, review));
+                }
+                let association = gains.zip(target).map(|(gains, index)| (gains, self.standstill_at(crossing, index)));
+                manner = self.estimator.manner(self.driver_with(association, gentleness), target, &self.peers);
             }
             review = review.plus(REVIEW);
             self.estimator.carry_own_on(now, review, &manner);
         }
-    }
-
-    /// How the ego drives over that stretch, with these gains behind whom it follows.
-    fn driver_over(&self, stretch: &Stretch, gains: Option<Gains>) -> Driver {
-        let halting = || self.driver_halting(stretch.crossing).filter(|_| stretch.halts);
-        halting().unwrap_or_else(|| {
-            let behind = |index| self.standstill_at(stretch.crossing, index);
-            self.driver_with(gains.zip(stretch.target.map(behind)), stretch.gentleness)
-        })
     }
 
     /// The gains of an association that begins then.
@@ -120,7 +78,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         crossing: usize,
         minded: Slots,
         followed: Option<usize>,
-    ) -> Outlook {
+    ) -> Option<usize> {
         let (front, end) = (own.position, self.coordination.end_of(crossing));
         let is_later = crossing != self.coordination.next();
         let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
@@ -150,10 +108,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
         let is_heeded = |index: &usize| self.is_heeded(*index, at, front, own.speed);
         let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
-        let target =
-            self.more_careful(order.filter(is_heeded), lane.filter(is_heeded), at, crossing, front, own.speed);
-        let target = target.filter(|target| self.is_in_the_way(*target, at, crossing, front, followed));
-        Outlook { target, lane }
+        let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));
+        let target = self.more_careful(order, lane, at, crossing, front, own.speed)?;
+        self.is_in_the_way(target, at, crossing, front, followed).then_some(target)
     }
 
     /// A peer in the order.

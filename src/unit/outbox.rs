@@ -238,7 +238,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Driver { aim, limits, .. } = self.driver();
         let law = &config.law;
         let (gain, damping, time_gap) = match aim {
-            Aim::Follow { gain, damping, time_gap, .. } | Aim::Halt { gain, damping, time_gap, .. } => (gain, damping, time_gap),
+            Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
             Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
         };
         Intent {

@@ -8,7 +8,7 @@
 use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle};
-use crate::estimator::{Aim, Driver, State};
+use crate::estimator::State;
 use crate::fixed::{quotient, saturate_i32};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Share, Speed};
@@ -28,50 +28,15 @@ const LINE: Distance = Distance::from_mm(1_000);
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Where the next conflict area begins.
     pub(super) fn area_begins(&self) -> Option<Position> {
-        self.begins(self.coordination.next())
-    }
-
-    /// Where the conflict area of that crossing of the way begins.
-    fn begins(&self, crossing: usize) -> Option<Position> {
-        let crossing = self.coordination.itinerary()?.crossings.get(crossing)?;
+        let crossing = self.coordination.crossing()?;
         Some(self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half.negated()))
     }
 
-    /// Where the ego stops before that conflict area.
-    fn line(&self, crossing: usize) -> Option<Position> {
-        Some(self.begins(crossing)?.ahead(LINE.negated()))
-    }
-
-    /// Whether the ego, with its front bumper there, at this speed, could not stop before that conflict area as it brakes in
+    /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area as it brakes in
     /// normal driving: it gives way to nobody any more, as it would stand in the area and wait for one who cannot get past it.
-    pub(super) fn is_committed(&self, crossing: usize, front: Position, speed: Speed) -> bool {
-        let Some(area_begins) = self.begins(crossing) else { return false };
+    pub(super) fn is_committed(&self, front: Position, speed: Speed) -> bool {
+        let Some(area_begins) = self.area_begins() else { return false };
         area_begins.ahead_of(front) <= self.stops_within(speed)
-    }
-
-    /// Whether it can wait before it. Who stops at the line is a hair from where it could not.
-    pub(super) fn can_wait(&self, is_held: bool, crossing: usize, front: Position, speed: Speed) -> bool {
-        let is_inside = self.begins(crossing).is_some_and(|begins| front > begins);
-        if is_held { !is_inside } else { !self.is_committed(crossing, front, speed) }
-    }
-
-    /// Whether the ego, with its front bumper there, has to wait then before that conflict area, if it can.
-    pub(super) fn has_to_wait(&self, ahead: Option<usize>, crossing: usize, now: Instant, at: Instant) -> bool {
-        let is_crossed = crossing == self.coordination.next() && self.is_crossed_by_unknown(now);
-        is_crossed || !self.has_room(ahead, crossing, at)
-    }
-
-    /// Whether the ego, with its front bumper there, halts for that rather than follow one that asks for so much, in words of a position:
-    /// by the law it stops for a line as it stops behind one that stands there.
-    pub(super) fn is_halt_due(&self, crossing: usize, front: Position, asked: i64) -> bool {
-        self.line(crossing).is_some_and(|line| line < self.free_from(front) && line.to_bits() <= asked)
-    }
-
-    /// How the ego halts before that conflict area.
-    pub(super) fn driver_halting(&self, crossing: usize) -> Option<Driver> {
-        let (law, line) = (&self.config.law, self.line(crossing)?.ring());
-        let aim = Aim::Halt { line, gain: law.gain, damping: law.damping, time_gap: self.time_gap() };
-        Some(Driver::of_config(&self.config, aim))
     }
 
     /// The way that the ego takes to stop as it brakes in normal driving, from when the law asks for it.
@@ -86,14 +51,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Distance::from_mm(saturate_i32(reacting.saturating_add(braked(mm_per_s, mm_per_s2))))
     }
 
-    /// Whether there is room beyond that conflict area then behind that one, the nearest ahead on the ego's leg, or will be. Who stands is
+    /// Whether there will be room beyond the next conflict area behind that one, the nearest ahead on the ego's leg. Who stands is
     /// there still: that it wants to move off is not that it can.
-    pub(super) fn has_room(&self, ahead: Option<usize>, crossing: usize, at: Instant) -> bool {
-        let (Some(index), Some(end)) = (ahead, self.coordination.end_of(crossing)) else { return true };
-        let Some((reading, rear)) = self.rear(index, at) else { return true };
-        let later = self.rear(index, at.plus(LEAVES)).filter(|_| reading.speed > WAITING);
+    pub(super) fn has_room(&self, ahead: Option<usize>, now: Instant) -> bool {
+        let (Some(index), Some(end)) = (ahead, self.coordination.end_of(self.coordination.next())) else { return true };
+        let Some((reading, rear)) = self.rear(index, now) else { return true };
+        let later = self.rear(index, now.plus(LEAVES)).filter(|_| reading.speed > WAITING);
         let rear = later.map_or(rear, |(_, rear)| rear);
-        rear >= end.ahead(self.config.length).ahead(self.config.law.standstill)
+        rear >= end.ahead(self.config.length).ahead(self.standstill_at(self.coordination.next(), index))
     }
 
     /// Whether the ego, at this speed, stands before the next conflict area for want of room, and is the first to do so on its leg.
@@ -111,7 +76,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         };
         let choice = self.coordination.choice();
         let behind = choice.lane.and_then(|index| self.stops_at(index.into(), now));
-        let line = self.line(self.coordination.next()).filter(|_| choice.is_held);
+        let line = self.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
         let limits = &self.config.limits;
         let normal = Envelope {
             acceleration: limits.acceleration,
@@ -130,10 +95,27 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             lag: self.config.lag,
         };
         let spare = |obstacle| envelope::spare(&normal, &ego, &obstacle);
-        let stop = [behind, line].into_iter().flatten().min().map(Obstacle::standing).map(spare);
-        let certain = self.unknown.is_anybody(now).then(|| self.spare_on_way(now, ego.position, &spare)).flatten();
-        let Some(spare) = [stop, certain].into_iter().flatten().min() else { return Acceleration::MAX };
+        let passes = self.passes_first(now, ego.position, ego.speed);
+        let stop = [behind, line, passes].into_iter().flatten().min().map(Obstacle::standing).map(spare);
+        let Some(spare) = stop else { return Acceleration::MAX };
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
+    }
+
+    /// Where the ego, with its front bumper there, at this speed, waits until whoever is ahead in the order is estimated to have passed: before
+    /// the next conflict area, if it is slow. The law lets it start early, and it would be in there at once.
+    fn passes_first(&self, now: Instant, front: Position, speed: Speed) -> Option<Position> {
+        let (crossing, line) = (self.coordination.crossing()?, self.area_begins()?);
+        let end = self.coordination.end_of(self.coordination.next())?;
+        if speed > SLOW || front > line {
+            return None;
+        }
+        let is_due = |index: &usize| {
+            let standing = self.coordination.standing(*index);
+            self.coordination.choice().ahead.contains(*index)
+                && standing.is_some_and(|standing| crossing.intersection.conflict(crossing.leg, standing.leg))
+                && self.rear(*index, now).is_some_and(|(_, rear)| rear < end)
+        };
+        (0..PEERS).any(|index| is_due(&index)).then(|| line.ahead(LINE.negated()))
     }
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. That one which

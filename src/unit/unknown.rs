@@ -1,9 +1,8 @@
 //! Vehicles that the unit cannot know of: what the modem tells of those for whom it has no slot enters; where the ego stops for
-//! them, and whether it drives by what is certain alone, leave.
+//! them leaves.
 //!
 //! Somebody unknown on a leg that crosses the ego's may be ahead in the order, so the ego does not enter the conflict area.
-//! Somebody unknown ahead on the ego's own leg is taken to stand where it was. And where there is anybody unknown at all, whoever is
-//! silent may have to brake for it: no estimate tells that.
+//! Somebody unknown ahead on the ego's own leg is taken to stand where it was.
 
 use super::OnboardUnit;
 use crate::held::Held;
@@ -14,39 +13,22 @@ use crate::wire::unserved::Unserved;
 /// What was told last holds for so long: three of its cycles.
 const HOLDS: Duration = Duration::from_millis(600);
 
-/// For so long after there was anybody the ego drives by what is certain: as far as every unit looks ahead, others drive by what they were
-/// told meanwhile.
-const LASTS: Duration = Duration::from_millis(10_700);
-
-/// What the modem told.
+/// What the modem told last, and when.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Unknown {
-    /// Last, and when.
-    told: Held<(Instant, Unserved)>,
-    /// When there was anybody last.
-    was: Held<Instant>,
-}
+pub(super) struct Unknown(Held<(Instant, Unserved)>);
 
 impl Unknown {
     /// Nothing was told: all zero.
-    pub(super) const NONE: Self = Self { told: Held::Nothing, was: Held::Nothing };
+    pub(super) const NONE: Self = Self(Held::Nothing);
 
     /// Takes in what the modem tells.
     pub(super) fn take(&mut self, at: Instant, unserved: Unserved) {
-        self.told.set((at, unserved));
-        if unserved.stations > 0 {
-            self.was.set(at);
-        }
+        self.0.set((at, unserved));
     }
 
     fn told(&self, now: Instant) -> Option<&Unserved> {
-        let (at, unserved) = self.told.as_ref()?;
+        let (at, unserved) = self.0.as_ref()?;
         (now.since(*at) <= HOLDS).then_some(unserved)
-    }
-
-    /// Whether there is anybody, or has been of late.
-    pub(super) fn is_anybody(&self, now: Instant) -> bool {
-        self.was.get().is_some_and(|was| now.since(was) <= LASTS)
     }
 }
 
