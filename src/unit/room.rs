@@ -96,7 +96,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         };
         let spare = |obstacle| envelope::spare(&normal, &ego, &obstacle);
         let passes = self.passes_first(now, ego.position, ego.speed);
-        let stop = [behind, line, passes].into_iter().flatten().min().map(Obstacle::standing).map(spare);
+        let unknown = self.unknown_ahead(now).map(|rear| rear.ahead(LINE.negated()));
+        let stop = [behind, line, passes, unknown].into_iter().flatten().min().map(Obstacle::standing).map(spare);
         let Some(spare) = stop else { return Acceleration::MAX };
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
     }

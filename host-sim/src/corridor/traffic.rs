@@ -92,8 +92,6 @@ pub struct Traffic<'a> {
     remains: Remains,
     tally: Tally,
     logged: Option<usize>,
-    history: VecDeque<BTreeMap<usize, String>>,
-    hit: std::collections::BTreeSet<(usize, usize)>,
 }
 
 /// What is left of a run.
@@ -149,8 +147,6 @@ impl<'a> Traffic<'a> {
             remains: Remains::default(),
             tally: Tally::default(),
             logged: None,
-            history: VecDeque::new(),
-            hit: std::collections::BTreeSet::new(),
         }
     }
 
@@ -235,153 +231,11 @@ impl<'a> Traffic<'a> {
             watch.beyond(&beyond);
             watch.tick(at_s, &on_way);
         }
-        let sights = on_way;
-        self.debug(at_s, &sights);
         self.broadcast(at_s, broadcasts);
         for traveller in self.travellers.values_mut() {
             traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
         }
         self.dismiss(at_s, watches, log)
-    }
-
-    fn debug(&mut self, at_s: f64, sights: &[Sighting]) {
-        use std::fmt::Write;
-        let unit_trip = |st: Option<StationHash>| -> String {
-            match st {
-                None => "-".into(),
-                Some(s) => self
-                    .travellers
-                    .values()
-                    .find(|t| station(t.vehicle.index) == s)
-                    .map_or(format!("?{}", s.0), |t| t.trip.to_string()),
-            }
-        };
-        let mut hits = Vec::new();
-        for (i, a) in sights.iter().enumerate() {
-            for b in &sights[i + 1..] {
-                if a.road == b.road {
-                    let (f, r) = if a.way_m > b.way_m { (a, b) } else { (b, a) };
-                    if f.way_m - f.length_m - r.way_m < 0.0 {
-                        hits.push((a.trip, b.trip));
-                    }
-                } else {
-                    for sa in &self.network.lanes[a.road].stops {
-                        for sb in &self.network.lanes[b.road].stops {
-                            let j = &self.network.junctions[sa.intersection];
-                            if sa.intersection == sb.intersection && j.conflict(sa.leg, sb.leg) {
-                                let ins = |o: &Sighting, at: f64| {
-                                    o.way_m - at >= -j.half_m && o.way_m - at - o.length_m <= j.half_m
-                                };
-                                if ins(a, sa.at_m) && ins(b, sb.at_m) {
-                                    hits.push((a.trip, b.trip));
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        if self.ticks % 20 == 0 {
-            let mut map = BTreeMap::new();
-            for one in self.travellers.values() {
-                let v = &one.vehicle;
-                let now = v.instant(at_s);
-                let c = v.unit.coordination();
-                let ch = c.choice();
-                let name = |s: Option<u8>| {
-                    s.map_or("-".into(), |i| unit_trip(v.unit.peers().get(i.into()).and_then(|t| t.station())))
-                };
-                let mut line = format!(
-                    "{:6.1} #{} road {} way {:.1} v {:.2} cmd {:.2} dark {} lim {} next {:?} target {} order {} lane {} held {} arr {:?} claim {} mode {:?} |",
-                    at_s,
-                    one.trip,
-                    self.trips[one.trip].road,
-                    one.way_m(),
-                    v.plant.speed_mps,
-                    v.command_mps2,
-                    one.is_dark(at_s),
-                    v.limited,
-                    c.crossing().map(|x| x.intersection.id),
-                    name(ch.target),
-                    name(ch.order),
-                    name(ch.lane),
-                    ch.is_held,
-                    c.registration().map(|r| r.arrival.0),
-                    unit_trip(if let holdover::wire::Predecessor::Station(s) = c.claim() { Some(s) } else { None }),
-                    v.unit.mode()
-                );
-                let ego_axis = v.plant.position_m;
-                for i in 0..16 {
-                    let Some(t) = v.unit.peers().get(i) else { continue };
-                    let Some(st) = t.station() else { continue };
-                    let Some(other) = self.travellers.values().find(|o| station(o.vehicle.index) == st) else {
-                        continue;
-                    };
-                    let sil = t.link().silence(now).map_or(-1.0, |d| d.as_micros() as f64 / 1e6);
-                    let est = v.unit.estimator().read(i, now).map(|r| {
-                        let p: f64 = r.position.get().to_num();
-                        let p = p - ego_axis;
-                        (p - (p / 4096.0).round() * 4096.0, r.speed.get().to_num::<f64>())
-                    });
-                    let near = v.unit.bound(i, now).map(|b| b.lowest_position().to_mm() as f64 / 1000.0 - ego_axis);
-                    let st_ = c.standing(i).map(|s| (s.crossing, s.leg));
-                    let truth = other.way_m() - one.way_m();
-                    let same = self.trips[other.trip].road == self.trips[one.trip].road;
-                    let _ = write!(
-                        line,
-                        " [{} s{:.1} est {} near {:.1} truth {} v{:.1} st {:?} {}{}]",
-                        other.trip,
-                        sil,
-                        est.map_or("-".into(), |(p, s)| format!("{p:.1}@{s:.1}")),
-                        near.unwrap_or(f64::NAN),
-                        if same { format!("{truth:.1}") } else { "x".into() },
-                        other.vehicle.plant.speed_mps,
-                        st_,
-                        if ch.ahead.contains(i) { "A" } else { "" },
-                        if ch.leading.contains(i) { "L" } else { "" }
-                    );
-                }
-                let _ = write!(line, " away {}", v.turned_away());
-                map.insert(one.trip, line);
-            }
-            self.history.push_back(map);
-            if self.history.len() > 60 {
-                self.history.pop_front();
-            }
-        }
-        if self.ticks % 1500 == 0 {
-            let on: Vec<_> = self.travellers.values().filter(|t| !t.has_left()).collect();
-            let standing = on.iter().filter(|t| t.vehicle.plant.speed_mps < 0.1).count();
-            let held = on.iter().filter(|t| t.vehicle.unit.coordination().choice().is_held).count();
-            eprintln!(
-                "@@ {at_s} on {} standing {standing} held {held} waiting {} next {}",
-                on.len(),
-                self.waiting.iter().map(VecDeque::len).sum::<usize>(),
-                self.next
-            );
-            if std::env::var("DUMP").ok().and_then(|d| d.parse::<f64>().ok()).is_some_and(|d| at_s >= d) {
-                for line in self.history.back().unwrap().values() {
-                    eprintln!("{line}");
-                }
-                std::process::exit(0);
-            }
-        }
-        hits.retain(|h| self.hit.insert(*h));
-        for (a, b) in hits {
-            eprintln!(
-                "=== HIT {at_s} {a} {b} env {} perfect {}",
-                self.conditions.envelope.engaged,
-                self.conditions.radio.loss == 0.0
-            );
-            for who in [a, b] {
-                for map in &self.history {
-                    if let Some(line) = map.get(&who) {
-                        eprintln!("{line}");
-                    }
-                }
-                eprintln!();
-            }
-        }
     }
 
     /// Messages go to everyone within the radio's range.

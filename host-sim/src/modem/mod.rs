@@ -22,9 +22,8 @@ use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, St
 mod relevance;
 mod unserved;
 
-pub use unserved::UNSERVED_EVERY_S;
-
 pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
+pub use unserved::UNSERVED_EVERY_S;
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
 pub const PEERS: usize = 16;

@@ -2,8 +2,11 @@
 //!
 //! First comes whom the unit says it follows. On a route, next are the two nearest ahead on the unit's own leg by what they
 //! said last, wherever they are: it must not run into them, and if one of them is silent the other need not be the nearest. Then
-//! the first one on every other leg of the next intersection that has not entered the conflict area: nobody passes there, so those
-//! behind it come after it. Then those who are in that area. Then come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
+//! those in the conflict area that the unit comes to next, or just about to enter or to leave it; and of each leg that crosses the
+//! unit's the next one into it, or also the one after it, where the first is there soon: nobody passes on a leg, so those behind come after
+//! it. Of both only who arrived no later than the unit: everyone else lets it pass.
+//!
+//! Then come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
 //! next one, there those ahead before those behind, of those ahead first who are leaving it, because the unit may be waiting for
 //! that, and otherwise the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
 //! them; then everyone else. For a unit on a route, a station that names no intersection of the way that is left, or that
