@@ -5,7 +5,6 @@ mod rig;
 
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 
-
 use holdover::units::Distance;
 use holdover::wire::Message;
 use holdover::wire::unserved::Unserved;

@@ -222,8 +222,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.note_lane(now, front);
     }
 
-    /// Whether the ego, with its front bumper there, follows a peer; the gate minds it all the same. Who was far ahead when it was heard last has got out of
-    /// reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
+    /// Whether the ego, with its front bumper there, follows a peer; the gate minds it all the same. Who was far ahead when it was
+    /// heard last has got out of reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
     /// whom nobody hears any more.
     pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
         self.is_in_reach(index, at)

@@ -2,7 +2,8 @@
 //! estimate is corrected by it, and whether the two agree leaves.
 //!
 //! As the view shows the nearest vehicle on the ego's path, nobody whose place is on that path is nearer: the near ends of
-//! those are raised to it. A view from before the driver named the target is not of it. While view and messages contradict one another neither touches the other, and the unit drives by
+//! those are raised to it. A view from before the driver named the target is not of it. While view and messages contradict one
+//! another neither touches the other, and the unit drives by
 //! what it sees.
 //!
 //! The sensor's and the estimate's positions are weighed by the squares of their uncertainties: the sensor's accuracy

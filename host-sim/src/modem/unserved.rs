@@ -44,3 +44,6 @@ impl Relay {
         one.has_entered() || one.is_near() && self.nearer_across(one).next().is_none()
     }
 }
+
+#[cfg(test)]
+mod tests;
