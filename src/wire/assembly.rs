@@ -29,31 +29,29 @@ impl Piece {
     }
 }
 
-/// The parts of one message so far. Parts may come in any order.
+/// The parts of one message so far. Parts may come in any order; their counters go up by `STEP` from part to part: not at all where
+/// they have identifiers of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Assembly<const PARTS: usize> {
+pub(super) struct Assembly<const PARTS: usize, const STEP: u8> {
     parts: [Payload; PARTS],
     /// Bit `n` is set if part `n` is here.
     held: u8,
     tag: u8,
     /// When the first of them came.
     since: Instant,
-    tie: Tie,
+    tie: Tie<STEP>,
 }
 
-impl<const PARTS: usize> Assembly<PARTS> {
+impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
     #[allow(clippy::cast_possible_truncation)] // at most 8 parts
     const ALL: u8 = match 1u8.checked_shl(PARTS as u32) {
         Some(power) => power.wrapping_sub(1),
         None => u8::MAX,
     };
 
-    /// Of parts that have identifiers of their own, or one.
-    pub(super) const fn new(have_own: bool) -> Self {
-        #[allow(clippy::cast_possible_truncation)] // at most 8 parts
-        let tie = Tie::new(PARTS as u8, have_own);
-        Self { parts: [Payload::EMPTY; PARTS], held: 0, tag: 0, since: Instant::ZERO, tie }
-    }
+    /// Nothing so far: all zero.
+    pub(super) const NEW: Self =
+        Self { parts: [Payload::EMPTY; PARTS], held: 0, tag: 0, since: Instant::ZERO, tie: Tie::NONE };
 
     /// Takes one part; the whole message if it was the last one missing.
     ///
@@ -101,7 +99,7 @@ mod tests {
 
     #[test]
     fn parts_of_one_tag_make_a_message_in_any_order() {
-        let mut assembly = Assembly::<3>::new(false);
+        let mut assembly = Assembly::<3, 1>::NEW;
         for order in [[0, 1, 2], [2, 0, 1]] {
             assert_eq!(assembly.add(&piece(7, order[0], 1)), Ok(None));
             assert_eq!(assembly.add(&piece(7, order[1], 1)), Ok(None));
@@ -111,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_message_that_stays_incomplete_is_torn_once_and_the_next_is_whole() {
-        let mut assembly = Assembly::<3>::new(false);
+        let mut assembly = Assembly::<3, 1>::NEW;
         assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(7, 0, 2)), Err(Refusal::Torn));
@@ -121,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_same_part_twice_under_one_tag_is_another_message() {
-        let mut assembly = Assembly::<2>::new(false);
+        let mut assembly = Assembly::<2, 1>::NEW;
         assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(7, 0, 1)), Err(Refusal::Torn));
         assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(Some([P; 2])));
@@ -132,14 +130,14 @@ mod tests {
     fn parts_that_come_too_far_apart_make_no_message_whichever_comes_first() {
         let torn = Err(Refusal::Torn);
         for (then, later) in [(0, 50_001), (50_001, 0), (0, 600_000_000)] {
-            let mut assembly = Assembly::<2>::new(false);
+            let mut assembly = Assembly::<2, 1>::NEW;
             assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(None));
             assert_eq!(assembly.add(&piece(later, 1, 1)), torn, "{then} {later}");
             // What came late begins a new message.
             assert_eq!(assembly.add(&piece(later, 0, 1)), Ok(Some([P; 2])));
         }
         for (then, later) in [(0, 50_000), (50_000, 0)] {
-            let mut assembly = Assembly::<2>::new(false);
+            let mut assembly = Assembly::<2, 1>::NEW;
             assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(None));
             assert_eq!(assembly.add(&piece(later, 1, 1)), Ok(Some([P; 2])), "{then} {later}");
         }
@@ -147,7 +145,7 @@ mod tests {
 
     #[test]
     fn the_time_counts_from_the_first_part() {
-        let mut assembly = Assembly::<3>::new(false);
+        let mut assembly = Assembly::<3, 1>::NEW;
         assert_eq!(assembly.add(&piece(0, 0, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(30_000, 1, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(60_000, 2, 1)), Err(Refusal::Torn));
@@ -157,7 +155,7 @@ mod tests {
     fn parts_of_two_messages_with_one_tag_make_none_and_the_later_is_whole() {
         let of = |message: u8, part| Piece { counter: message + part, ..piece(7, part, 1) };
         for (lost, rest) in [(0, [1, 2]), (2, [0, 1])] {
-            let mut assembly = Assembly::<3>::new(false);
+            let mut assembly = Assembly::<3, 1>::NEW;
             (0..3).filter(|part| *part != lost).for_each(|part| assert_eq!(assembly.add(&of(0, part)), Ok(None)));
             assert_eq!(assembly.add(&of(3, lost)), Err(Refusal::Torn));
             assert_eq!(assembly.add(&of(3, rest[0])), Ok(None));

@@ -62,20 +62,20 @@ pub enum Received {
 /// What one vehicle's frames have brought so far.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Parts {
-    motion: Assembly<2>,
-    horizon: Assembly<KNOTS>,
-    intent: Assembly<3>,
-    geo: Assembly<2>,
-    route: Assembly<2>,
+    motion: Assembly<2, 0>,
+    horizon: Assembly<KNOTS, 1>,
+    intent: Assembly<3, 1>,
+    geo: Assembly<2, 1>,
+    route: Assembly<2, 1>,
 }
 
 impl Parts {
     const NEW: Self = Self {
-        motion: Assembly::new(true),
-        horizon: Assembly::new(false),
-        intent: Assembly::new(false),
-        geo: Assembly::new(false),
-        route: Assembly::new(false),
+        motion: Assembly::NEW,
+        horizon: Assembly::NEW,
+        intent: Assembly::NEW,
+        geo: Assembly::NEW,
+        route: Assembly::NEW,
     };
 
     fn add(&mut self, about: About, piece: &Piece) -> Result<Option<Said>, Refusal> {
@@ -110,7 +110,7 @@ pub struct Receiver<const PEERS: usize> {
     checks: [Check; LINES],
     /// Of the one vehicle that is not a peer: the ego for the unit, the unit's own for the modem.
     own: Parts,
-    estimate: Assembly<2>,
+    estimate: Assembly<2, 0>,
     peers: [Peer; PEERS],
 }
 
@@ -123,7 +123,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
             role,
             checks: [Check::new(); LINES],
             own: Parts::NEW,
-            estimate: Assembly::new(true),
+            estimate: Assembly::NEW,
             peers: [const { Peer::NEW }; PEERS],
         }
     }

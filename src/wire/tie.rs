@@ -17,12 +17,12 @@ pub const RECOVERY: u8 = 3;
 /// Bits of a counter.
 const NIBBLE: u32 = 4;
 
-/// The counters of up to 5 parts, 4 bits each.
+/// The counters of up to 5 parts, 4 bits each. From part to part they go up by `STEP`, if nothing else is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Tie {
+pub(super) struct Tie<const STEP: u8> {
     /// As they came; those of parts that did not are left from before.
     counters: u32,
-    /// What those of parts 1 to 4 are ahead of part 0's, in a message.
+    /// What those of parts 1 to 4 are ahead of part 0's in a message, beside that.
     usual: u16,
     /// What they were ahead in the last that was none.
     other: u16,
@@ -30,18 +30,9 @@ pub(super) struct Tie {
     seen: u8,
 }
 
-impl Tie {
-    /// Of that many parts, which have identifiers of their own, or one.
-    #[must_use]
-    pub(super) const fn new(parts: u8, have_own: bool) -> Self {
-        assert!(parts >= 1 && parts <= 5, "the counters are held in 4 bits each");
-        let beyond = match u16::MAX.checked_shl(NIBBLE.wrapping_mul((parts as u32).wrapping_sub(1))) {
-            Some(beyond) => beyond,
-            None => 0,
-        };
-        let usual = if have_own { 0 } else { 0x4321 & !beyond };
-        Self { counters: 0, usual, other: 0, seen: 0 }
-    }
+impl<const STEP: u8> Tie<STEP> {
+    /// Nothing was counted yet: all zero.
+    pub(super) const NONE: Self = Self { counters: 0, usual: 0, other: 0, seen: 0 };
 
     /// Takes note of a part's counter.
     pub(super) fn note(&mut self, part: u8, counter: u8) {
@@ -64,10 +55,11 @@ impl Tie {
         true
     }
 
-    /// What the counters of the parts after the first are ahead of that one's.
+    /// What the counters of the parts after the first are ahead of that one's, beside the steps.
     fn ahead(&self, parts: u8) -> u16 {
         let of = |part: u8| (self.counters.wrapping_shr(u32::from(part).wrapping_mul(NIBBLE)) & 0xF) as u8;
-        let ahead = |part: u8| u16::from(of(part).wrapping_add(COUNTERS).wrapping_sub(of(0)) % COUNTERS);
+        let beside = |part: u8| of(0).wrapping_add(STEP.wrapping_mul(part)) % COUNTERS;
+        let ahead = |part: u8| u16::from(of(part).wrapping_add(COUNTERS).wrapping_sub(beside(part)) % COUNTERS);
         (1..parts).rev().fold(0, |all, part| all.wrapping_shl(NIBBLE) | ahead(part))
     }
 }
@@ -77,7 +69,7 @@ mod tests {
     use super::*;
 
     /// Whether messages with these counters hold, one after the other.
-    fn hold<const PARTS: usize>(tie: &mut Tie, messages: &[[u8; PARTS]]) -> Vec<bool> {
+    fn hold<const PARTS: usize, const STEP: u8>(mut tie: Tie<STEP>, messages: &[[u8; PARTS]]) -> Vec<bool> {
         let one = |counters: &[u8; PARTS]| {
             (0..).zip(counters).for_each(|(part, counter)| tie.note(part, *counter));
             tie.holds(PARTS as u8)
@@ -87,23 +79,22 @@ mod tests {
 
     #[test]
     fn identifiers_of_their_own_count_alike_and_parts_of_one_follow_one_another() {
-        assert_eq!(hold(&mut Tie::new(2, true), &[[3, 3], [14, 14], [0, 0], [0, 1]]), [true, true, true, false]);
+        assert_eq!(hold(Tie::<0>::NONE, &[[3, 3], [14, 14], [0, 0], [0, 1]]), [true, true, true, false]);
         let of_one = [[0, 1, 2], [13, 14, 0], [14, 0, 1], [3, 1, 2]];
-        assert_eq!(hold(&mut Tie::new(3, false), &of_one), [true, true, true, false]);
-        assert_eq!(hold(&mut Tie::new(5, false), &[[12, 13, 14, 0, 1], [0, 1, 2, 3, 3]]), [true, false]);
+        assert_eq!(hold(Tie::<1>::NONE, &of_one), [true, true, true, false]);
+        assert_eq!(hold(Tie::<1>::NONE, &[[12, 13, 14, 0, 1], [0, 1, 2, 3, 3]]), [true, false]);
     }
 
     #[test]
     fn counters_that_differ_by_something_else_are_understood_from_the_third_message_on() {
-        let mut tie = Tie::new(2, true);
-        assert_eq!(hold(&mut tie, &[[0, 4], [1, 5], [14, 3], [0, 4]]), [false, false, true, true]);
-        assert_eq!(hold(&mut tie, &[[1, 1], [2, 2], [3, 3]]), [false, false, true]);
+        let messages = [[0, 4], [1, 5], [14, 3], [0, 4], [1, 1], [2, 2], [3, 3]];
+        assert_eq!(hold(Tie::<0>::NONE, &messages), [false, false, true, true, false, false, true]);
     }
 
     #[test]
     fn what_differs_otherwise_each_time_or_not_in_a_row_is_never_understood() {
-        let mut tie = Tie::new(2, true);
-        assert_eq!(hold(&mut tie, &[[0, 4], [0, 5], [0, 4], [0, 4]]), [false; 4]);
-        assert_eq!(hold(&mut tie, &[[7, 7], [0, 4], [0, 4], [8, 8], [0, 4]]), [true, false, false, true, false]);
+        assert_eq!(hold(Tie::<0>::NONE, &[[0, 4], [0, 5], [0, 4], [0, 4]]), [false; 4]);
+        let messages = [[0, 4], [7, 7], [0, 4], [0, 4], [8, 8], [0, 4]];
+        assert_eq!(hold(Tie::<0>::NONE, &messages), [false, true, false, false, true, false]);
     }
 }
