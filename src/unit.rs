@@ -31,6 +31,7 @@ mod outbox;
 mod range;
 mod room;
 mod sight;
+mod unknown;
 mod view;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
@@ -55,6 +56,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     health: Health,
     outbox: outbox::Outbox,
     ranging: sight::Ranging,
+    unknown: unknown::Unknown,
     /// The ego as the last gate sees it.
     reckoning: Held<Reckoning>,
     /// The slot of whom the driver named and who was heard of, until another one is both.
@@ -85,6 +87,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             outbox: outbox::Outbox::new(),
             ranging: sight::Ranging::new(),
+            unknown: unknown::Unknown::NONE,
             reckoning: Held::Nothing,
             named: None,
             displaced: Held::Nothing,
@@ -115,6 +118,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.outbox = outbox::Outbox::new();
         self.ranging = sight::Ranging::new();
+        self.unknown = unknown::Unknown::NONE;
         self.reckoning.clear();
         self.named = None;
         self.displaced.clear();

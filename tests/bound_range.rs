@@ -6,11 +6,11 @@ mod rig;
 use holdover::controller::{FallbackCause, Mode};
 use holdover::time::Duration;
 use holdover::wire::range_sensor::RangeSample;
-use holdover::wire::{Message, Said};
+use holdover::wire::{Message, Predecessor, Said};
 use rig::plant::Body;
 use rig::random::Random;
 use rig::road::Road;
-use rig::{EGO, TARGET, instant, m_of, metres, mps, mps_of};
+use rig::{EGO, Rig, TARGET, instant, m_of, metres, mps, mps_of};
 
 /// The ego as it was up to 63 ms ago.
 fn at(past: &[(i64, Body, Body)], at: i64) -> (Body, Body) {
@@ -90,4 +90,63 @@ fn run(seed: u64) -> u64 {
 fn the_truth_stays_inside_a_bound_that_a_sensor_narrows() {
     let checked: u64 = (0..400).map(run).sum();
     assert!(checked > 100_000, "{checked}");
+}
+
+/// An ego at 60 m/s that names a standing vehicle 260 m ahead when told to, and hears it within that accuracy.
+fn coming(accuracy: f64, named: impl Fn(usize) -> bool) -> (Rig, i64) {
+    let mut rig = Rig::new(&rig::config());
+    rig.power_up(true, 0);
+    let mut now = 0;
+    for tick in 0..40 {
+        now = tick as i64 * 10_000;
+        if tick % 10 == 0 {
+            let _ = rig.target(now, Said::Intent(rig::intent(3.0, 8.0)));
+            let motion = rig.motion(TARGET, now, 260.0 + rig::LENGTH, 0.0, 0.0, 0.0, Some((accuracy, 0.2)));
+            let _ = rig.target(now, Said::Motion(motion));
+        }
+        let _ = rig.wish(now, true, if named(tick) { Predecessor::Station(TARGET) } else { Predecessor::None });
+        let motion = rig.motion(EGO, now, 60.0 * now as f64 * 1e-6, 60.0, 0.0, 0.0, Some((0.0, 0.0)));
+        let _ = rig.put(now, &Message::Ego(Said::Motion(motion)));
+        rig.tick(now);
+    }
+    (rig, now)
+}
+
+fn view(distance: f64, difference: f64, age_ms: i64) -> Message {
+    Message::Range(RangeSample {
+        distance: metres(distance),
+        speed_difference: mps(difference),
+        distance_accuracy: metres(0.0),
+        speed_accuracy: mps(0.0),
+        age: Duration::from_millis(age_ms),
+    })
+}
+
+#[test]
+fn an_age_that_was_rounded_up_by_almost_a_millisecond_leaves_the_truth_inside() {
+    let (mut rig, now) = coming(0.5, |_| true);
+    let at = now + 5_000;
+    // Taken 50 µs before, by which the ego had come nearer.
+    let taken = (at - 50) as f64 * 1e-6;
+    let _ = rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)); // not trusted yet
+    rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)).unwrap();
+    let bound = rig.unit.bound(2, instant(at)).unwrap();
+    let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
+    let truth = 260.0 + rig::LENGTH;
+    assert!((low..=high).contains(&truth), "{truth} in {low}..{high}");
+    assert!(high - low < 0.3, "it narrows: {low}..{high}");
+}
+
+#[test]
+fn a_view_from_before_somebody_was_named_says_nothing_of_who_was() {
+    // The sensor saw another vehicle 4 m beyond: the one that is named was not on the way then.
+    for (age, is_of_it) in [(20, false), (3, true)] {
+        let (mut rig, now) = coming(6.0, |tick| tick == 39);
+        let at = now + 5_000;
+        let before = rig.unit.bound(2, instant(at)).unwrap();
+        let beyond = view(264.0 - 60.0 * (at - age * 1_000) as f64 * 1e-6, -60.0, age);
+        let _ = rig.put(at, &beyond); // not trusted yet
+        rig.put(at, &beyond).unwrap();
+        assert_eq!(rig.unit.bound(2, instant(at)).unwrap() != before, is_of_it, "{age}");
+    }
 }

@@ -22,8 +22,9 @@ fn who_comes_fast_stops_behind_one_that_stands() {
             stand(&mut junction.drivers[1], 300.0);
             gap = gap.min(300.0 - LENGTH - junction.drivers[0].body.position);
         });
-        assert!(gap > 0.5, "{speed} m/s: {gap}");
-        assert!(gap < 4.0, "{speed} m/s: {gap}");
+        // 2 m, and 8 m beside in a queue; who comes faster than in a town needs some of that.
+        let least = if speed < 15.0 { 9.5 } else { 4.0 };
+        assert!((least..11.0).contains(&gap), "{speed} m/s: {gap}");
     }
 }
 
@@ -71,4 +72,23 @@ fn nobody_enters_a_conflict_area_that_it_could_not_leave_and_who_waits_for_that_
     junction.run(30.0, |_| {});
     assert!(inside < 0.0, "{inside} m inside");
     assert!(junction.drivers[0].body.position > 260.0, "{}", junction.drivers[0].body.position);
+}
+
+#[test]
+fn who_stands_before_a_conflict_area_enters_it_when_everyone_ahead_in_the_order_has_left_it() {
+    for (speed, stands) in [(10.0, 0.3), (14.0, 0.3), (17.0, 0.3), (20.0, 0.3)] {
+        let line = CROSSING - HALF - stands;
+        let other = Driver::new(1, 1, 60.0, speed, false);
+        let mut junction = Junction::new(vec![Driver::new(2, 0, 120.0, 8.0, false), other]);
+        let mut overlap = false;
+        junction.run(40.0, |junction| {
+            let [ego, other] = &mut junction.drivers[..] else { panic!("two") };
+            if other.body.position < CROSSING - 40.0 {
+                stand(ego, line);
+            }
+            overlap |= ego.body.position > CROSSING - HALF && other.body.position - LENGTH < CROSSING + HALF;
+        });
+        assert!(!overlap, "{speed} m/s, {stands} m before it");
+        assert!(junction.drivers.iter().all(|driver| driver.body.position > 250.0));
+    }
 }

@@ -15,6 +15,7 @@ use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::route::Route;
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::unserved::Unserved;
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 fn m(mm: i32) -> Distance {
@@ -138,6 +139,7 @@ fn every_message_has_these_bytes() {
         Message::EgoIntent(ego_intent),
         Message::Ego(geo()),
         Message::Range(range),
+        Message::Unserved(Unserved { intersection: 201, legs: 0b1000_0110, ahead: Some(m(-31_416)), stations: 17 }),
         Message::Estimate(estimate),
         Message::Own(motion()),
         Message::Own(horizon()),
@@ -178,6 +180,7 @@ const GOLDEN: &[&str] = &[
     "487#A6B0A512434B0C35",
     "487#5071190986DB1B15",
     "488#C300BAC5637F9908",
+    "489#5A0020422AFC86C9",
     "48A#1050EC329D0ECC00",
     "48B#F4509AF001568003",
     "490#64605E4AFBE6C0A7",

@@ -17,7 +17,7 @@ use holdover::{Config, ConfigError};
 use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
 use crate::corridor::road::Ground;
-use crate::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, V2xMessage};
+use crate::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, UNSERVED_EVERY_S, V2xMessage};
 use crate::plant::Plant;
 use crate::sensors::{Ahead, RANGE_EVERY_S, Sensors};
 use actuators::Actuators;
@@ -233,6 +233,11 @@ impl Vehicle {
             && let Some(seen) = self.sensors.look(self.plant.position_m, self.plant.speed_mps, ahead)
         {
             self.put(at_s, &Message::Range(seen))?;
+        }
+        if is_due(at_s, UNSERVED_EVERY_S, period_s)
+            && let Some(unserved) = self.relay.unserved(at_s)
+        {
+            self.put(at_s, &Message::Unserved(unserved))?;
         }
         if is_due(at_s, WISH_EVERY_S, period_s) {
             self.wish(at_s)?;

@@ -191,6 +191,11 @@ fn expected_of(message: &Message) -> Expected {
             .value("DistanceAccuracy", si!(r.distance_accuracy))
             .value("SpeedAccuracy", si!(r.speed_accuracy))
             .value("Age", r.age.as_micros() as f64 / 1e6),
+        Message::Unserved(u) => e
+            .value("Intersection", u.intersection)
+            .value("Legs", u.legs)
+            .either("Ahead", u.ahead.map(|way| si!(way)), "nobody")
+            .value("Stations", u.stations),
         Message::Command(c) => {
             let e = e
                 .value("Acceleration", si!(c.acceleration))
@@ -241,6 +246,7 @@ fn names_of(message: &Message) -> Vec<String> {
         Message::FollowUp(_) => vec!["TimeFollowUp".into()],
         Message::EgoIntent(_) => vec!["EgoIntent".into()],
         Message::Range(_) => vec!["RangeSensor".into()],
+        Message::Unserved(_) => vec!["PeersUnserved".into()],
         Message::Command(_) => vec!["MotionCommand".into()],
         Message::Estimate(_) => two("TargetEstimate"),
         Message::Status(_) => vec!["Health".into()],

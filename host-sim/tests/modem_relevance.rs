@@ -6,11 +6,16 @@ use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
-use holdover_sim::modem::{Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
+use holdover_sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
-const WAY: [(u8, u8, f64); 3] = [(4, OWN_LEG, 180.0), (5, OWN_LEG, 380.0), (6, OWN_LEG, 580.0)];
+const WAY: [Ahead; 3] = [ahead(4, 180.0), ahead(5, 380.0), ahead(6, 580.0)];
 const OWN_LEG: u8 = 1;
+
+/// Every other leg crosses the own one.
+const fn ahead(id: u8, at_m: f64) -> Ahead {
+    Ahead { id, leg: OWN_LEG, crossed: !(1 << OWN_LEG), at_m }
+}
 
 fn route(intersection: u8, leg: u8, metres: i32) -> Route {
     let distance = Distance::from_mm(metres * 1000);
@@ -178,10 +183,10 @@ fn who_is_leaving_the_intersection_keeps_its_slot() {
     for station in 1..PEERS as u8 {
         assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 20 - 4 * i32::from(station))))));
     }
-    // Much nearer to the unit, which is 100 m before it. Of those who have not yet crossed, the farthest makes room.
+    // Much nearer to the unit, which is 100 m before it. Of those who have not yet entered, the last one makes room.
     assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 90)))));
     let still_heard = |station: &u8| bus.hear(0.2, &message(*station, Some(route(4, 0, 18 - 4 * i32::from(*station)))));
-    let expected = (1..PEERS as u8).filter(|station| *station != 5);
+    let expected = (1..PEERS as u8).filter(|station| *station != 1);
     assert_eq!((1..PEERS as u8).filter(still_heard).collect::<Vec<_>>(), expected.collect::<Vec<_>>());
 }
 
@@ -218,9 +223,10 @@ fn a_modem_listens_before_it_gives_a_slot_away_and_whoever_is_just_ahead_has_one
     assert_eq!([0.0, 0.2, 0.4].map(|at_s| round(at_s).len()), [0; 3]);
     let heard = round(0.6);
     assert!(heard.contains(&200) && heard.len() == PEERS - 1, "{heard:?}");
-    // The first on every other leg, and of the others the nearest to the own 180 m.
+    // Those in the conflict area (1, 2), the next one of every other leg (3, 4, 5) and, as it is there soon, the one behind it (6, 7, 8);
+    // and of the others the nearest to the own 180 m.
     let far: Vec<u8> = heard.iter().copied().filter(|station| *station < 2 * PEERS as u8).collect();
-    assert_eq!(far, [1, 2, 3], "{heard:?}");
+    assert_eq!(far, [1, 2, 3, 4, 5, 6, 7, 8], "{heard:?}");
 }
 
 #[test]
@@ -230,8 +236,8 @@ fn the_first_on_every_other_leg_of_the_next_intersection_has_a_slot() {
     for station in 1..PEERS as u8 {
         assert!(bus.hear(0.0, &message(station, Some(route(4, 0, 99 - i32::from(station))))));
     }
-    assert!(bus.hear(0.1, &message(50, Some(route(4, 2, 5)))));
-    assert!(!bus.hear(SLOT_REUSE_S + 0.2, &message(51, Some(route(4, 2, 10)))), "it comes after that one");
+    assert!(bus.hear(0.1, &message(50, Some(route(4, 2, 20)))));
+    assert!(!bus.hear(SLOT_REUSE_S + 0.2, &message(51, Some(route(4, 2, 30)))), "it comes after that one");
     assert!(bus.hear(SLOT_REUSE_S + 0.2, &message(52, Some(route(4, 3, 6)))));
     // When the first has left, the next one is the first.
     assert!(bus.hear(2.0 * SLOT_REUSE_S + 0.3, &message(50, Some(route(4, 2, -17)))));

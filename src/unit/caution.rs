@@ -130,10 +130,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let heard = match self.coordination.itinerary() {
             None => self.named_ahead(now).map(spare),
-            Some(_) => {
-                let crossing = self.stop_at_crossing(now, rearmost).map(Obstacle::standing).map(spare);
-                [self.spare_on_lane(now, &spare), crossing].into_iter().flatten().min()
-            }
+            Some(_) => self.spare_on_way(now, rearmost, &spare),
         };
         let seen = self.obstacles_seen(now, rearmost).map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
@@ -142,10 +139,36 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         (envelope::encodable(limits, command), command != demand)
     }
 
+    /// On an itinerary: what is to spare behind whoever is ahead for certain, as far as the ego may be back.
+    pub(super) fn spare_on_way(
+        &self,
+        now: Instant,
+        rearmost: Position,
+        spare: &impl Fn(Obstacle) -> Spare,
+    ) -> Option<Spare> {
+        let stop =
+            [self.stop_at_crossing(now, rearmost), self.stop_for_unknown(now, rearmost)].into_iter().flatten().min();
+        let stop = stop.map(Obstacle::standing).map(spare);
+        [self.spare_on_lane(now, spare), stop].into_iter().flatten().min()
+    }
+
     /// On an itinerary: before the conflict area for every one whose way crosses the ego's and who is ahead in the order, or is
-    /// in the area for certain: who gave way when it could not stop any more is there all the same.
+    /// in the area for certain: who gave way when it could not stop any more is there all the same. And before one at which it has
+    /// not arrived, as it does not know the time: nobody minds it there.
     fn stop_at_crossing(&self, now: Instant, rearmost: Position) -> Option<Position> {
-        (0..PEERS).filter_map(|index| self.stop_before_area(now, index, rearmost)).min()
+        let others = (0..PEERS).filter_map(|index| self.stop_before_area(now, index, rearmost));
+        others.chain(self.stop_without_time(now, rearmost)).min()
+    }
+
+    fn stop_without_time(&self, now: Instant, rearmost: Position) -> Option<Position> {
+        let next = self.coordination.next_of(self.coordination.next(), rearmost, self.config.length);
+        let has_arrived = next == self.coordination.next() && self.coordination.registration().is_some();
+        if has_arrived || self.is_synchronised(now) {
+            return None;
+        }
+        let crossing = self.coordination.itinerary()?.crossings.get(next)?;
+        let point = self.coordination.crossing_point(crossing)?;
+        Some(point.ahead(crossing.intersection.half.negated())).filter(|begins| rearmost <= *begins)
     }
 
     fn stop_before_area(&self, now: Instant, index: usize, rearmost: Position) -> Option<Position> {

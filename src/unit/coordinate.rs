@@ -153,16 +153,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Reviews who is ahead, when that is due.
     pub(super) fn coordinate(&mut self, now: Instant) {
-        if !self.coordination.is_due(now) || !self.is_synchronised(now) {
+        if !self.coordination.is_due(now) {
             return;
         }
-        let (Some(sample), Some(state), Some(gnss)) = (self.ego.as_ref(), self.ego_at(now), self.clock.gnss(now))
-        else {
-            return;
-        };
+        let (Some(sample), Some(state)) = (self.ego.as_ref(), self.ego_at(now)) else { return };
         let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));
-        let arrival = Arrival::of_micros(gnss.as_micros());
-        self.coordination.advance(front, self.config.length, now, arrival);
+        // Without the time the ego cannot tell when it arrives: it minds the others all the same, and arrives nowhere.
+        let gnss = self.clock.gnss(now).filter(|_| self.is_synchronised(now));
+        let arrival = gnss.map(|gnss| Arrival::of_micros(gnss.as_micros()));
+        if let Some(arrival) = arrival {
+            self.coordination.advance(front, self.config.length, now, arrival);
+        }
 
         let is_committed = self.is_committed(front, state.speed);
         let mut present: Vec<Present, PEERS> = Vec::new();
@@ -194,11 +195,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_inside = self.area_begins().is_some_and(|begins| front > begins);
         // Who stops at the line is a hair from where it could not.
         let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
-        let is_held = can_wait && !self.has_room(nearest, now);
-        if is_held && self.waits_for_room(nearest, now, state.speed) {
+        let has_room = self.has_room(nearest, now);
+        let gives_way = can_wait && !has_room && self.waits_for_room(nearest, now, state.speed);
+        if let Some(arrival) = arrival.filter(|_| gives_way) {
             self.coordination.give_way(arrival);
         }
-        self.coordination.hold(is_held);
+        self.coordination.hold(can_wait && (!has_room || self.is_crossed_by_unknown(now)));
         if self.coordination.review(now, self.config.station, &present) {
             self.health.count(Refusal::Overlooked);
         }
@@ -220,8 +222,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.note_lane(now, front);
     }
 
-    /// Whether the ego, with its front bumper there, follows a peer; the gate minds it all the same. Who was far ahead when it was heard last has got out of
-    /// reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
+    /// Whether the ego, with its front bumper there, follows a peer; the gate minds it all the same. Who was far ahead when it was
+    /// heard last has got out of reach, and nobody is ahead then as far as it matters; also where it is estimated to have stopped since, behind somebody
     /// whom nobody hears any more.
     pub(super) fn is_heeded(&self, index: usize, at: Instant, front: Position, speed: Speed) -> bool {
         self.is_in_reach(index, at)
@@ -322,8 +324,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The standstill distance behind a peer with that crossing next.
     pub(super) fn standstill_at(&self, next: usize, index: usize) -> Distance {
         let law = self.config.law.standstill;
-        let crossing = self.coordination.itinerary().and_then(|itinerary| itinerary.crossings.get(next));
-        match (crossing, self.coordination.standing(index)) {
+        let Some(itinerary) = self.coordination.itinerary() else { return law };
+        let law = law.plus(QUEUE);
+        match (itinerary.crossings.get(next), self.coordination.standing(index)) {
             (Some(crossing), Some(standing)) if standing.crossing == next => {
                 standstill_behind(law, crossing, standing.leg)
             }
@@ -363,6 +366,11 @@ const OUT_OF_REACH: Distance = Distance::from_mm(250_000);
 
 /// What lets the ego go on following who gets away from it, so that it does not take turns.
 const APART: Distance = Distance::from_mm(3_000);
+
+/// What a vehicle on a way through intersections keeps beside the law's standstill distance. Where a queue has formed, vehicles brake
+/// for what they alone know, as who is ahead has no slot or is silent; those behind who do not hear them do not foresee that, and
+/// have to find room for what their estimates are off by.
+const QUEUE: Distance = Distance::from_mm(8_000);
 
 /// A peer that told its route less than this ago is not placed by the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);

@@ -15,9 +15,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Message::Sync(sync) => self.clock.sync(at, *sync),
             Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
             Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
-            Message::EgoIntent(wish) => self.wish.set(*wish),
+            Message::EgoIntent(wish) => {
+                if self.wish.as_ref().map(|held| held.predecessor) != Some(wish.predecessor) {
+                    self.ranging.note_named(at);
+                }
+                self.wish.set(*wish);
+            }
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
             Message::Range(seen) => self.take_range(at, *seen)?,
+            Message::Unserved(unserved) => self.unknown.take(at, *unserved),
             Message::Ego(Said::Geo(geo)) => self.take_ego_place(at, geo)?,
             Message::Ego(_) => {}
             Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}

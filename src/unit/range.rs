@@ -2,7 +2,8 @@
 //! estimate is corrected by it, and whether the two agree leaves.
 //!
 //! As the view shows the nearest vehicle on the ego's path, nobody whose place is on that path is nearer: the near ends of
-//! those are raised to it. While view and messages contradict one another neither touches the other, and the unit drives by
+//! those are raised to it. A view from before the driver named the target is not of it. While view and messages contradict one
+//! another neither touches the other, and the unit drives by
 //! what it sees.
 //!
 //! The sensor's and the estimate's positions are weighed by the squares of their uncertainties: the sensor's accuracy
@@ -47,7 +48,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
         }
-        if let Some(index) = visible {
+        if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at)) {
             sight.station = self.compare(received, index, &sight);
         }
         self.ranging.see(sight);
@@ -66,21 +67,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// What is uncertain of a sight: the sensor's accuracies, the ego's own, and what the ego may have done between its
     /// own sample and the sight.
     fn doubt_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Doubt {
-        let apart = Duration::from_micros(since.as_micros().saturating_abs());
+        // Its age is rounded up to a whole millisecond, in which the ego moved on.
+        let unsaid = Duration::from_millis(1).min(seen.age);
+        let apart = Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid);
         let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
         let faster = swing.over(apart.fine_seconds());
         let own = ego.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
         let own_speed = ego.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY);
         let clock_error = self.config.link.clock_error;
-        let late = ego.speed.plus(own_speed).over(clock_error.seconds());
+        let late = ego.speed.plus(own_speed).over(clock_error.plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
         Doubt {
             position: seen.distance_accuracy.plus(own).plus(moved).plus(late).plus(roundings),
             speed: seen.speed_accuracy.plus(own_speed).plus(faster).plus(SPEED_ROUNDING).plus(SPEED_ROUNDING),
             earlier: clock_error,
-            // Its age is rounded up to a whole millisecond.
-            later: Duration::from_millis(1).min(seen.age),
+            later: unsaid,
         }
     }
 

@@ -58,7 +58,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Some((reading, rear)) = self.rear(index, now) else { return true };
         let later = self.rear(index, now.plus(LEAVES)).filter(|_| reading.speed > WAITING);
         let rear = later.map_or(rear, |(_, rear)| rear);
-        rear >= end.ahead(self.config.length).ahead(self.config.law.standstill)
+        rear >= end.ahead(self.config.length).ahead(self.standstill_at(self.coordination.next(), index))
     }
 
     /// Whether the ego, at this speed, stands before the next conflict area for want of room, and is the first to do so on its leg.
@@ -77,7 +77,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let choice = self.coordination.choice();
         let behind = choice.lane.and_then(|index| self.stops_at(index.into(), now));
         let line = self.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
-        let Some(stop) = [behind, line].into_iter().flatten().min() else { return Acceleration::MAX };
         let limits = &self.config.limits;
         let normal = Envelope {
             acceleration: limits.acceleration,
@@ -95,8 +94,29 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             last: self.controller.last_demand(),
             lag: self.config.lag,
         };
-        let spare = envelope::spare(&normal, &ego, &Obstacle::standing(stop));
+        let spare = |obstacle| envelope::spare(&normal, &ego, &obstacle);
+        let passes = self.passes_first(now, ego.position, ego.speed);
+        let unknown = self.unknown_ahead(now).map(|rear| rear.ahead(LINE.negated()));
+        let stop = [behind, line, passes, unknown].into_iter().flatten().min().map(Obstacle::standing).map(spare);
+        let Some(spare) = stop else { return Acceleration::MAX };
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
+    }
+
+    /// Where the ego, with its front bumper there, at this speed, waits until whoever is ahead in the order is estimated to have passed: before
+    /// the next conflict area, if it is slow. The law lets it start early, and it would be in there at once.
+    fn passes_first(&self, now: Instant, front: Position, speed: Speed) -> Option<Position> {
+        let (crossing, line) = (self.coordination.crossing()?, self.area_begins()?);
+        let end = self.coordination.end_of(self.coordination.next())?;
+        if speed > SLOW || front > line {
+            return None;
+        }
+        let is_due = |index: &usize| {
+            let standing = self.coordination.standing(*index);
+            self.coordination.choice().ahead.contains(*index)
+                && standing.is_some_and(|standing| crossing.intersection.conflict(crossing.leg, standing.leg))
+                && self.rear(*index, now).is_some_and(|(_, rear)| rear < end)
+        };
+        (0..PEERS).any(|index| is_due(&index)).then(|| line.ahead(LINE.negated()))
     }
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. That one which

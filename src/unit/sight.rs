@@ -77,11 +77,29 @@ pub(super) struct Ranging {
     /// Views in a row that contradict.
     contradictions: u8,
     contradiction: Held<Contradiction>,
+    /// Since when the driver has named whom it names.
+    named: Instant,
 }
 
 impl Ranging {
     pub(super) const fn new() -> Self {
-        Self { newest: Held::Nothing, standing: Held::Nothing, contradictions: 0, contradiction: Held::Nothing }
+        Self {
+            newest: Held::Nothing,
+            standing: Held::Nothing,
+            contradictions: 0,
+            contradiction: Held::Nothing,
+            named: Instant::ZERO,
+        }
+    }
+
+    /// Takes note that the driver names another one from now on: what was seen before is not of that one.
+    pub(super) fn note_named(&mut self, at: Instant) {
+        (self.named, self.contradictions) = (at, 0);
+    }
+
+    /// Whether a view may be of whom the driver names: who was not on the way yet was not hidden by what was seen.
+    pub(super) fn is_of_named(&self, seen: Instant) -> bool {
+        seen >= self.named
     }
 
     /// Takes a view in.

@@ -8,7 +8,9 @@
 use super::e2e::Limits;
 use super::field::{Field, Place};
 use super::index;
-use super::{Slot, command, ego_intent, estimate, geo, horizon, intent, motion, range_sensor, route, status, sync};
+use super::{
+    Slot, command, ego_intent, estimate, geo, horizon, intent, motion, range_sensor, route, status, sync, unserved,
+};
 
 /// Identifiers that the catalogue takes up, from the base on.
 pub const BLOCK: u16 = 0xC0;
@@ -127,6 +129,8 @@ pub enum Content {
     EgoIntent,
     /// [`range_sensor::RangeSample`].
     Range,
+    /// [`unserved::Unserved`].
+    Unserved,
     /// First frame of [`estimate::TargetEstimate`].
     EstimateA,
     /// Its second frame.
@@ -221,6 +225,7 @@ const fn timing(content: Content) -> (u16, u16, u8) {
         Content::Command | Content::EstimateA | Content::EstimateB => (10, 50, 1),
         Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => (10, 50, 1),
         Content::Range => (20, 60, 1),
+        Content::Unserved => (200, 600, 1),
         Content::EgoIntent | Content::Status => (100, 300, 1),
         Content::Said(_, About::MotionA | About::MotionB) => (100, 300, 1),
         Content::Said(_, About::Horizon) => (100, 300, horizon::KNOTS as u8),
@@ -239,6 +244,7 @@ const fn within(content: Content) -> u16 {
         | Content::Command
         | Content::EgoIntent
         | Content::Range
+        | Content::Unserved
         | Content::Status => 0,
         Content::EstimateA | Content::EstimateB => 20,
         Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => 20,
@@ -255,6 +261,10 @@ const fn comment(content: Content) -> &'static str {
         Content::Command => "Effort selects Force (driving) or BrakeTorque (braking). Not to be used in Mode standby.",
         Content::EgoIntent => "What the driver or the planner wants.",
         Content::Range => "Not sent while nothing is measured ahead, or worse than the accuracies can say.",
+        Content::Unserved => {
+            "Sent on a route only. Legs by which the next vehicle into the conflict area, or one that is in it, has no slot; Ahead is the way of \
+             the rear bumper of the nearest one ahead that has none to the crossing point; Stations counts all without one that could be met."
+        }
         Content::EstimateA | Content::EstimateB => {
             "TargetEstimateA and B make one message: use both only if their Tag is the same and they come within 20 ms. The bound has all four ends \
              or none; ends are distances from the estimate, rounded up."
@@ -290,7 +300,7 @@ use Node::{Modem, Unit, Vehicle};
 use Speaker::{Ego, Own, Peer};
 
 /// Lines of the catalogue.
-pub const LINES: usize = 23;
+pub const LINES: usize = 24;
 
 /// The catalogue, by offset.
 pub static CATALOGUE: [Line; LINES] = [
@@ -302,6 +312,7 @@ pub static CATALOGUE: [Line; LINES] = [
     line("EgoIntent", 0x06, Content::EgoIntent, Vehicle, ego_intent::FIELDS),
     line("EgoPosition", 0x07, Content::Said(Ego, Geo), Vehicle, geo::FIELDS),
     line("RangeSensor", 0x08, Content::Range, Vehicle, range_sensor::FIELDS),
+    line("PeersUnserved", 0x09, Content::Unserved, Modem, unserved::FIELDS),
     line("TargetEstimateA", 0x0A, Content::EstimateA, Unit, estimate::FIELDS_A),
     line("TargetEstimateB", 0x0B, Content::EstimateB, Unit, estimate::FIELDS_B),
     line("OwnMotionA", 0x10, Content::Said(Own, MotionA), Unit, motion::FIELDS_A),

@@ -58,7 +58,7 @@ impl Status {
 }
 
 /// Number of counter values; 15 is not one.
-const COUNTERS: u8 = 15;
+pub(super) const COUNTERS: u8 = 15;
 /// Where the machine's own counters stop.
 const CEILING: u8 = 14;
 
@@ -70,6 +70,13 @@ pub fn protect(data: [u8; 8], data_id: u16, counter: u8) -> [u8; 8] {
     let [b2, b3, b4, b5, b6, b7] = rest;
     let crc = crc(data_id, [counted, b2, b3, b4, b5, b6, b7]);
     [crc, counted, b2, b3, b4, b5, b6, b7]
+}
+
+/// The counter of a frame.
+#[must_use]
+pub(super) const fn counter_of(data: &[u8; 8]) -> u8 {
+    let [_, first, ..] = *data;
+    first & 0x0F
 }
 
 /// The counter that follows.
@@ -131,7 +138,7 @@ impl Check {
     pub fn receive(&mut self, limits: &Limits, data_id: u16, data: &[u8; 8]) -> Result<(), Refusal> {
         let [received, first, rest @ ..] = *data;
         let [b2, b3, b4, b5, b6, b7] = rest;
-        let counter = first & 0x0F;
+        let counter = counter_of(data);
         let intact = received == crc(data_id, [first, b2, b3, b4, b5, b6, b7]);
         if intact && counter > CEILING {
             return Err(Refusal::CounterRange);

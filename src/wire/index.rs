@@ -150,7 +150,7 @@ static BY_OFFSET: [u8; OFFSETS] = {
 };
 
 /// What is not said of a vehicle.
-const OTHERS: usize = 8;
+const OTHERS: usize = 9;
 const CONTENTS: usize = OTHERS + 3 * ABOUTS;
 
 /// Places in the catalogue, by [`number`].
@@ -176,6 +176,7 @@ const fn number(content: Content) -> usize {
         Content::EstimateA => 5,
         Content::EstimateB => 6,
         Content::Status => 7,
+        Content::Unserved => 8,
         Content::Said(Speaker::Ego, about) => OTHERS + about as usize,
         Content::Said(Speaker::Own, about) => OTHERS + ABOUTS + about as usize,
         Content::Said(Speaker::Peer, about) => OTHERS + 2 * ABOUTS + about as usize,

@@ -29,6 +29,8 @@ pub mod route;
 pub mod sender;
 pub mod status;
 pub mod sync;
+mod tie;
+pub mod unserved;
 
 pub use catalogue::BaseId;
 pub use frame::Frame;
@@ -91,6 +93,8 @@ pub enum Message {
     EgoIntent(ego_intent::EgoIntent),
     /// An on-board sensor's view of the vehicle ahead.
     Range(range_sensor::RangeSample),
+    /// Whom the modem hears and has no slot for.
+    Unserved(unserved::Unserved),
     /// Heard by the modem.
     Peer(Slot, Said),
     /// For the modem to broadcast.

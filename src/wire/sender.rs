@@ -59,6 +59,7 @@ impl<const PEERS: usize> Sender<PEERS> {
             Message::FollowUp(follow_up) => self.emit(Content::FollowUp, none, &follow_up.encode(), emit),
             Message::EgoIntent(intent) => self.emit(Content::EgoIntent, none, &intent.encode(), emit),
             Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
+            Message::Unserved(unserved) => self.emit(Content::Unserved, none, &unserved.encode(), emit),
             Message::Command(command) => self.emit(Content::Command, none, &command.encode(), emit),
             Message::Status(status) => self.emit(Content::Status, none, &status.encode(), emit),
             Message::Estimate(estimate) => {

@@ -16,6 +16,7 @@ use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::route::Route;
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::unserved::Unserved;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use proptest::option;
 use proptest::prelude::*;
@@ -174,6 +175,15 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    /// Every one that can be said.
+    pub fn unserved()(
+        intersection: u8, legs: u8, ahead in proptest::option::of(steps(-1_048_574..=1_048_574, 1000)), stations in 0u8..64,
+    ) -> Unserved {
+        Unserved { intersection, legs, ahead, stations }
+    }
+}
+
 /// What a vehicle says of itself.
 pub fn said() -> impl Strategy<Value = Said> {
     prop_oneof![
@@ -194,6 +204,7 @@ pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
         1 => geo().prop_map(|position| Message::Ego(Said::Geo(position))),
         1 => ego_intent().prop_map(Message::EgoIntent),
         1 => range_sample().prop_map(Message::Range),
+        1 => unserved().prop_map(Message::Unserved),
         5 => (0..slots, said()).prop_map(|(slot, said)| Message::Peer(Slot(slot), said)),
     ]
 }

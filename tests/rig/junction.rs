@@ -85,6 +85,8 @@ pub struct Driver {
     pub speaks: bool,
     pub hears: bool,
     pub says_route: bool,
+    /// Whether it is told the time.
+    pub is_timed: bool,
     pub last: Option<Heard>,
 }
 
@@ -108,6 +110,7 @@ impl Driver {
             speaks: true,
             hears: true,
             says_route: true,
+            is_timed: true,
             last: None,
         }
     }
@@ -182,7 +185,7 @@ impl Junction {
                 };
                 let _ = driver.rig.put(now, &Message::EgoIntent(wish));
             }
-            if now % 500_000 == 0 {
+            if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);
             }
             let heard = driver.rig.tick(now);

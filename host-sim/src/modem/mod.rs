@@ -20,8 +20,10 @@ use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 mod relevance;
+mod unserved;
 
-pub use relevance::{Ahead, Course, Foremost, LEADERS, Rank};
+pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
+pub use unserved::UNSERVED_EVERY_S;
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
 pub const PEERS: usize = 16;
@@ -44,6 +46,9 @@ const PAUSE_S: f64 = 0.45;
 
 /// Where a station said it was is forgotten after so long, if it has no slot.
 const FORGOTTEN_S: f64 = 10.0;
+
+/// A station that does not say how long it is may be so long, in metres.
+const LONGEST_M: f64 = 20.0;
 
 /// Who has said where it is within so long is on the air.
 const HEARD_S: f64 = 1.0;
@@ -121,6 +126,7 @@ struct Placed {
     station: StationHash,
     route: Route,
     speed_mps: f64,
+    length_m: f64,
     at_s: f64,
 }
 
@@ -239,7 +245,8 @@ impl Relay {
         let is_known = |placed: &Placed| at_s - placed.at_s < FORGOTTEN_S || is_tenant(placed.station);
         self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
-        self.places.push(Placed { station, route, speed_mps, at_s });
+        let length_m = message.intent.map_or(LONGEST_M, |intent| intent.length.get().to_num());
+        self.places.push(Placed { station, route, speed_mps, length_m, at_s });
     }
 
     fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64) -> Option<usize> {
@@ -327,18 +334,25 @@ impl Relay {
     }
 
     fn foremost(&self, placed: &Placed) -> Foremost {
-        match (self.leads(placed), self.is_first_across(placed)) {
-            (true, _) => Foremost::Ahead,
-            (false, true) => Foremost::Across,
-            (false, false) => Foremost::No,
+        match self.course.across(&placed.route) {
+            _ if self.leads(placed) => Foremost::Ahead,
+            Some(across) if across.has_entered() => Foremost::Inside,
+            Some(across) if self.enters_next(across) => Foremost::Across,
+            _ => Foremost::No,
         }
     }
 
-    /// Whether a station is the first on its leg of the unit's next intersection, by what each said last.
-    fn is_first_across(&self, placed: &Placed) -> bool {
-        let Some((leg, way_m)) = self.course.across(&placed.route) else { return false };
+    /// Whether a station is the next one of its leg into the unit's next conflict area, by what each said last; or the second, where the first
+    /// is there soon.
+    fn enters_next(&self, one: Across) -> bool {
+        let mut nearer = self.nearer_across(one);
+        nearer.next().is_none_or(|first| first.enters_soon() && nearer.next().is_none())
+    }
+
+    /// Those who come into it before that one by the same leg.
+    fn nearer_across(&self, one: Across) -> impl Iterator<Item = Across> {
         let others = self.places.iter().filter_map(|other| self.course.across(&other.route));
-        !others.into_iter().any(|(other, other_m)| other == leg && other_m < way_m)
+        others.filter(move |other| other.leg == one.leg && !other.has_entered() && other.way_m < one.way_m)
     }
 
     /// Whether a station is one of the nearest ahead on the unit's own leg, by what each said last: who is silent has not

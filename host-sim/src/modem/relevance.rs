@@ -2,13 +2,17 @@
 //!
 //! First comes whom the unit says it follows. On a route, next are the two nearest ahead on the unit's own leg by what they
 //! said last, wherever they are: it must not run into them, and if one of them is silent the other need not be the nearest. Then
-//! the first one on every other leg of the next intersection: nobody passes there, so those behind it come after it. Then
-//! come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
+//! those in the conflict area that the unit comes to next, or just about to enter or to leave it; and of each leg that crosses the
+//! unit's the next one into it, or also the one after it, where the first is there soon: nobody passes on a leg, so those behind come after
+//! it. Of both only who arrived no later than the unit: everyone else lets it pass.
+//!
+//! Then come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
 //! next one, there those ahead before those behind, of those ahead first who are leaving it, because the unit may be waiting for
 //! that, and otherwise the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
 //! them; then everyone else. For a unit on a route, a station that names no intersection of the way that is left, or that
 //! has long crossed and does not lead, does not matter at all: the unit could not tell where on its lane it is.
 
+use holdover::coordination::Arrival;
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
 
@@ -23,7 +27,9 @@ pub enum Rank {
     Followed,
     /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
     Leads,
-    /// It is the next one into the conflict area that the unit comes to next, of all on its leg.
+    /// It is in the conflict area that the unit comes to next, or just about to enter or to leave it.
+    Inside,
+    /// It is the next one into that area, of all on its leg, or the second where the first is there soon.
     Enters,
     /// It comes to an intersection that the unit comes to.
     Meets {
@@ -47,15 +53,58 @@ pub enum Rank {
 /// So far beyond the crossing point, in metres, the rear of most vehicles has left the conflict area.
 const LEFT_M: f64 = 16.0;
 
+/// Who is so near the crossing point, in metres, is in the conflict area or cannot keep out of it: the next one on its leg may be
+/// right behind it.
+const ENTERED_M: f64 = 5.0;
+
+/// Who is nearer to it than this is in there within a second or two.
+const SOON_M: f64 = 15.0;
+
+/// Who is farther from it than this, in metres, cannot be there before the unit has passed: it takes 5 s from a stand, and nobody is faster
+/// than 16 m/s in a town.
+const NEAR_M: f64 = 80.0;
+
 /// Whether a station is the first of all that the unit could meet next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Foremost {
     /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
     Ahead,
-    /// It is the first on another leg of the next intersection: nobody behind it there comes into the area before it.
+    /// It is the next one of another leg into the next conflict area: nobody behind it there comes into the area before it.
     Across,
-    /// Neither.
+    /// It is in that area.
+    Inside,
+    /// None of these.
     No,
+}
+
+/// A station that comes by a leg that crosses the unit's to the intersection which the unit comes to next, arrived there before it, and has
+/// not left it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    /// Its leg.
+    pub leg: u8,
+    /// Its way to the crossing point when it said that, in metres.
+    pub way_m: f64,
+}
+
+impl Across {
+    /// Whether it has entered the conflict area.
+    #[must_use]
+    pub fn has_entered(self) -> bool {
+        self.way_m <= ENTERED_M
+    }
+
+    /// Whether it is going to enter so soon that the one behind it matters as much.
+    #[must_use]
+    pub fn enters_soon(self) -> bool {
+        self.way_m <= SOON_M
+    }
+
+    /// Whether it is so near that it may be there before the unit has passed.
+    #[must_use]
+    pub fn is_near(self) -> bool {
+        self.way_m <= NEAR_M
+    }
 }
 
 /// So many of those ahead on the unit's own leg matter before all but the one followed.
@@ -78,8 +127,18 @@ impl Rank {
     }
 }
 
-/// An intersection ahead: its number in messages, the unit's leg there, and the way to it from where the unit sets out, in metres.
-pub type Ahead = (u8, u8, f64);
+/// An intersection ahead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Its number in messages.
+    pub id: u8,
+    /// The unit's leg there.
+    pub leg: u8,
+    /// The legs whose ways cross the unit's: bit `n` is leg `n`.
+    pub crossed: u8,
+    /// The way to it from where the unit sets out, in metres.
+    pub at_m: f64,
+}
 
 /// What the unit says of itself.
 #[derive(Clone, Debug, Default)]
@@ -148,6 +207,7 @@ impl Course {
         match foremost {
             Foremost::Ahead => return Rank::Leads,
             Foremost::Across => return Rank::Enters,
+            Foremost::Inside => return Rank::Inside,
             Foremost::No => {}
         }
         let chain = steps.map_or(Rank::Other, Rank::OnChain);
@@ -158,13 +218,37 @@ impl Course {
         meets.unwrap_or(if chain == Rank::Other { Rank::Irrelevant } else { chain })
     }
 
-    /// The leg, and the way to the crossing point when it said that, of a station that comes by another leg to the intersection which
-    /// the unit comes to next, and has not left it.
+    /// A station that comes by a leg that crosses the unit's to the intersection which the unit comes to next, arrived there before it,
+    /// and has not left it.
     #[must_use]
-    pub fn across(&self, other: &Route) -> Option<(u8, f64)> {
-        let (id, leg, _) = self.crossings.get(self.here()?)?;
-        let way_m = other.distance.get().to_num::<f64>();
-        (other.intersection == *id && other.leg != *leg && way_m > -LEFT_M).then_some((other.leg, way_m))
+    pub fn across(&self, other: &Route) -> Option<Across> {
+        let next = self.next()?;
+        let across = Across { leg: other.leg, way_m: other.distance.get().to_num() };
+        let is_crossing = other.intersection == next.id
+            && self.comes_before(other)
+            && next.crossed & 1u8.checked_shl(other.leg.into())? != 0;
+        (is_crossing && across.way_m > -LEFT_M).then_some(across)
+    }
+
+    /// Whether a station at the same intersection arrived there no later than the unit. One that arrived later lets the unit pass: it
+    /// knows of it, or else that it does not know of everybody.
+    #[must_use]
+    pub fn comes_before(&self, other: &Route) -> bool {
+        self.route.is_none_or(|own| {
+            own.intersection != other.intersection || !Arrival(own.arrival).is_before(Arrival(other.arrival))
+        })
+    }
+
+    /// The intersection that the unit comes to next.
+    #[must_use]
+    pub fn next(&self) -> Option<Ahead> {
+        self.crossings.get(self.here()?).copied()
+    }
+
+    /// The way from where the unit said it was to the crossing point of that intersection, in metres.
+    #[must_use]
+    pub fn way_m(&self) -> Option<f64> {
+        Some(self.route?.distance.get().to_num())
     }
 
     /// How far ahead on the unit's own leg a station was when it said that.
@@ -172,19 +256,19 @@ impl Course {
     pub fn ahead_on_leg(&self, other: &Route) -> Option<f64> {
         let (there, own_m) = self.way_to(other.intersection)?;
         let ahead_m = own_m - other.distance.get().to_num::<f64>();
-        (self.crossings[there].1 == other.leg && ahead_m > 0.0).then_some(ahead_m)
+        (self.crossings[there].leg == other.leg && ahead_m > 0.0).then_some(ahead_m)
     }
 
     /// The place on the unit's way, and the way there, of an intersection that it has still to cross.
     fn way_to(&self, intersection: u8) -> Option<(usize, f64)> {
         let here = self.here()?;
-        let here_m = self.route.map_or(self.crossings[0].2, |own| own.distance.get().to_num());
+        let here_m = self.route.map_or(self.crossings[0].at_m, |own| own.distance.get().to_num());
         let there = self.place(intersection).filter(|there| *there >= here)?;
-        Some((there, here_m + self.crossings[there].2 - self.crossings[here].2))
+        Some((there, here_m + self.crossings[there].at_m - self.crossings[here].at_m))
     }
 
     fn place(&self, id: u8) -> Option<usize> {
-        self.crossings.iter().position(|(named, ..)| *named == id)
+        self.crossings.iter().position(|named| named.id == id)
     }
 
     /// The intersection that the unit comes to next. Before it says where it is, it is where it set out.

@@ -26,6 +26,12 @@ pub struct Comer {
     pub deaf_from: f64,
     #[allow(missing_docs)]
     pub deaf_until: f64,
+    /// It is not synchronised from then until then, s.
+    #[serde(default)]
+    pub timeless_from: f64,
+    #[serde(default)]
+    #[allow(missing_docs)]
+    pub timeless_until: f64,
     /// Its driver wants to stand then, for so long, s.
     pub rests_at: f64,
     #[allow(missing_docs)]
@@ -38,6 +44,10 @@ const CENTIMETRE: i32 = 687_194_767;
 const CROSSES: f64 = 400.0;
 const HALF: f64 = 4.0;
 const LENGTH: f64 = 4.8;
+/// Where the streets end, and the map: who drives on there is heard still, and in no order any more, m.
+const ENDS: f64 = 500.0;
+/// When everybody hears, knows the time and wants to drive, all get past within this, s.
+const SERVED: f64 = 90.0;
 
 const fn streets() -> [[Segment; 1]; 2] {
     let north = Segment {
@@ -80,7 +90,9 @@ static WAYS: [Itinerary; 2] = [
 
 /// Draws who comes.
 pub fn draw(scenario: &mut Scenario, random: &mut Random) {
-    scenario.length = random.between(60.0, 90.0);
+    // Some of them deaf for minutes.
+    let long = random.chance(0.1);
+    scenario.length = if long { random.between(150.0, 300.0) } else { random.between(60.0, 90.0) };
     scenario.range.fitted = false;
     scenario.radio.tail = scenario.radio.tail.min(0.5);
     let number = 2 + random.below(3);
@@ -91,7 +103,10 @@ pub fn draw(scenario: &mut Scenario, random: &mut Random) {
         let speed = random.between(5.0, 15.0);
         last[street] -= random.between(45.0, 80.0);
         let deaf_from = random.between(3.0, 40.0);
-        let deaf = if heavy { random.between(10.0, 70.0) } else { random.between(0.0, 5.0) };
+        let longest = if long { 200.0 } else { 70.0 };
+        let deaf = if heavy { random.between(10.0, longest) } else { random.between(0.0, 5.0) };
+        let timeless_from = random.between(3.0, 40.0);
+        let timeless = if random.chance(0.3) { random.between(0.5, 40.0) } else { 0.0 };
         let rests_at = if random.chance(0.4) { random.between(5.0, 40.0) } else { 1e3 };
         scenario.crossing.push(Comer {
             street: street as u8,
@@ -99,6 +114,8 @@ pub fn draw(scenario: &mut Scenario, random: &mut Random) {
             speed,
             deaf_from,
             deaf_until: deaf_from + deaf,
+            timeless_from,
+            timeless_until: timeless_from + timeless,
             rests_at,
             rests: random.between(5.0, 40.0),
         });
@@ -124,6 +141,9 @@ pub fn run(scenario: &Scenario) -> Outcome {
         scenario.crossing.iter().enumerate().map(|(number, comer)| driver(scenario, *comer, number)).collect();
     let steps = (scenario.length / STEP).round() as u64;
     for step in 0..steps {
+        if drivers.iter().all(Driver::is_gone) {
+            return outcome;
+        }
         let now = step as f64 * STEP;
         for (number, driver) in drivers.iter_mut().enumerate() {
             driver.step(scenario, now, step, number);
@@ -131,10 +151,30 @@ pub fn run(scenario: &Scenario) -> Outcome {
         spread(scenario, now + STEP, &mut drivers, &mut random);
         outcome.ticks += 1;
         if collide(now + STEP, &drivers, &mut outcome) {
-            break;
+            return outcome;
         }
     }
+    serve(scenario, &drivers, &mut outcome);
     outcome
+}
+
+/// In the end everybody has got past the crossing, if all has been well for long enough.
+fn serve(scenario: &Scenario, drivers: &[Driver], outcome: &mut Outcome) {
+    let well = |comer: &Comer| {
+        let rested = if comer.rests_at < scenario.length { comer.rests_at + comer.rests } else { 0.0 };
+        comer.deaf_until.max(comer.timeless_until).max(rested)
+    };
+    let since = scenario.crossing.iter().map(well).fold(0.0, f64::max);
+    let lasts = scenario.length - since;
+    if lasts < SERVED {
+        return;
+    }
+    for (number, driver) in drivers.iter().enumerate().filter(|(_, driver)| driver.front() < CROSSES + HALF) {
+        let (at, speed, mode) = (driver.front(), driver.vehicle.body.speed, driver.vehicle.said.mode);
+        outcome.find(Fault::Deadlock, scenario.length, lasts, || {
+            format!("{} is at {at:.1} m with {speed:.2} m/s in mode {mode}, after {lasts:.0} s", number + 1)
+        });
+    }
 }
 
 fn driver(scenario: &Scenario, comer: Comer, number: usize) -> Driver {
@@ -159,6 +199,10 @@ impl Driver {
         self.vehicle.body.position - self.axis
     }
 
+    fn is_gone(&self) -> bool {
+        self.front() > ENDS
+    }
+
     fn step(&mut self, scenario: &Scenario, now: f64, step: u64, number: usize) {
         let Self { comer, vehicle, .. } = self;
         vehicle.ticks_at(now + STEP);
@@ -169,7 +213,7 @@ impl Driver {
         let before = vehicle.body;
         let demand = if vehicle.said.mode == 0 { 0.0 } else { vehicle.said.acceleration };
         vehicle.body.drive(demand, STEP);
-        if step.is_multiple_of(50) {
+        if step.is_multiple_of(50) && !(comer.timeless_from..comer.timeless_until).contains(&now) {
             vehicle.synchronise(now + 0.0003, 0.0);
         }
         let sensed = now + 0.004;
@@ -248,6 +292,9 @@ fn collide(now: f64, drivers: &[Driver], outcome: &mut Outcome) -> bool {
     for (number, one) in drivers.iter().enumerate() {
         for (other_number, other) in drivers.iter().enumerate().skip(number + 1) {
             let ((a, b), same) = ((one.front(), other.front()), one.comer.street == other.comer.street);
+            if one.is_gone() || other.is_gone() {
+                continue;
+            }
             let is_inside = |front: f64| front > CROSSES - HALF && front - LENGTH < CROSSES + HALF;
             let overlap = if same { (a - b).abs() < LENGTH } else { is_inside(a) && is_inside(b) };
             if overlap {

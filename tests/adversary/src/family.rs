@@ -229,9 +229,10 @@ fn silence(scenario: &mut Scenario, random: &mut Random) {
     while at < scenario.length {
         let (least, most) = random.one_of(&[(0.2, 2.0), (2.0, 12.0), (10.0, 100.0)]);
         let seconds = random.between(least, most);
-        let what = match random.below(3) {
+        let what = match random.below(4) {
             0 => What::Deaf { seconds },
             1 => What::Mute { peer: 0, seconds },
+            2 => What::Overtaken { peer: 0, half: random.below(2) as u8 },
             _ => What::Torn {
                 peer: 0,
                 half: random.below(2) as u8,

@@ -14,10 +14,11 @@ use holdover_adversary::world;
 const HELP: &str = "\
 Random drives against holdover, in a world of their own that knows it by its CAN frames alone.
 
-usage: holdover-adversary [--drives N] [--seed N] [--threads N] [--family NAME]... [--kept-only] [--keep DIR] [--all]
+usage: holdover-adversary [--drives N] [--first N] [--seed N] [--threads N] [--family NAME]... [--kept-only] [--keep DIR] [--all]
        holdover-adversary --replay FILE
 
   --drives N      so many drives (1000); every other one breaks one assumption of use
+  --first N       from that number on (0): with --drives 1, one that was printed
   --seed N        of everything that is drawn (1); the same seed draws the same drives, whatever the number of threads
   --threads N     so many at a time (as many as there are processors)
   --family NAME   only this family, or these: following, closing, stranger, cut-in, lorry, silence, restart, slots,
@@ -69,13 +70,14 @@ fn main() -> ExitCode {
 }
 
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Option<Arguments>, String> {
-    let mut plan = Plan { drives: 1000, seed: 1, families: Vec::new(), breaks: true, envelope: true };
+    let mut plan = Plan { first: 0, drives: 1000, seed: 1, families: Vec::new(), breaks: true, envelope: true };
     let mut arguments = Arguments { plan: plan.clone(), threads: 0, keep: None, replay: None, all: false };
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
         let number = |text: String| text.parse::<u64>().map_err(|_| format!("'{text}' is not a number"));
         match word.as_str() {
             "--drives" => plan.drives = number(value()?)?,
+            "--first" => plan.first = number(value()?)?,
             "--seed" => plan.seed = number(value()?)?,
             "--threads" => arguments.threads = number(value()?)? as usize,
             "--family" => {

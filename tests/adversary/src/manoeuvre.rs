@@ -39,7 +39,7 @@ pub fn disturb(scenario: &mut Scenario, random: &mut Random, peer: usize, most: 
     for _ in 0..random.below(most + 1) {
         let at = random.between(scenario.ego.engages + 0.5, scenario.length);
         let seconds = random.exponential(1.5) + 0.1;
-        let what = match random.below(13) {
+        let what = match random.below(14) {
             0 | 1 => What::Limits { peer, braking: random.between(2.0, 12.0), pulling: random.between(0.5, 5.0) },
             // A sensor that sees the rear knows the front by the published length.
             2 if !scenario.range.fitted => {
@@ -53,7 +53,8 @@ pub fn disturb(scenario: &mut Scenario, random: &mut Random, peer: usize, most: 
             8 => What::Garbage { count: 1 + random.below(20) as u32 },
             9 => What::Missed { ticks: 1 + random.below(3) as u32 },
             10 => What::NoEgo { seconds: random.between(0.01, 0.4) },
-            11 => What::Wanted { speed: random.between(3.0, 30.0) },
+            11 => What::Overtaken { peer, half: random.below(2) as u8 },
+            12 => What::Wanted { speed: random.between(3.0, 30.0) },
             // Whom a sensor has seen driving it sees again within a second.
             _ => What::Blind { seconds: seconds.min(0.9) },
         };

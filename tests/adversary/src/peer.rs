@@ -110,6 +110,10 @@ pub struct Other {
     pub length: f64,
     /// Limits that the unit took last.
     pub known: Vec<(f64, Limits)>,
+    /// Whether the unit has taken a motion of that station, and what it publishes.
+    pub is_heard: bool,
+    #[allow(missing_docs)]
+    pub has_told: bool,
     /// It is silent until then.
     pub mute_until: f64,
     /// When it was put on the bus last; and, in which slot it was to be before.
@@ -155,6 +159,8 @@ impl Other {
             limits,
             length: set_up.length,
             known: Vec::new(),
+            is_heard: false,
+            has_told: !set_up.intends,
             mute_until: 0.0,
             delivered: f64::NEG_INFINITY,
             air: Vec::new(),
@@ -168,6 +174,17 @@ impl Other {
             last_intent: 0.0,
             random,
         }
+    }
+
+    /// Takes another identity: nobody knows it by that yet.
+    pub fn rename(&mut self, station: u8) {
+        self.station = station;
+        (self.is_heard, self.has_told) = (false, !self.set_up.intends);
+    }
+
+    /// Whether the unit knows it by its name: where it is, and how long.
+    pub fn is_known(&self) -> bool {
+        self.is_heard && self.has_told
     }
 
     /// Rear bumper.

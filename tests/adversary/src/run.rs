@@ -15,7 +15,9 @@ use crate::world;
 /// What is to be run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// How many, kept and broken.
+    /// The number of the first, and how many, kept and broken.
+    pub first: u64,
+    #[allow(missing_docs)]
     pub drives: u64,
     /// Of everything.
     pub seed: u64,
@@ -88,7 +90,7 @@ pub fn scenario(plan: &Plan, drive: u64) -> Scenario {
 /// Runs them; `tell` is called with the number of drives that are done.
 pub fn run(plan: &Plan, tell: &(impl Fn(u64) + Sync)) -> Report {
     let done = AtomicU64::new(0);
-    let outcomes: Vec<_> = (0..plan.drives)
+    let outcomes: Vec<_> = (plan.first..plan.first + plan.drives)
         .into_par_iter()
         .map(|drive| {
             let outcome = one(plan, drive);
@@ -97,7 +99,7 @@ pub fn run(plan: &Plan, tell: &(impl Fn(u64) + Sync)) -> Report {
         })
         .collect();
     let mut report = Report::default();
-    for (drive, (family, broken, outcome)) in (0..).zip(outcomes) {
+    for (drive, (family, broken, outcome)) in (plan.first..).zip(outcomes) {
         if let Some(assumption) = broken {
             report.broken.entry(assumption).or_default().add(&outcome);
             continue;

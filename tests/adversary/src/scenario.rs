@@ -209,6 +209,8 @@ pub enum What {
     NoTime { seconds: f64 },
     /// The `MotionA` (or `B`) of its next message is lost on the bus, and then it is not heard for so many messages.
     Torn { peer: usize, half: u8, messages: u32 },
+    /// Its next message is held back until one with the same tag comes, and the `MotionA` (or `B`) of it is lost on the bus.
+    Overtaken { peer: usize, half: u8 },
     /// The modem puts it in another slot.
     Slot { peer: usize, slot: u8 },
     /// It takes another identity.

@@ -15,6 +15,8 @@ use crate::wire::SLOTS;
 
 /// Seconds of one step.
 pub const STEP: f64 = 0.01;
+/// After so long the modem gives a slot to another station, and a station another slot, s.
+const SLOT_REUSE: f64 = 2.05;
 
 /// Runs a drive.
 pub fn run(scenario: &Scenario) -> Outcome {
@@ -54,11 +56,14 @@ pub struct World<'a> {
     /// Whether everything is well, and since when.
     pub well: Option<f64>,
     engaged: bool,
+    /// Whom the driver would name, and names: who has been heard of by that name, and how long it is.
     follow: u8,
+    names: u8,
     next_event: usize,
     cutting_in: Vec<usize>,
     slot_wishes: Vec<(usize, u8)>,
-    slot_used: [f64; SLOTS],
+    /// When the modem used a slot last, and for whom.
+    slot_used: [(f64, u8); SLOTS],
     deaf_until: f64,
     timeless_until: f64,
     blind_until: f64,
@@ -66,6 +71,7 @@ pub struct World<'a> {
     missed: u32,
     sync_off: f64,
     torn: Option<(usize, u8, u32)>,
+    overtaken: Option<(usize, u8, Option<Motion>)>,
     copies: Option<(usize, u32, f64)>,
     forged: Option<(usize, u32, f64)>,
     intruder: Option<(usize, u8, u32)>,
@@ -89,10 +95,11 @@ impl<'a> World<'a> {
             well: None,
             engaged: false,
             follow: scenario.follow,
+            names: scenario.follow,
             next_event: 0,
             cutting_in: Vec::new(),
             slot_wishes: Vec::new(),
-            slot_used: [f64::NEG_INFINITY; SLOTS],
+            slot_used: [(f64::NEG_INFINITY, 0); SLOTS],
             deaf_until: 0.0,
             timeless_until: 0.0,
             blind_until: 0.0,
@@ -100,6 +107,7 @@ impl<'a> World<'a> {
             missed: 0,
             sync_off: 0.0,
             torn: None,
+            overtaken: None,
             copies: None,
             forged: None,
             intruder: None,
@@ -189,15 +197,23 @@ impl<'a> World<'a> {
         }
         if tick % 10 == 3 {
             // The driver takes care until the unit is engaged, and engages it where that is safe.
-            self.engaged |= now >= self.scenario.ego.engages && !self.is_near();
-            let engaged = self.engaged;
-            if self.ego.wish(now + 0.0085, engaged, Some(self.follow), self.wanted, self.scenario.ego.gap) {
-                self.followed = self.follow;
+            let is_known = self.is_known(self.follow);
+            self.engaged |= now >= self.scenario.ego.engages && is_known && !self.is_near();
+            if is_known {
+                self.names = self.follow;
+            }
+            if self.ego.wish(now + 0.0085, self.engaged, Some(self.names), self.wanted, self.scenario.ego.gap) {
+                self.followed = self.names;
             }
         }
         if self.scenario.range.fitted && tick.is_multiple_of(2) && now >= self.blind_until {
             self.look(now + STEP);
         }
+    }
+
+    /// Whether the unit knows a station, if that is one.
+    fn is_known(&self, station: u8) -> bool {
+        station == 0 || self.others.iter().any(|other| other.station == station && other.is_known())
     }
 
     /// The nearest rear bumper on the lane ahead.
@@ -237,8 +253,17 @@ impl<'a> World<'a> {
         if usize::from(slot) >= SLOTS {
             return;
         }
+        let station = match message {
+            Message::Motion(motion) => motion.station,
+            Message::Intent { .. } => self.others[number].station,
+        };
+        // The modem gives a slot to another station when that has been free for so long.
+        let (used, by) = self.slot_used[usize::from(slot)];
+        if by != station && at - used < SLOT_REUSE {
+            return;
+        }
         self.others[number].delivered = at;
-        self.slot_used[usize::from(slot)] = at;
+        self.slot_used[usize::from(slot)] = (at, station);
         match message {
             Message::Motion(motion) => self.deliver_motion(at, number, slot, motion),
             Message::Intent { tag, limits, length } => {
@@ -249,6 +274,7 @@ impl<'a> World<'a> {
                 }
                 if verdict == Verdict::Taken {
                     self.others[number].known.push((at, limits));
+                    self.others[number].has_told = true;
                 }
             }
         }
@@ -258,6 +284,9 @@ impl<'a> World<'a> {
         let age = at - motion.at;
         if age > 12.0 && self.scenario.broken != Some(Assumption::OldMessages) {
             return; // the modem drops it
+        }
+        if self.is_overtaken(at, number, slot, &motion) {
+            return;
         }
         let frames = motion.frames(slot, &mut self.ego.modem);
         let lost = match &mut self.torn {
@@ -276,6 +305,7 @@ impl<'a> World<'a> {
                 verdicts[half] = self.ego.put(at + 0.0003 * half as f64, frame);
             }
         }
+        self.others[number].is_heard |= verdicts[1] == Verdict::Taken && motion.station == self.others[number].station;
         judge::note_motion(self, at, number, &motion, verdicts);
         self.misuse(at, number, slot, &motion, verdicts[1] == Verdict::Taken);
     }
@@ -292,7 +322,8 @@ impl<'a> World<'a> {
             // Not into somebody else, and not a vehicle that would be out of sight.
             let gap = other.rear() - ego.position;
             let ahead = self.nearest().map_or(f64::MAX, |nearest| nearest.rear() - other.body.position);
-            let is_seen = other.station != 0 || gap < self.scenario.range.sees - 5.0 && now >= self.blind_until;
+            let is_seen = other.station != 0 && other.is_known()
+                || gap < self.scenario.range.sees - 5.0 && now >= self.blind_until;
             let is_forced = self.scenario.broken == Some(Assumption::Unseen);
             if (gap > room && is_seen && ahead > 2.0) || is_forced && gap > 2.0 && ahead > 2.0 {
                 self.cutting_in.swap_remove(place);
@@ -319,8 +350,8 @@ impl<'a> World<'a> {
     fn change_slots(&mut self, now: f64) {
         for place in (0..self.slot_wishes.len()).rev() {
             let (number, slot) = self.slot_wishes[place];
-            let is_silent = now - self.others[number].delivered > 2.05;
-            let is_free = now - self.slot_used[usize::from(slot)] > 2.05;
+            let is_silent = now - self.others[number].delivered > SLOT_REUSE;
+            let is_free = now - self.slot_used[usize::from(slot)].0 > SLOT_REUSE;
             let is_taken = self.others.iter().enumerate().any(|(other, peer)| other != number && peer.slot == slot);
             if is_silent && is_free && !is_taken {
                 self.slot_wishes.swap_remove(place);

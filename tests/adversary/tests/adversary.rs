@@ -10,7 +10,7 @@ use holdover_adversary::verdict::{Fault, Outcome};
 use holdover_adversary::world;
 
 fn plan(drives: u64, families: &[Family]) -> Plan {
-    Plan { drives, seed: 15, families: families.to_vec(), breaks: false, envelope: true }
+    Plan { first: 0, drives, seed: 15, families: families.to_vec(), breaks: false, envelope: true }
 }
 
 fn run_on(threads: usize, plan: &Plan) -> holdover_adversary::run::Report {

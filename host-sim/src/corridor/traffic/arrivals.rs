@@ -14,7 +14,7 @@ use crate::corridor::map::number;
 use crate::corridor::road::Ground;
 use crate::corridor::trips::{HEARD_S, Trip};
 use crate::ground::Point;
-use crate::modem::Course;
+use crate::modem::{Ahead, Course};
 use crate::plant::{Difference, Machine, Plant};
 use crate::scenario::Accuracy;
 use crate::sensors::Sensors;
@@ -108,8 +108,16 @@ impl Traffic<'_> {
         );
         vehicle.limit_slots(self.conditions.slots);
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings =
-            lane.stops.iter().map(|stop| (number(stop.intersection), number(stop.leg), stop.at_m - lane.entry_m));
+        let crossings = lane.stops.iter().map(|stop| {
+            let junction = &self.network.junctions[stop.intersection];
+            let crossed = (0..junction.legs.len()).filter(|leg| junction.conflict(stop.leg, *leg));
+            Ahead {
+                id: number(stop.intersection),
+                leg: number(stop.leg),
+                crossed: crossed.fold(0, |crossed, leg| crossed | 1 << leg),
+                at_m: stop.at_m - lane.entry_m,
+            }
+        });
         vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
             |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
         )?;

@@ -13,12 +13,16 @@ impl World<'_> {
             What::Length { peer, published } => {
                 self.others[peer].length = published.max(self.others[peer].set_up.length);
             }
-            What::Mute { peer, seconds } => self.others[peer].mute_until = now + seconds,
-            What::Deaf { seconds } => self.deaf_until = now + seconds,
-            What::NoTime { seconds } => self.timeless_until = now + seconds,
+            What::Mute { peer, seconds } => {
+                let until = &mut self.others[peer].mute_until;
+                *until = until.max(now + seconds);
+            }
+            What::Deaf { seconds } => self.deaf_until = self.deaf_until.max(now + seconds),
+            What::NoTime { seconds } => self.timeless_until = self.timeless_until.max(now + seconds),
             What::Torn { peer, half, messages } => self.torn = Some((peer, half, messages)),
+            What::Overtaken { peer, half } => self.overtaken = Some((peer, half, None)),
             What::Slot { peer, slot } => self.slot_wishes.push((peer, slot)),
-            What::Station { peer, station } => self.others[peer].station = station,
+            What::Station { peer, station } => self.others[peer].rename(station),
             What::Follow { station } => self.follow = station,
             What::Wanted { speed } => {
                 self.wanted_before = (self.wanted.max(self.wanted_before.0).max(self.ego.body.speed), now);
@@ -56,7 +60,8 @@ impl World<'_> {
     fn be_well(&mut self, now: f64) {
         self.well = Some(now);
         (self.deaf_until, self.timeless_until, self.blind_until, self.egoless_until) = (0.0, 0.0, 0.0, 0.0);
-        (self.torn, self.copies, self.forged, self.intruder, self.missed) = (None, None, None, None, 0);
+        (self.torn, self.overtaken, self.missed) = (None, None, 0);
+        (self.copies, self.forged, self.intruder) = (None, None, None);
         self.cutting_in.clear();
         self.ego.heal();
         for other in &mut self.others {
@@ -66,6 +71,27 @@ impl World<'_> {
         self.wanted_before = (self.wanted.max(self.ego.body.speed), now);
         self.wanted = self.wanted.max(10.0);
         self.follow = self.nearest().map_or(0, |nearest| nearest.station);
+    }
+
+    /// Whether a message is held back. The one that overtakes it with the same tag finds the other half of it on the bus.
+    pub(super) fn is_overtaken(&mut self, at: f64, number: usize, slot: u8, motion: &Motion) -> bool {
+        let Some((_, half, held)) = self.overtaken.filter(|(peer, ..)| *peer == number) else { return false };
+        let Some(held) = held else {
+            let is_young = at - motion.at < 0.3;
+            if is_young {
+                self.overtaken = Some((number, half, Some(*motion)));
+            }
+            return is_young;
+        };
+        let meets = held.tag == motion.tag && held.at < motion.at;
+        if meets {
+            let frames = held.frames(slot, &mut self.ego.modem);
+            self.ego.put(at, &frames[1 - usize::from(half)]);
+        }
+        if meets || at - held.at > 1.0 {
+            self.overtaken = None;
+        }
+        false
     }
 
     /// Copies, forgeries and another station's words, just after a message of that peer.

@@ -1,0 +1,49 @@
+//! What the modem tells its unit of those for whom it has no slot: who is heard and who is relayed enters, the message leaves.
+
+use holdover::units::Distance;
+use holdover::wire::unserved::Unserved;
+
+use super::{HEARD_S, Placed, Rank, Relay};
+
+/// Time from one message to the next.
+pub const UNSERVED_EVERY_S: f64 = 0.2;
+
+impl Relay {
+    /// What there is to tell: on a route alone.
+    #[must_use]
+    pub fn unserved(&self, at_s: f64) -> Option<Unserved> {
+        let next = self.course.next()?;
+        let unserved: Vec<&Placed> = self.places.iter().filter(|placed| self.is_unserved(placed, at_s)).collect();
+        let legs = unserved.iter().filter(|placed| self.is_in_the_way(placed)).map(|placed| placed.route.leg);
+        let ahead_m =
+            unserved.iter().filter_map(|placed| Some(self.course.ahead_on_leg(&placed.route)? - placed.length_m));
+        let ahead_m = ahead_m.reduce(f64::min).zip(self.course.way_m()).map(|(ahead_m, way_m)| way_m - ahead_m);
+        #[allow(clippy::cast_possible_truncation)] // limited to the field's range
+        Some(Unserved {
+            intersection: next.id,
+            legs: legs.fold(0, |legs, leg| legs | 1u8.checked_shl(leg.into()).unwrap_or(0)),
+            ahead: ahead_m.map(|way_m| Distance::from_mm((way_m * 1e3) as i32)),
+            stations: u8::try_from(unserved.len()).unwrap_or(u8::MAX).min(63),
+        })
+    }
+
+    /// Whether a station that the unit could meet has no slot. A modem that hears nobody any more goes by what it heard last.
+    fn is_unserved(&self, placed: &Placed, at_s: f64) -> bool {
+        let newest_s = self.places.iter().map(|placed| placed.at_s).fold(f64::NEG_INFINITY, f64::max);
+        let is_relayed = self.slots.iter().flatten().any(|tenant| tenant.station == placed.station && tenant.relayed);
+        let matters = || {
+            let rank = self.rank(placed.station, at_s);
+            self.course.comes_before(&placed.route) && !matches!(rank, Rank::Other | Rank::Irrelevant)
+        };
+        newest_s - placed.at_s < HEARD_S && !is_relayed && matters()
+    }
+
+    /// Whether a station is in the unit's next conflict area, or the next one of its leg to come there.
+    fn is_in_the_way(&self, placed: &Placed) -> bool {
+        let Some(one) = self.course.across(&placed.route) else { return false };
+        one.has_entered() || one.is_near() && self.nearer_across(one).next().is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests;
