@@ -95,7 +95,7 @@ while read -r target machine host; do
     "$holdover_log" compare "$replays/$host" "$replays/sent.bin"
 done <<TEXT
 $ecu netduinoplus2 host-8-8-400.bin
-$small microbit host-3-4-150.bin
+$small microbit host-3-4-100.bin
 TEXT
 
 echo "-- what it costs, in instructions and bytes"

@@ -1,7 +1,7 @@
 //! Records a log for the ECU: a scenario enters; the log, and what a unit on this host sends when it lives through it, leave.
 //! Given what the ECU sent, it holds the two against one another, frame by frame.
 //!
-//! `holdover-log record FOLDER` writes `log.bin`, `host-8-8-400.bin` and `host-3-4-150.bin`;
+//! `holdover-log record FOLDER` writes `log.bin`, `host-8-8-400.bin` and `host-3-4-100.bin`;
 //! `holdover-log compare HOST ECU` fails at the first frame that differs.
 
 use std::collections::BTreeSet;
@@ -41,7 +41,7 @@ fn record(folder: &Path) -> Result<(), Box<dyn Error>> {
     let frames = events.iter().filter(|(_, event)| *event != Event::Tick).count();
     println!("log: {} ticks, {frames} frames, {} s", events.len() - frames, (events.len() - frames) / 100);
     fs::write(folder.join("host-8-8-400.bin"), sent::<8, 8, 400>(&events)?)?;
-    fs::write(folder.join("host-3-4-150.bin"), sent::<3, 4, 150>(&events)?)?;
+    fs::write(folder.join("host-3-4-100.bin"), sent::<3, 4, 100>(&events)?)?;
     Ok(())
 }
 

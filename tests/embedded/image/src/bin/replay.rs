@@ -15,7 +15,7 @@ use holdover_replay::{config, decode, live, refusals};
 const CAPACITY: (usize, usize, usize) = (8, 8, 400);
 /// What fits the 16 KiB of the small one.
 #[cfg(not(target_abi = "eabihf"))]
-const CAPACITY: (usize, usize, usize) = (3, 4, 150);
+const CAPACITY: (usize, usize, usize) = (3, 4, 100);
 
 type Unit = OnboardUnit<{ CAPACITY.0 }, { CAPACITY.1 }, { CAPACITY.2 }>;
 
