@@ -285,7 +285,7 @@ typedef struct holdover_law_t {
   uint32_t damping_ms;
   // Largest acceleration on a free road in mm/s2.
   uint32_t free_road_acceleration_mm_s2;
-  // Speed wanted on a free road until `EgoIntent` says otherwise, in mm/s.
+  // Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.
   uint32_t target_speed_mm_s;
   // Speed never demanded beyond, in mm/s.
   uint32_t max_speed_mm_s;

@@ -11,7 +11,7 @@
 //! off from then on, by the same: the second in a row that is off by the same is believed. The price is half a second more of a
 //! wrong time.
 
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::{Duration, GnssTime, Instant, Stamp};
 use crate::wire::sync::{FollowUp, Sync};
 
@@ -68,12 +68,12 @@ impl Clock {
     /// Second step.
     ///
     /// # Errors
-    /// [`Refusal::SyncSequence`] if its first step is missing, another one, or too long ago; [`Refusal::SyncLate`] if that
-    /// came too late, by what the unit's own clock says, and [`Refusal::SyncEarly`] if too early.
-    pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Refusal> {
-        let (marked, sync) = self.mark.ok_or(Refusal::SyncSequence)?;
+    /// [`Cause::SyncSequence`] if its first step is missing, another one, or too long ago; [`Cause::SyncLate`] if that
+    /// came too late, by what the unit's own clock says, and [`Cause::SyncEarly`] if too early.
+    pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Cause> {
+        let (marked, sync) = self.mark.ok_or(Cause::SyncSequence)?;
         if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
-            return Err(Refusal::SyncSequence);
+            return Err(Cause::SyncSequence);
         }
         self.mark = None;
         let fix = Fix { local: marked, gnss: follow_up.time_of(&sync) };
@@ -83,7 +83,7 @@ impl Clock {
         let is_off_by_the_same = after(self.doubted).is_some_and(|late| !is_off(late));
         if is_off(late) && !is_off_by_the_same {
             self.doubted = Some(fix);
-            return Err(if late > Duration::ZERO { Refusal::SyncLate } else { Refusal::SyncEarly });
+            return Err(if late > Duration::ZERO { Cause::SyncLate } else { Cause::SyncEarly });
         }
         (self.fix, self.doubted) = (Some(fix), None);
         Ok(())
@@ -148,16 +148,16 @@ mod tests {
         let mut clock = Clock::new();
         let at = Instant::from_micros(5);
         clock.sync(at, Sync { sequence: 3, seconds: 1 });
-        assert_eq!(clock.follow_up(at, FollowUp { sequence: 4, micros: 0 }), Err(Refusal::SyncSequence));
+        assert_eq!(clock.follow_up(at, FollowUp { sequence: 4, micros: 0 }), Err(Cause::SyncSequence));
         assert_eq!(clock.follow_up(at, FollowUp { sequence: 3, micros: 0 }), Ok(()));
-        assert_eq!(clock.follow_up(at, FollowUp { sequence: 3, micros: 0 }), Err(Refusal::SyncSequence));
+        assert_eq!(clock.follow_up(at, FollowUp { sequence: 3, micros: 0 }), Err(Cause::SyncSequence));
     }
 
     #[test]
     fn a_follow_up_needs_its_own_sync_message_just_before_it() {
         let sync = Sync { sequence: 3, seconds: 1 };
         let at = Instant::from_micros(0);
-        let refused = Err(Refusal::SyncSequence);
+        let refused = Err(Cause::SyncSequence);
         assert_eq!(Clock::new().follow_up(at, FollowUp { sequence: 3, micros: 0 }), refused);
         for (sequence, micros) in [(4, 1_000), (3, 250_001)] {
             let mut clock = Clock::new();
@@ -167,13 +167,13 @@ mod tests {
         }
     }
 
-    const TAKEN: Result<(), Refusal> = Ok(());
-    const LATER: Result<(), Refusal> = Err(Refusal::SyncLate);
-    const EARLY: Result<(), Refusal> = Err(Refusal::SyncEarly);
+    const TAKEN: Result<(), Cause> = Ok(());
+    const LATER: Result<(), Cause> = Err(Cause::SyncLate);
+    const EARLY: Result<(), Cause> = Err(Cause::SyncEarly);
 
     /// Synchronisations, each so many milliseconds after the first was sent: how much later than sent it is marked, and what
     /// becomes of it.
-    fn marks(marks: &[(u64, i64, Result<(), Refusal>)]) {
+    fn marks(marks: &[(u64, i64, Result<(), Cause>)]) {
         let mut clock = Clock::new();
         for (number, (sent_ms, late_ms, expected)) in (0..).zip(marks) {
             let sent = 10_000_000 + 1_000 * sent_ms;

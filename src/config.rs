@@ -9,8 +9,8 @@ pub use check::ConfigError;
 use crate::dynamics::Body;
 use crate::parameters;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
-use crate::wire::intent::Limits;
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use crate::wire::driving_parameters::Limits;
 use crate::wire::{BaseId, StationHash};
 
 /// Which parts of the prediction model are used. [`Model::HOLDOVER`] is the default; [`Model::PAPER`] is the paper's
@@ -98,7 +98,7 @@ pub struct Law {
     pub damping: Seconds,
     /// Largest acceleration on a free road, `a_max` of eq. 8.
     pub free_road_acceleration: Acceleration,
-    /// Speed wanted on a free road until `EgoIntent` says otherwise, `v_∞`.
+    /// Speed wanted on a free road until `DriverRequest` says otherwise, `v_∞`.
     pub target_speed: Speed,
     /// Speed never demanded beyond.
     pub max_speed: Speed,
@@ -149,7 +149,7 @@ pub struct Envelope {
     /// in a row; 0 to 0.5 s.
     pub delay: Duration,
     /// Share of the configured lag by which the real one may be longer or shorter; 0 to 1.
-    pub lag_tolerance: Share,
+    pub lag_tolerance: Fraction,
 }
 
 impl Envelope {
@@ -162,7 +162,7 @@ impl Envelope {
         speed: Speed::from_mm_per_s(50_000),
         margin: Distance::from_mm(500),
         delay: Duration::from_millis(30),
-        lag_tolerance: Share::from_milli(250),
+        lag_tolerance: Fraction::from_milli(250),
     };
 }
 

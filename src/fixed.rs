@@ -66,7 +66,7 @@ pub const fn mul_hi(a: i32, b: i32) -> i32 {
     clippy::cast_possible_wrap,
     clippy::cast_sign_loss
 )] // a product below 2⁶³ and half a bit; the sign as a mask is meant
-pub const fn mul_hi_share(a: i32, b: i32) -> i32 {
+pub const fn mul_hi_fraction(a: i32, b: i32) -> i32 {
     if cfg!(target_arch = "x86_64") {
         let unsigned = ((a as u32 as u64 * b as u32 as u64 + (1 << 31)) >> 32) as u32;
         unsigned.wrapping_sub(b as u32 & (a >> 31) as u32) as i32
@@ -326,7 +326,7 @@ mod tests {
             };
             prop_assert!(near(mul_shl::<2>(a, b), 2) && near(mul_shl::<8>(a, b), 8));
             prop_assert_eq!(i128::from(mul_hi(a, b)), (exact + (1 << 31)) >> 32);
-            prop_assert_eq!(mul_hi_share(a, b & i32::MAX), mul_hi(a, b & i32::MAX));
+            prop_assert_eq!(mul_hi_fraction(a, b & i32::MAX), mul_hi(a, b & i32::MAX));
         }
 
         #[test]

@@ -6,7 +6,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub enum Refusal {
+pub enum Cause {
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     Length = 0,
     /// The E2E checksum does not fit.
@@ -94,18 +94,18 @@ pub enum Incident {
 impl Incident {
     /// The cause that it is counted under.
     #[must_use]
-    pub const fn cause(self) -> Refusal {
+    pub const fn cause(self) -> Cause {
         match self {
-            Self::ReceiveOverflow => Refusal::ReceiveOverflow,
-            Self::Overrun => Refusal::Overrun,
-            Self::TransmitOverflow => Refusal::TransmitOverflow,
-            Self::BusOff => Refusal::BusOff,
-            Self::Restart => Refusal::Restart,
+            Self::ReceiveOverflow => Cause::ReceiveOverflow,
+            Self::Overrun => Cause::Overrun,
+            Self::TransmitOverflow => Cause::TransmitOverflow,
+            Self::BusOff => Cause::BusOff,
+            Self::Restart => Cause::Restart,
         }
     }
 }
 
-impl Refusal {
+impl Cause {
     /// Every cause, in the order of its number.
     pub const ALL: [Self; 32] = [
         Self::Length,
@@ -185,23 +185,23 @@ impl Refusal {
 /// How often each cause has been met since start; each count stops at its maximum.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    counts: [u32; Refusal::ALL.len()],
+    counts: [u32; Cause::ALL.len()],
 }
 
 impl Health {
     /// Nothing refused yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self { counts: [0; Refusal::ALL.len()] }
+        Self { counts: [0; Cause::ALL.len()] }
     }
 
     /// Counts one refusal.
-    pub fn count(&mut self, cause: Refusal) {
+    pub fn count(&mut self, cause: Cause) {
         self.add(cause, 1);
     }
 
     /// Counts so many at once.
-    pub fn add(&mut self, cause: Refusal, times: u32) {
+    pub fn add(&mut self, cause: Cause, times: u32) {
         if let Some(count) = self.counts.get_mut(cause as usize) {
             *count = count.saturating_add(times);
         }
@@ -209,7 +209,7 @@ impl Health {
 
     /// How often this cause was met.
     #[must_use]
-    pub fn of(&self, cause: Refusal) -> u32 {
+    pub fn of(&self, cause: Cause) -> u32 {
         self.counts.get(cause as usize).copied().unwrap_or(0)
     }
 
@@ -226,9 +226,9 @@ mod tests {
 
     #[test]
     fn every_cause_has_the_number_of_its_place_and_a_name_of_its_own() {
-        for (place, cause) in Refusal::ALL.iter().enumerate() {
+        for (place, cause) in Cause::ALL.iter().enumerate() {
             assert_eq!(*cause as usize, place);
-            assert_eq!(Refusal::ALL.iter().filter(|other| other.name() == cause.name()).count(), 1);
+            assert_eq!(Cause::ALL.iter().filter(|other| other.name() == cause.name()).count(), 1);
         }
     }
 }

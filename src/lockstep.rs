@@ -93,7 +93,7 @@ fn step(base: BaseId, frame: &impl Frame) -> Option<Step> {
 mod tests {
     use super::*;
     use crate::Config;
-    use crate::health::Refusal;
+    use crate::health::Cause;
     use crate::wire::{Message, Sender, StationHash};
 
     type Unit = OnboardUnit<1, 4, 400>;
@@ -138,7 +138,7 @@ mod tests {
         }
         let now = Instant::from_micros(1_000_030_000);
         assert!(bench.unit.is_synchronised(now));
-        assert_eq!(bench.unit.health().of(Refusal::ClockBackwards), 0);
+        assert_eq!(bench.unit.health().of(Cause::ClockBackwards), 0);
     }
 
     #[test]
@@ -159,7 +159,7 @@ mod tests {
         let [sync, mut follow_up] = bench.pair(2, 10_000);
         follow_up.data[4] ^= 1;
         assert!(!bench.give(&sync) && !bench.give(&follow_up));
-        assert_eq!(bench.unit.health().of(Refusal::Checksum), 1);
+        assert_eq!(bench.unit.health().of(Cause::Checksum), 1);
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
                 bench.give(&frame);
             }
         }
-        assert_eq!(bench.unit.health().of(Refusal::Future), 0);
-        assert_eq!(bench.unit.health().total(), bench.unit.health().of(Refusal::NotYetTrusted));
+        assert_eq!(bench.unit.health().of(Cause::Future), 0);
+        assert_eq!(bench.unit.health().total(), bench.unit.health().of(Cause::NotYetTrusted));
     }
 }

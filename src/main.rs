@@ -90,7 +90,7 @@ mod firmware {
 mod log {
     use holdover::controller::Mode;
     #[cfg(not(feature = "lock-step"))]
-    use holdover::{Reception, health::Refusal};
+    use holdover::{Reception, health::Cause};
 
     pub struct Log {
         mode: Mode,
@@ -102,7 +102,7 @@ mod log {
         }
 
         #[cfg(not(feature = "lock-step"))] // there the shell does not see what became of a frame
-        pub fn received(&mut self, result: Result<Reception, Refusal>) {
+        pub fn received(&mut self, result: Result<Reception, Cause>) {
             #[cfg(feature = "log")]
             if let Err(cause) = result {
                 defmt::warn!("refused: {}", cause);

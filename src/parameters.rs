@@ -20,11 +20,11 @@ pub const FREE_ROAD_ACCELERATION_MIN: Acceleration = Acceleration::from_mm_per_s
 /// Hardest braking in normal driving that a configuration or a message may name (see [`FREE_ROAD_RATIO_MILLI`]).
 pub const BRAKING_MAX: Acceleration = Acceleration::from_mm_per_s2(6000);
 
-/// Time constant with which the last acceleration of a vehicle without intent fades out: the best of
+/// Time constant with which the last acceleration of a vehicle without driving parameters fades out: the best of
 /// {0.5, 1, 1.5, 2, 3} s on recorded car drives.
 pub const FADE: Duration = Duration::from_millis(2000);
 
-/// Length taken for a vehicle that does not say its own (a car), by the gate too: an intent comes later than the first motion,
+/// Length taken for a vehicle that does not say its own (a car), by the gate too: driving parameters comes later than the first motion,
 /// and to expect a lorry of 18.75 m until then is to brake hard at every association.
 pub const DEFAULT_LENGTH: Distance = Distance::from_mm(4800);
 

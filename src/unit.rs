@@ -7,24 +7,24 @@ use heapless::Vec;
 use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
-use crate::coordination::{Coordination, Gentleness};
+use crate::coordination::{ComfortBraking, Coordination};
 use crate::envelope::Reckoning;
-use crate::estimator::{Aim, Driver, Estimator, Reading, Rests, State};
-use crate::health::{Health, Incident, Refusal};
+use crate::estimator::{Aim, Estimator, Reading, Remainders, State, VehicleModel};
+use crate::health::{Cause, Health, Incident};
 use crate::held::Held;
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
 use crate::wire::command::Command;
-use crate::wire::ego_intent::EgoIntent;
+use crate::wire::driver_request::DriverRequest;
 use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
-use caution::Displaced;
+use gate::Displaced;
 
 mod admission;
 mod answer;
-mod caution;
 mod coordinate;
-mod foresee;
+mod ego_horizon;
+mod gate;
 mod inbox;
 mod lane;
 mod outbox;
@@ -46,7 +46,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     sender: Sender<0>,
     clock: Clock,
     ego: Held<Sample>,
-    wish: Held<EgoIntent>,
+    desired: Held<DriverRequest>,
     peers: Peers<PEERS, SAMPLES>,
     estimator: Estimator<PEERS, STEPS>,
     /// Whom the ego follows, with the gains looked up when that began.
@@ -78,7 +78,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             sender: Sender::new(BaseId::NONE),
             clock: Clock::new(),
             ego: Held::Nothing,
-            wish: Held::Nothing,
+            desired: Held::Nothing,
             peers: Peers::idle(),
             estimator: Estimator::idle(),
             association: None,
@@ -109,7 +109,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.sender = Sender::new(config.base_id);
         self.clock = Clock::new();
         self.ego.clear();
-        self.wish.clear();
+        self.desired.clear();
         self.peers.start(config.link.period);
         self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
         self.association = None;
@@ -148,7 +148,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The named cause for which the frame, or the message that it completes, is refused. It is counted, and nothing else
     /// is changed by it but the end-to-end state of its identifier.
     #[inline(never)] // neither door is to hold the stack of the other
-    pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Refusal> {
+    pub fn receive(&mut self, at: Instant, frame: &impl CanFrame) -> Result<Reception, Cause> {
         if !self.is_started() {
             return Ok(Reception::Foreign);
         }
@@ -189,7 +189,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ => None,
         };
         let unreachable = self.estimator.update(now, &self.peers);
-        self.health.add(Refusal::Unreachable, unreachable);
+        self.health.add(Cause::Unreachable, unreachable);
         let reading = target.and_then(|index| self.estimated(index, now));
 
         let facts = self.facts(now, target, reading.is_some());
@@ -227,7 +227,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return now;
         };
         if now < last {
-            self.health.count(Refusal::ClockBackwards);
+            self.health.count(Cause::ClockBackwards);
             return last;
         }
         self.last_tick = Some(now);
@@ -271,7 +271,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
             _ => target,
         };
-        Facts { engaged: self.wish.as_ref().is_some_and(|wish| wish.engaged), ego, target }
+        Facts { engaged: self.desired.as_ref().is_some_and(|desired| desired.engaged), ego, target }
     }
 
     /// Looks the gains up when the target changes.
@@ -296,24 +296,24 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             speed: sample.speed,
             acceleration: sample.acceleration,
             demand: self.controller.last_demand(),
-            rests: Rests::NONE,
+            remainders: Remainders::NONE,
         };
         let age = now.since(sample.at);
         if age <= Duration::ZERO {
             return Some(state);
         }
-        let driver = Driver::of_config(&self.config, Aim::Fade);
+        let driver = VehicleModel::of_config(&self.config, Aim::Fade);
         Some(driver.coast(state, age.min(self.config.link.ego_timeout), &self.config.prediction.model))
     }
 
     /// How the ego itself drives: the law of its mode.
-    fn driver(&self) -> Driver {
+    fn driver(&self) -> VehicleModel {
         let association = self.association.map(|(_, gains)| (gains, self.standstill()));
-        self.driver_with(association, self.coordination.choice().gentleness)
+        self.driver_with(association, self.coordination.choice().comfort)
     }
 
     /// How it drives with these gains and this standstill distance behind somebody, or behind nobody.
-    fn driver_with(&self, association: Option<(Gains, Distance)>, gentleness: Gentleness) -> Driver {
+    fn driver_with(&self, association: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
         let (law, target_speed) = (&self.config.law, self.target_speed());
         let aim = match association {
             Some((gains, standstill)) => Aim::Follow {
@@ -325,19 +325,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             },
             None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
         };
-        let Driver { aim, lag, mut limits } = Driver::of_config(&self.config, aim);
-        limits.braking = gentleness.limit(limits.braking);
-        Driver { aim, lag, limits }
+        let VehicleModel { aim, lag, mut limits } = VehicleModel::of_config(&self.config, aim);
+        limits.braking = comfort.limit(limits.braking);
+        VehicleModel { aim, lag, limits }
     }
 
     /// `t_g`: the driver's, or else the configuration's.
     fn time_gap(&self) -> Seconds {
-        self.wish.as_ref().and_then(|wish| wish.time_gap).unwrap_or(self.config.law.time_gap)
+        self.desired.as_ref().and_then(|desired| desired.time_gap).unwrap_or(self.config.law.time_gap)
     }
 
     /// `v_∞` likewise.
     fn target_speed(&self) -> Speed {
-        self.wish.as_ref().map_or(self.config.law.target_speed, |wish| wish.target_speed)
+        self.desired.as_ref().map_or(self.config.law.target_speed, |desired| desired.target_speed)
     }
 
     fn course(&self, now: Instant, target: Option<usize>, ego: Option<&State>) -> Course {
@@ -346,7 +346,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Mode::Cooperative | Mode::Holdover { .. } => {
                 let next = now.plus(self.config.period);
                 let reading = target.and_then(|index| {
-                    let length = self.peers.get(index)?.intent().map(|intent| intent.length);
+                    let length = self.peers.get(index)?.parameters().map(|parameters| parameters.length);
                     Some((self.estimated(index, next)?, length))
                 });
                 let cap = ego.map_or(Acceleration::MAX, |ego| self.careful(now, ego));

@@ -142,7 +142,7 @@ quantity!(
 );
 quantity!(
     /// A share from 0 to 1, such as `e^(-δt/T)`: by 9.3e-10.
-    Share, ShareFormat, from_milli, to_milli, "(of 1)"
+    Fraction, ShareFormat, from_milli, to_milli, "(of 1)"
 );
 
 impl Speed {
@@ -165,7 +165,7 @@ impl Acceleration {
     /// That share of it.
     #[inline(always)]
     #[must_use]
-    pub const fn share(self, share: Share) -> Self {
+    pub const fn share(self, share: Fraction) -> Self {
         Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
     }
 }
@@ -173,12 +173,12 @@ impl Acceleration {
 impl FineSeconds {
     /// That share of it.
     #[must_use]
-    pub const fn share(self, share: Share) -> Self {
+    pub const fn share(self, share: Fraction) -> Self {
         Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
     }
 }
 
-impl Share {
+impl Fraction {
     /// All of it.
     pub const ONE: Self = Self::from_bits(1 << ShareFormat::FRAC_NBITS);
 }

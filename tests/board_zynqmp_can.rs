@@ -20,7 +20,7 @@ use board::zynqmp_r5::can::{self, Controller, Overrun, Registers, offset};
 use board::zynqmp_r5::layout::{Layout, Words};
 use embedded_can::nb::Can;
 use embedded_can::{ExtendedId, Frame, Id, StandardId};
-use holdover::health::{Incident, Refusal};
+use holdover::health::{Cause, Incident};
 use holdover::wire::StationHash;
 use holdover::{Config, OnboardUnit};
 use std::cell::RefCell;
@@ -295,8 +295,8 @@ fn a_bus_off_is_told_once_and_nothing_that_waited_is_sent_after_it() {
     // What the shell does with it, and where it shows.
     let mut unit = OnboardUnit::<1, 4, 400>::new(&Config::car(StationHash(1))).unwrap();
     lost.into_iter().for_each(|(incident, times)| unit.note(incident, times));
-    assert_eq!(unit.health().of(Refusal::BusOff), 1);
-    assert_eq!(unit.health().of(Refusal::TransmitOverflow), 6);
+    assert_eq!(unit.health().of(Cause::BusOff), 1);
+    assert_eq!(unit.health().of(Cause::TransmitOverflow), 6);
 
     // It keeps away for two more periods, and takes nothing.
     outbox.push(&standard(0x700, &[7]));

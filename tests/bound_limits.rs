@@ -4,7 +4,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::Said;
 use rig::plant::{Body, TOP};
 use rig::random::Random;
@@ -66,7 +66,7 @@ fn drive(seed: u64) -> u32 {
         if now % 500_000 == 200_000 && !is_silent {
             let (acceleration, braking) = published.at(now);
             let arrives = now + random.between(0.0, delays) as i64;
-            under_way.push((arrives, Said::Intent(rig::intent(acceleration, braking))));
+            under_way.push((arrives, Said::DrivingParameters(rig::parameters(acceleration, braking))));
         }
         if now % 100_000 == 0 {
             let position = body.position + random.extreme(-ACCURACY.0, ACCURACY.0);
@@ -80,7 +80,7 @@ fn drive(seed: u64) -> u32 {
         while under_way.first().is_some_and(|(arrives, _)| *arrives <= now) {
             let (_, said) = under_way.remove(0);
             let taken = rig.target(now, said);
-            let is_harmless = |cause| matches!(cause, Refusal::NotYetTrusted | Refusal::Torn | Refusal::OutOfOrder);
+            let is_harmless = |cause| matches!(cause, Cause::NotYetTrusted | Cause::Torn | Cause::OutOfOrder);
             assert!(taken.is_ok() || is_harmless(taken.unwrap_err()), "seed {seed} at {now}: {taken:?} {said:?}");
         }
         if let Some(bound) = rig.unit.bound(2, instant(now)) {
@@ -120,7 +120,7 @@ fn a_vehicle_that_brakes_as_hard_as_it_published_and_then_publishes_less_is_insi
     let mut rig = Rig::new(&rig::config());
     rig.power_up(true, 0);
     for at in [-60_000, -50_000, -40_000] {
-        let _ = rig.target(at, Said::Intent(rig::intent(2.0, 8.0)));
+        let _ = rig.target(at, Said::DrivingParameters(rig::parameters(2.0, 8.0)));
     }
     let mut body = Body { position: 500.0, speed: 25.0 };
     for n in 0..=100 {
@@ -130,7 +130,7 @@ fn a_vehicle_that_brakes_as_hard_as_it_published_and_then_publishes_less_is_insi
             let _ = rig.target(now, Said::Motion(motion));
         }
         if n == 60 {
-            assert_eq!(rig.target(now, Said::Intent(rig::intent(2.0, 2.0))), Ok(()));
+            assert_eq!(rig.target(now, Said::DrivingParameters(rig::parameters(2.0, 2.0))), Ok(()));
         }
         if let Some(bound) = rig.unit.bound(2, instant(now)) {
             assert!(m_of(bound.lowest_position()) <= body.position, "{n}");

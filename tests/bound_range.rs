@@ -100,11 +100,11 @@ fn coming(accuracy: f64, named: impl Fn(usize) -> bool) -> (Rig, i64) {
     for tick in 0..40 {
         now = tick as i64 * 10_000;
         if tick % 10 == 0 {
-            let _ = rig.target(now, Said::Intent(rig::intent(3.0, 8.0)));
+            let _ = rig.target(now, Said::DrivingParameters(rig::parameters(3.0, 8.0)));
             let motion = rig.motion(TARGET, now, 260.0 + rig::LENGTH, 0.0, 0.0, 0.0, Some((accuracy, 0.2)));
             let _ = rig.target(now, Said::Motion(motion));
         }
-        let _ = rig.wish(now, true, if named(tick) { Predecessor::Station(TARGET) } else { Predecessor::None });
+        let _ = rig.request(now, true, if named(tick) { Predecessor::Station(TARGET) } else { Predecessor::None });
         let motion = rig.motion(EGO, now, 60.0 * now as f64 * 1e-6, 60.0, 0.0, 0.0, Some((0.0, 0.0)));
         let _ = rig.put(now, &Message::Ego(Said::Motion(motion)));
         rig.tick(now);

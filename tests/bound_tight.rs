@@ -29,7 +29,7 @@ fn ratios(seed: u64) -> (Vec<f64>, Vec<f64>) {
     let mut rig = Rig::new(&rig::config());
     rig.power_up(true, 0);
     for at in [-60_000, -40_000] {
-        let _ = rig.target(at, Said::Intent(rig::intent(limits.0, limits.1)));
+        let _ = rig.target(at, Said::DrivingParameters(rig::parameters(limits.0, limits.1)));
     }
     let mut body = Body { position: 0.0, speed: random.between(3.0, 40.0) };
     let (mut ways, mut speeds) = (Vec::new(), Vec::new());

@@ -144,11 +144,11 @@ fn run(seed: u64, lasts: i64, step: i64, ticks_every: i64) -> (u64, u64) {
     if case.synchronised {
         rig.power_up(true, off);
     }
-    let _ = rig.wish(-20_000, false, Predecessor::Station(TARGET));
-    let _ = rig.wish(-10_000, false, Predecessor::Station(TARGET));
+    let _ = rig.request(-20_000, false, Predecessor::Station(TARGET));
+    let _ = rig.request(-10_000, false, Predecessor::Station(TARGET));
     for at in [-60_000, -50_000, -40_000] {
         if case.is_published {
-            let _ = rig.target(at, Said::Intent(rig::intent(case.limits.0, case.limits.1)));
+            let _ = rig.target(at, Said::DrivingParameters(rig::parameters(case.limits.0, case.limits.1)));
         }
     }
     let sent = messages(&mut random, &mut rig, &case, &truth);
@@ -161,7 +161,7 @@ fn run(seed: u64, lasts: i64, step: i64, ticks_every: i64) -> (u64, u64) {
         }
         while let Some(message) = sent.next_if(|message| message.arrives <= now) {
             let taken = rig.target(message.arrives, message.motion);
-            use holdover::health::Refusal::{Duplicate, NotYetTrusted, OutOfOrder, Torn};
+            use holdover::health::Cause::{Duplicate, NotYetTrusted, OutOfOrder, Torn};
             // The first frames of an identifier are not trusted, and a lost sample may have torn the next one.
             let harmless = matches!(taken, Ok(()) | Err(OutOfOrder | Duplicate)) || first;
             assert!(harmless || matches!(taken, Err(NotYetTrusted | Torn)), "seed {seed} at {now}: {taken:?}");

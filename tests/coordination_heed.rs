@@ -3,7 +3,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 use rig::plant;
 
@@ -41,7 +41,7 @@ fn gives_way(at: f64) -> bool {
             driver.body = plant::Plant { position, speed, acceleration: 0.0, ..driver.body };
         }
     });
-    junction.drivers[0].rig.unit.health().of(Refusal::Overlooked) > 0
+    junction.drivers[0].rig.unit.health().of(Cause::Overlooked) > 0
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
@@ -51,7 +51,7 @@ fn who_comes_first_goes_first_and_both_say_so() {
         for message in &junction.drivers[0].last.as_ref().unwrap().all {
             match message {
                 Message::Own(Said::Route(route)) => claims.push((route.intersection, route.leg, route.predecessor)),
-                Message::Own(Said::Intent(intent)) => said_follow.push(intent.predecessor),
+                Message::Own(Said::DrivingParameters(parameters)) => said_follow.push(parameters.predecessor),
                 _ => {}
             }
         }
@@ -279,7 +279,7 @@ fn when_an_axis_moves_everything_held_of_its_peer_moves_with_it() {
     for (before, after) in before.into_iter().zip(held(&junction)) {
         assert!((after - before + 30.0).abs() < 0.002 + 0.013, "{before} {after}");
     }
-    assert_eq!(junction.drivers[0].rig.unit.health().of(Refusal::Jump), 0);
+    assert_eq!(junction.drivers[0].rig.unit.health().of(Cause::Jump), 0);
 }
 
 #[test]
@@ -291,7 +291,7 @@ fn a_place_beside_the_path_is_refused_and_changes_nothing() {
     let mut geo = junction.drivers[0].geo(now);
     geo.longitude = 1_101;
     let verdict = junction.drivers[0].rig.put(now, &Message::Ego(Said::Geo(geo)));
-    assert_eq!(verdict, Err(Refusal::OffRoute));
+    assert_eq!(verdict, Err(Cause::OffRoute));
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
 }
 
@@ -304,13 +304,13 @@ fn another_station_in_a_live_slot_does_not_move_the_axis() {
     let before = junction.drivers[0].rig.unit.coordination().clone();
     let slot = holdover::wire::Slot(1);
     let verdict = junction.drivers[0].rig.put(now, &Message::Peer(slot, Said::Motion(motion)));
-    assert_eq!(verdict, Err(Refusal::StationConflict));
+    assert_eq!(verdict, Err(Cause::StationConflict));
     assert_eq!(format!("{before:?}"), format!("{:?}", junction.drivers[0].rig.unit.coordination()));
 }
 
 /// The first one hears in that slot of a station that is so many metres before the crossing; what became of its route and
 /// of its motion.
-fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> [Result<(), Refusal>; 2] {
+fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> [Result<(), Cause>; 2] {
     let (now, slot) = (junction.now, Slot(slot));
     let rig = &mut junction.drivers[0].rig;
     let motion = rig.motion(StationHash(station), now, 5_000.0 - metres, 5.0, 0.0, 0.0, Some((0.05, 0.02)));
@@ -337,7 +337,7 @@ fn a_station_that_was_refused_in_a_free_slot_is_known_there_after_a_silence_in_i
     let slot_of = |junction: &Junction| junction.drivers[0].rig.unit.peers().index_of(StationHash(77));
     assert_eq!(slot_of(&junction), Some(2));
     let _ = says(&mut junction, 3, 77, 88.5); // the first frame of an identifier is not trusted
-    assert_eq!(says(&mut junction, 3, 77, 88.5), [Ok(()), Err(Refusal::StationConflict)]);
+    assert_eq!(says(&mut junction, 3, 77, 88.5), [Ok(()), Err(Cause::StationConflict)]);
     junction.run(2.0, |_| {});
     for metres in [78.0, 77.5] {
         says(&mut junction, 3, 77, metres)[1].unwrap();
@@ -363,6 +363,6 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let before = held(&junction);
     assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
     // The one in slot 1 speaks in slot 2.
-    assert_eq!(says(&mut junction, 2, 2, 20.0), [Ok(()), Err(Refusal::StationConflict)]);
+    assert_eq!(says(&mut junction, 2, 2, 20.0), [Ok(()), Err(Cause::StationConflict)]);
     assert_eq!(held(&junction), before);
 }

@@ -5,7 +5,7 @@ mod rig;
 
 use holdover::config::Envelope;
 use holdover::envelope::{self, Ego, Obstacle, Situation};
-use holdover::estimator::bound::{Bound, Doubt, Reach};
+use holdover::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Jerk};
 use rig::plant::{Body, Plant};
@@ -116,18 +116,18 @@ fn at(time: f64) -> Instant {
 
 /// What is certain after a sample that says the vehicle is further ahead and faster than it is, by a clock that runs fast.
 fn sampled(time: f64, body: &Body) -> Bound {
-    let doubt = Doubt {
+    let uncertainty = Uncertainty {
         position: metres(ACCURACY.0),
         speed: mps(ACCURACY.1),
         earlier: Duration::from_micros(CLOCK_ERROR),
         later: Duration::from_micros(CLOCK_ERROR),
     };
     let stamped = at(time).minus(Duration::from_micros(CLOCK_ERROR));
-    Bound::around(stamped, place(body.position + ACCURACY.0), mps(body.speed + ACCURACY.1), &doubt, &reach())
+    Bound::around(stamped, place(body.position + ACCURACY.0), mps(body.speed + ACCURACY.1), &uncertainty, &reach())
 }
 
-fn reach() -> Reach {
-    Reach { acceleration: mps2(2.5), braking: mps2(BRAKING) }
+fn reach() -> AccelerationRange {
+    AccelerationRange { acceleration: mps2(2.5), braking: mps2(BRAKING) }
 }
 
 /// From the newest sample before a silence on: the target goes on for some time and then brakes at its worst.

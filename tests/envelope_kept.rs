@@ -5,7 +5,7 @@ mod rig;
 
 use holdover::config::Envelope;
 use holdover::envelope::{self, Ego, Obstacle, Situation};
-use holdover::units::{Distance, FineSeconds, Share};
+use holdover::units::{Distance, FineSeconds, Fraction};
 use rig::chase::PERIOD;
 use rig::plant::{Body, Plant};
 use rig::random::Random;
@@ -30,7 +30,7 @@ const ROUNDING: f64 = 5e-5;
 
 #[test]
 fn what_is_safe_is_safe_after_a_tick_of_the_gates_command() {
-    let limits = Envelope { lag_tolerance: Share::ZERO, margin: Distance::from_mm(100), ..Envelope::CAR };
+    let limits = Envelope { lag_tolerance: Fraction::ZERO, margin: Distance::from_mm(100), ..Envelope::CAR };
     let mut random = Random::new(33);
     let (mut judged, mut by_closing) = (0, 0);
     for _ in 0..400_000 {

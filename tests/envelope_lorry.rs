@@ -6,7 +6,7 @@ mod rig;
 use holdover::Config;
 use holdover::config::Envelope;
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, Jerk, Seconds, Share};
+use holdover::units::{Acceleration, Distance, Fraction, Jerk, Seconds};
 use rig::chase::Chase;
 use rig::random::Random;
 use rig::road::Road;
@@ -15,7 +15,7 @@ const BRAKINGS: [f64; 9] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 12.0];
 
 /// No tolerance: what is told is true, and nothing else than the conditions themselves keeps the two apart.
 fn exact(envelope: Envelope) -> Envelope {
-    Envelope { delay: Duration::ZERO, lag_tolerance: Share::ZERO, margin: Distance::from_mm(1), ..envelope }
+    Envelope { delay: Duration::ZERO, lag_tolerance: Fraction::ZERO, margin: Distance::from_mm(1), ..envelope }
 }
 
 fn gentle() -> Envelope {

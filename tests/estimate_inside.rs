@@ -5,12 +5,12 @@ mod rig;
 mod traffic;
 
 use holdover::config::Config;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::Duration;
 use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::Said;
+use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
-use holdover::wire::intent::Intent;
 use rig::plant::Body;
 use rig::random::Random;
 use rig::{LENGTH, Rig, TARGET, instant, m_of, metres, mps, mps_of, mps2};
@@ -43,11 +43,11 @@ fn an_honest_sample_of_poor_accuracy_does_not_undo_the_good_ones_before_it() {
             let now = tick * 10_000;
             if now % 500_000 == 0 {
                 rig.synchronise(now, 0);
-                let _ = rig.target(now, Said::Intent(rig::intent(2.5, 8.0)));
+                let _ = rig.target(now, Said::DrivingParameters(rig::parameters(2.5, 8.0)));
             }
             let _ = rig.ego(now, 1_000.0 + 20.0 * now as f64 * 1e-6, 20.0, 0.0, 0.0);
             if now % 100_000 == 0 {
-                let _ = rig.wish(now, true, holdover::wire::Predecessor::Station(TARGET));
+                let _ = rig.request(now, true, holdover::wire::Predecessor::Station(TARGET));
                 let is_poor = now == 2_200_000;
                 let (off, faster) = if is_poor { (off, faster) } else { (0.0, 0.0) };
                 let accuracy = if is_poor { (6.0, 1.5) } else { (0.05, 0.02) };
@@ -78,11 +78,13 @@ fn an_honest_sample_of_poor_accuracy_does_not_undo_the_good_ones_before_it() {
 fn a_forged_part_of_a_horizon_before_a_silence_is_not_believed() {
     for part in 0..KNOTS {
         let (mut unit, mut traffic) = settled();
-        let frames = traffic.peer(0, Said::Intent(Intent { horizon_tenths: 40, ..traffic::leads() }));
+        let frames =
+            traffic.peer(0, Said::DrivingParameters(DrivingParameters { horizon_tenths: 40, ..traffic::leads() }));
         receive_all(&mut unit, traffic.now(), &frames);
         traffic.run(&mut unit, 50);
         let now = traffic.now();
-        let frames = traffic.peer(0, Said::Intent(Intent { horizon_tenths: 40, ..traffic::leads() }));
+        let frames =
+            traffic.peer(0, Said::DrivingParameters(DrivingParameters { horizon_tenths: 40, ..traffic::leads() }));
         receive_all(&mut unit, now, &frames);
         let motion = traffic.motion(traffic::TARGET, 17_000, now);
         let mut forged = steady(motion.tag, 10.0, 40);
@@ -100,7 +102,7 @@ fn a_forged_part_of_a_horizon_before_a_silence_is_not_believed() {
         traffic.target = false;
         let off = (0..450).map(|_| off_after(&mut unit, &mut traffic, 1).abs()).fold(0.0, f64::max);
         assert!(off < 0.1, "part {part}: {off} m within 4.5 s");
-        assert_eq!(unit.health().of(Refusal::Unreachable), 1, "part {part}: {off}");
+        assert_eq!(unit.health().of(Cause::Unreachable), 1, "part {part}: {off}");
     }
 }
 
@@ -122,8 +124,8 @@ fn an_honest_horizon_is_used_and_not_counted() {
     }
     let mut motion = traffic.motion(traffic::TARGET, 17_000, now);
     (motion.acceleration, motion.demand, knots.tag) = (mps2(-1.5), mps2(-1.5), motion.tag);
-    let intent = Said::Intent(Intent { horizon_tenths: 40, ..traffic::leads() });
-    for said in [intent, Said::Motion(motion), Said::Horizon(knots), Said::Horizon(knots), Said::Horizon(knots)] {
+    let parameters = Said::DrivingParameters(DrivingParameters { horizon_tenths: 40, ..traffic::leads() });
+    for said in [parameters, Said::Motion(motion), Said::Horizon(knots), Said::Horizon(knots), Said::Horizon(knots)] {
         let frames = traffic.peer(0, said);
         receive_all(&mut unit, now, &frames);
     }
@@ -131,7 +133,7 @@ fn an_honest_horizon_is_used_and_not_counted() {
     let off = off_after(&mut unit, &mut traffic, 300);
     let braked = -0.5 * 1.5 * 2.99 * 2.99;
     assert!((off - braked).abs() < 0.02, "{off} {braked}");
-    assert_eq!(unit.health().of(Refusal::Unreachable), 0);
+    assert_eq!(unit.health().of(Cause::Unreachable), 0);
 }
 
 /// A random drive: honest motions of any accuracy, forged horizons, silences, a sensor at times. How many ticks were checked.
@@ -153,12 +155,12 @@ fn drive(seed: u64) -> u64 {
         }
         if now % 500_000 == 0 {
             rig.synchronise(now, 0);
-            let intent = Intent { horizon_tenths: 6, ..rig::intent(rising, braking) };
-            let _ = rig.target(now, Said::Intent(intent));
+            let parameters = DrivingParameters { horizon_tenths: 6, ..rig::parameters(rising, braking) };
+            let _ = rig.target(now, Said::DrivingParameters(parameters));
         }
         let _ = rig.ego(now, ego, 15.0, 0.0, 0.0);
         if now % 100_000 == 0 {
-            let _ = rig.wish(now, true, holdover::wire::Predecessor::Station(TARGET));
+            let _ = rig.request(now, true, holdover::wire::Predecessor::Station(TARGET));
         }
         if now % 100_000 == 0 && is_heard {
             let accuracy = (random.extreme(0.0, 6.0), random.extreme(0.0, 1.4));

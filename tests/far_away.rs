@@ -5,7 +5,7 @@ mod rig;
 
 use holdover::config::Envelope;
 use holdover::controller::Mode;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use rig::m_of;
 use rig::road::Road;
 
@@ -26,10 +26,10 @@ fn left_behind(envelope: Option<Envelope>) -> Road {
 fn who_stands_where_a_silent_target_was_drives_on_when_that_is_heard_from_too_far_away() {
     for envelope in [None, Some(Envelope::CAR)] {
         let mut road = left_behind(envelope);
-        let before = road.rig.unit.health().of(Refusal::TooFar);
+        let before = road.rig.unit.health().of(Cause::TooFar);
         road.senses.v2x = true;
         let mode = road.run(20.0).answer.mode;
-        assert!(road.rig.unit.health().of(Refusal::TooFar) > before + 100);
+        assert!(road.rig.unit.health().of(Cause::TooFar) > before + 100);
         // It is not followed: it is as silent as before.
         assert!(matches!(mode, Mode::Fallback { .. }), "{mode:?}");
         assert!(road.ego.speed > 5.0, "{envelope:?}: {}", road.ego.speed);

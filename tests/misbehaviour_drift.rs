@@ -3,7 +3,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::Said;
 use rig::plant::{Body, TOP};
 use rig::random::Random;
@@ -14,7 +14,7 @@ fn found_after(drift: f64, accuracy: (f64, f64), lasts: i64) -> Option<f64> {
     let mut rig = Rig::new(&rig::config());
     rig.power_up(true, 0);
     for at in [-60_000, -50_000, -40_000] {
-        let _ = rig.target(at, Said::Intent(rig::intent(2.5, 8.0)));
+        let _ = rig.target(at, Said::DrivingParameters(rig::parameters(2.5, 8.0)));
     }
     for n in 0..lasts * 10 {
         let now = n * 100_000;
@@ -24,8 +24,8 @@ fn found_after(drift: f64, accuracy: (f64, f64), lasts: i64) -> Option<f64> {
         let position = (15.0 + drift) * now as f64 * 1e-6;
         let motion = rig.motion(TARGET, now, position, 15.0, 0.0, 0.0, Some(accuracy));
         match rig.target(now, Said::Motion(motion)) {
-            Ok(()) | Err(Refusal::NotYetTrusted) => {}
-            Err(Refusal::Implausible | Refusal::Jump) => return Some(now as f64 * 1e-6),
+            Ok(()) | Err(Cause::NotYetTrusted) => {}
+            Err(Cause::Implausible | Cause::Jump) => return Some(now as f64 * 1e-6),
             Err(other) => panic!("{other:?}"),
         }
     }
@@ -66,7 +66,7 @@ fn honest(seed: u64) -> u32 {
     let accuracy = random.happens(0.9).then_some(published);
     let errors = accuracy.unwrap_or((5.0, 1.5));
     for at in [-60_000, -50_000, -40_000] {
-        let _ = rig.target(at, Said::Intent(rig::intent(limits.0, limits.1)));
+        let _ = rig.target(at, Said::DrivingParameters(rig::parameters(limits.0, limits.1)));
     }
     let mut body = Body { position: random.between(-9e3, 9e3), speed: random.extreme(0.0, TOP) };
     // Clocks that are off, all of the time to one side or by turns.
@@ -85,7 +85,7 @@ fn honest(seed: u64) -> u32 {
             let clock = end(bias.2, clocks) as i64;
             let motion = rig.motion(TARGET, now + clock, position, speed, 0.0, 0.0, accuracy);
             let taken = rig.target(now + 1_000, Said::Motion(motion));
-            assert!(matches!(taken, Ok(()) | Err(Refusal::NotYetTrusted)), "seed {seed} at {now}: {taken:?}");
+            assert!(matches!(taken, Ok(()) | Err(Cause::NotYetTrusted)), "seed {seed} at {now}: {taken:?}");
             sent += 1;
         }
         if now >= holds {

@@ -3,7 +3,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::parameters::RECOVERY_SAMPLES;
 use holdover::wire::{Said, StationHash};
 use rig::plant::Body;
@@ -32,7 +32,7 @@ impl Target {
         let mut rig = Rig::new(&rig::config());
         rig.power_up(true, 0);
         for at in [-60_000, -40_000] {
-            let _ = rig.target(at, Said::Intent(rig::intent(2.0, 8.0)));
+            let _ = rig.target(at, Said::DrivingParameters(rig::parameters(2.0, 8.0)));
         }
         let mut target = Self { rig, body: Body { position: 500.0, speed: 15.0 }, now: 0 };
         let _ = target.says(Lie::default()); // not trusted yet
@@ -42,11 +42,11 @@ impl Target {
         target
     }
 
-    fn says(&mut self, lie: Lie) -> Result<(), Refusal> {
+    fn says(&mut self, lie: Lie) -> Result<(), Cause> {
         self.moves(0.0, 0.1, lie)
     }
 
-    fn moves(&mut self, a: f64, time: f64, lie: Lie) -> Result<(), Refusal> {
+    fn moves(&mut self, a: f64, time: f64, lie: Lie) -> Result<(), Cause> {
         self.body = self.body.after(a, time);
         self.now += (time * 1e6).round() as i64;
         if self.now % 500_000 == 0 {
@@ -67,7 +67,7 @@ impl Target {
         m_of(self.rig.unit.estimator().read(2, instant(self.now)).unwrap().position)
     }
 
-    fn count(&self, cause: Refusal) -> u32 {
+    fn count(&self, cause: Cause) -> u32 {
         self.rig.unit.health().of(cause)
     }
 }
@@ -80,8 +80,8 @@ fn a_jump_is_named_counted_and_not_used() {
         let before = target.newest();
         let taken = target.says(Lie { position: jump, ..Lie::default() });
         if is_caught {
-            assert_eq!(taken, Err(Refusal::Jump), "{jump}");
-            assert_eq!((target.count(Refusal::Jump), target.newest()), (1, before), "{jump}");
+            assert_eq!(taken, Err(Cause::Jump), "{jump}");
+            assert_eq!((target.count(Cause::Jump), target.newest()), (1, before), "{jump}");
             let estimate = target.estimate();
             assert!((estimate - target.body.position).abs() < 0.1, "{jump}: {estimate}");
         } else {
@@ -101,12 +101,12 @@ fn one_constant_speed_while_the_position_moves_four_times_as_fast_is_never_belie
     for _ in 0..161 {
         match target.says(Lie { speed: -45.0, ..Lie::default() }) {
             Ok(()) => taken += 1,
-            Err(Refusal::Jump | Refusal::Implausible | Refusal::Stuck) => named += 1,
+            Err(Cause::Jump | Cause::Implausible | Cause::Stuck) => named += 1,
             Err(other) => panic!("{other:?}"),
         }
     }
     assert!(named > 150 && taken <= 11, "{named} named, {taken} taken");
-    let counted: u32 = [Refusal::Jump, Refusal::Implausible].map(|cause| target.count(cause)).iter().sum();
+    let counted: u32 = [Cause::Jump, Cause::Implausible].map(|cause| target.count(cause)).iter().sum();
     assert_eq!(counted, named);
     // When it tells the truth again it is believed again.
     let mut refused = 0;
@@ -164,9 +164,9 @@ fn each_recovery_takes_twice_as_many_samples_as_the_last_until_it_is_forgiven() 
 #[test]
 fn a_speed_that_does_not_fit_the_positions_is_implausible() {
     let mut target = Target::believed();
-    assert_eq!(target.says(Lie { speed: 5.0, ..Lie::default() }), Err(Refusal::Implausible));
-    assert_eq!(target.says(Lie { speed: -5.0, ..Lie::default() }), Err(Refusal::Implausible));
-    assert_eq!(target.count(Refusal::Implausible), 2);
+    assert_eq!(target.says(Lie { speed: 5.0, ..Lie::default() }), Err(Cause::Implausible));
+    assert_eq!(target.says(Lie { speed: -5.0, ..Lie::default() }), Err(Cause::Implausible));
+    assert_eq!(target.count(Cause::Implausible), 2);
     assert_eq!(target.says(Lie::default()), Ok(()));
 }
 
@@ -181,8 +181,8 @@ fn values_that_do_not_change_though_they_have_to_are_stuck() {
         verdicts.push(target.rig.target(target.now, Said::Motion(motion)));
     }
     // Not at 15 m/s with half a metre of accuracy: the first of them is out of reach already.
-    assert_eq!(verdicts, vec![Err(Refusal::Stuck); 8]);
-    assert_eq!(target.count(Refusal::Stuck), 8);
+    assert_eq!(verdicts, vec![Err(Cause::Stuck); 8]);
+    assert_eq!(target.count(Cause::Stuck), 8);
     // One that really stands says so with its speed.
     let mut target = Target::believed();
     while target.body.speed > 0.0 {
@@ -198,7 +198,7 @@ fn an_acceleration_that_no_vehicle_has_is_implausible() {
     for (acceleration, is_caught) in [(13.1, true), (-13.1, true), (-20.0, true), (12.9, false), (-12.9, false)] {
         let mut target = Target::believed();
         let taken = target.says(Lie { acceleration: Some(acceleration), ..Lie::default() });
-        assert_eq!(taken == Err(Refusal::Implausible), is_caught, "{acceleration}: {taken:?}");
+        assert_eq!(taken == Err(Cause::Implausible), is_caught, "{acceleration}: {taken:?}");
     }
 }
 
@@ -209,10 +209,7 @@ fn braking_harder_than_it_says_it_can_is_noticed_when_it_has_shown_in_speed() {
     for _ in 0..6 {
         verdicts.push(target.moves(-11.0, 0.1, Lie::default()));
     }
-    assert!(
-        verdicts.iter().any(|verdict| matches!(verdict, Err(Refusal::Implausible | Refusal::Jump))),
-        "{verdicts:?}"
-    );
+    assert!(verdicts.iter().any(|verdict| matches!(verdict, Err(Cause::Implausible | Cause::Jump))), "{verdicts:?}");
 }
 
 #[test]
@@ -224,14 +221,14 @@ fn a_second_station_in_the_slot_is_a_conflict_until_the_first_has_been_silent_fo
         let motion = target.rig.motion(StationHash(66), target.now, 900.0, 10.0, 0.0, 0.0, ACCURACY);
         target.rig.target(target.now, Said::Motion(motion))
     };
-    assert_eq!(other(&mut target, 50_000), Err(Refusal::StationConflict));
-    assert_eq!(target.count(Refusal::StationConflict), 1);
+    assert_eq!(other(&mut target, 50_000), Err(Cause::StationConflict));
+    assert_eq!(target.count(Cause::StationConflict), 1);
     target.body = target.body.after(0.0, 0.05);
     assert_eq!(target.says(Lie::default()), Ok(()));
-    assert_eq!(other(&mut target, 1_900_000), Err(Refusal::StationConflict));
+    assert_eq!(other(&mut target, 1_900_000), Err(Cause::StationConflict));
     assert_eq!(other(&mut target, 200_000), Ok(()));
     let track = target.rig.unit.peers().get(2).unwrap();
-    assert_eq!((track.station(), track.intent()), (Some(StationHash(66)), None));
+    assert_eq!((track.station(), track.parameters()), (Some(StationHash(66)), None));
     assert_eq!(target.newest(), 900.0);
 }
 
@@ -241,7 +238,7 @@ fn five_samples_that_agree_with_one_another_are_believed_against_what_was_certai
     let mut target = Target::believed();
     target.body.position += 30.0;
     for n in 1..RECOVERY_SAMPLES {
-        assert_eq!(target.says(Lie::default()), Err(Refusal::Jump), "{n}");
+        assert_eq!(target.says(Lie::default()), Err(Cause::Jump), "{n}");
     }
     assert_eq!(target.says(Lie::default()), Ok(()));
     assert_eq!(target.newest(), target.body.position);
@@ -254,7 +251,7 @@ fn samples_that_do_not_agree_with_one_another_are_not_believed_however_many() {
     let mut target = Target::believed();
     for n in 0..40 {
         let position = [30.0, -50.0, 90.0][n % 3];
-        assert_eq!(target.says(Lie { position, ..Lie::default() }), Err(Refusal::Jump), "{n}");
+        assert_eq!(target.says(Lie { position, ..Lie::default() }), Err(Cause::Jump), "{n}");
     }
 }
 
@@ -263,7 +260,7 @@ fn one_honest_sample_takes_the_evidence_of_the_liar_away() {
     let mut target = Target::believed();
     for _ in 0..5 {
         for _ in 1..RECOVERY_SAMPLES {
-            assert_eq!(target.says(Lie { position: 30.0, ..Lie::default() }), Err(Refusal::Jump));
+            assert_eq!(target.says(Lie { position: 30.0, ..Lie::default() }), Err(Cause::Jump));
         }
         assert_eq!(target.says(Lie::default()), Ok(()));
     }
@@ -297,11 +294,11 @@ fn copies_of_a_refused_sample_are_no_evidence() {
             let motion = target.rig.motion(TARGET, at, ahead, speed, 0.0, 0.0, ACCURACY);
             verdicts.push(target.rig.target(at, Said::Motion(motion)));
         }
-        assert_eq!(verdicts[0], Err(Refusal::Jump));
-        let named = |verdict: &Result<(), Refusal>| matches!(verdict, Err(Refusal::Jump | Refusal::Duplicate));
+        assert_eq!(verdicts[0], Err(Cause::Jump));
+        let named = |verdict: &Result<(), Cause>| matches!(verdict, Err(Cause::Jump | Cause::Duplicate));
         assert!(verdicts.iter().all(named), "{apart}: {verdicts:?}");
         if apart == 0 {
-            assert!(verdicts[1..].iter().all(|verdict| *verdict == Err(Refusal::Duplicate)));
+            assert!(verdicts[1..].iter().all(|verdict| *verdict == Err(Cause::Duplicate)));
         }
         // Nothing honest is refused after it.
         for n in 0..20 {
@@ -333,7 +330,7 @@ fn a_stamp_that_stands_still_is_never_news_however_often_it_comes_round() {
         let place = body.position + 1.5 * n as f64;
         let motion = target.rig.motion(TARGET, frozen, place, body.speed, 0.0, 0.0, ACCURACY);
         let taken = target.rig.target(now, Said::Motion(motion));
-        assert!(matches!(taken, Err(Refusal::Duplicate | Refusal::Stale | Refusal::Future)), "{n}: {taken:?}");
+        assert!(matches!(taken, Err(Cause::Duplicate | Cause::Stale | Cause::Future)), "{n}: {taken:?}");
     }
 }
 
@@ -351,6 +348,6 @@ fn an_own_stamp_that_stands_still_is_never_news_however_often_it_comes_round() {
         }
         let motion = rig.motion(rig::EGO, 10_000, 0.1 * n as f64, 10.0, 0.0, 0.0, ACCURACY);
         let taken = rig.put(now, &holdover::wire::Message::Ego(Said::Motion(motion)));
-        assert!(matches!(taken, Err(Refusal::Duplicate | Refusal::Stale | Refusal::Future)), "{n}: {taken:?}");
+        assert!(matches!(taken, Err(Cause::Duplicate | Cause::Stale | Cause::Future)), "{n}: {taken:?}");
     }
 }

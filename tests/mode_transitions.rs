@@ -242,7 +242,7 @@ fn taking_over_from_a_driver_who_brakes_hard_is_limited_in_jerk() {
     let _ = road.rig.ego(at, road.ego.position, road.ego.speed, -7.0, -7.0);
     road.rig.tick(at);
     road.engaged = true;
-    let _ = road.rig.wish(at, true, road.predecessor);
+    let _ = road.rig.request(at, true, road.predecessor);
     road.commands = vec![-7.0];
     road.run(1.0);
     let (_, up) = road.steepest();

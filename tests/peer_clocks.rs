@@ -3,7 +3,7 @@
 
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::Said;
 use rig::random::Random;
 use rig::{Rig, TARGET, instant, m_of, mps_of};
@@ -15,7 +15,7 @@ fn heard(ahead: i64, mut delay: impl FnMut(&mut Random) -> i64) -> (f64, u32, u3
     let mut rig = Rig::new(&rig::config());
     rig.power_up(true, 0);
     for at in [-60_000, -50_000, -40_000] {
-        let _ = rig.target(at, Said::Intent(rig::intent(2.5, 8.0)));
+        let _ = rig.target(at, Said::DrivingParameters(rig::parameters(2.5, 8.0)));
     }
     let mut under_way = Vec::new();
     let (mut outside, mut taken) = (0.0, 0);
@@ -44,7 +44,7 @@ fn heard(ahead: i64, mut delay: impl FnMut(&mut Random) -> i64) -> (f64, u32, u3
             outside = now as f64 * 1e-6;
         }
     }
-    (outside, taken, rig.unit.health().of(Refusal::PeerClock))
+    (outside, taken, rig.unit.health().of(Cause::PeerClock))
 }
 
 #[test]

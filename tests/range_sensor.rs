@@ -8,7 +8,7 @@ use holdover::controller::{FallbackCause, Mode};
 use holdover::time::Duration;
 use holdover::wire::Predecessor;
 use holdover::wire::command::ModeCode;
-use holdover::{Config, health::Refusal};
+use holdover::{Config, health::Cause};
 use rig::road::Road;
 use rig::{instant, m_of, mps_of};
 
@@ -85,7 +85,7 @@ fn disagreement_beyond_both_bounds_is_a_fallback_that_is_left_when_they_agree() 
         let is_named = matches!(heard.answer.mode, Mode::Fallback { cause: FallbackCause::RangeDisagrees, .. });
         assert!(is_named, "{wrong}: {:?}", heard.answer.mode);
         road.run(2.0);
-        assert_eq!(road.rig.unit.health().of(Refusal::RangeDisagrees), 1, "however long it lasts");
+        assert_eq!(road.rig.unit.health().of(Cause::RangeDisagrees), 1, "however long it lasts");
         road.wrong = 0.0;
         assert_eq!(road.run(0.9).command.mode, ModeCode::Fallback);
         assert_eq!(road.run(0.2).command.mode, ModeCode::Cooperative);
@@ -120,10 +120,10 @@ fn a_single_wrong_view_is_no_disagreement() {
 fn a_view_without_the_own_motion_is_refused() {
     let mut road = Road::new(&rig::config(), 20.0, 22.0);
     let _ = road.rig.range(0, 22.0, 0.0, 0);
-    assert_eq!(road.rig.range(10_000, 22.0, 0.0, 0), Err(Refusal::Torn));
+    assert_eq!(road.rig.range(10_000, 22.0, 0.0, 0), Err(Cause::Torn));
     road.run(0.5);
     assert_eq!(road.rig.range(road.now, 22.0, 0.0, 0), Ok(()));
-    assert_eq!(road.rig.range(road.now + 200_000, 22.0, 0.0, 0), Err(Refusal::Stale));
+    assert_eq!(road.rig.range(road.now + 200_000, 22.0, 0.0, 0), Err(Cause::Stale));
 }
 
 /// A unit that gives its target up after 1 s.

@@ -3,7 +3,7 @@
 
 use holdover::config::{Config, ConfigError, Envelope};
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::StationHash;
 
 const CAPACITY: usize = 400;
@@ -156,7 +156,7 @@ fn the_envelope() {
         speed: Speed::from_mm_per_s(30_000),
         margin: Distance::from_mm(500),
         delay: Duration::from_millis(30),
-        lag_tolerance: Share::from_milli(200),
+        lag_tolerance: Fraction::from_milli(200),
     };
     type Set = fn(&mut Envelope, i32);
     // In bits of their formats; braking and jerk from what a command can say, braking up to the car's emergency braking.
@@ -170,7 +170,7 @@ fn the_envelope() {
         (|envelope, bits| envelope.speed = Speed::from_bits(bits), [1, i64::MAX / 2]),
         (|envelope, bits| envelope.margin = Distance::from_bits(bits), [0, i64::MAX / 2]),
         (|envelope, micros| envelope.delay = Duration::from_micros(micros.into()), [0, 500 * MS]),
-        (|envelope, bits| envelope.lag_tolerance = Share::from_bits(bits), [0, i64::from(Share::ONE.to_bits())]),
+        (|envelope, bits| envelope.lag_tolerance = Fraction::from_bits(bits), [0, i64::from(Fraction::ONE.to_bits())]),
     ];
     for (set, ends) in bounded {
         range(ConfigError::Envelope, ends, |config, bits| {

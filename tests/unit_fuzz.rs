@@ -10,7 +10,7 @@ use holdover::controller::Mode;
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, Jerk, Speed};
 use holdover::wire::catalogue::{BLOCK, BaseId};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Frame, Message, Said, Sender};
 use proptest::prelude::*;
 use proptest::test_runner::{Config as Proptest, RngSeed};
@@ -43,11 +43,12 @@ fn event() -> impl Strategy<Value = Event> {
     ];
     let id = prop_oneof![(0u16..0x800).prop_map(standard), any::<u32>().prop_map(|id| extended(id & 0x1FFF_FFFF))];
     let frame = (id, proptest::collection::vec(any::<u8>(), 0..=8), any::<bool>());
-    // Those who drive are driven: a wish that is mostly a wish to.
-    let wish = (messages::ego_intent(), 0..10u8).prop_map(|(wish, off)| EgoIntent { engaged: off > 0, ..wish });
+    // Those who drive are driven: a request that is mostly a request to.
+    let request =
+        (messages::driver_request(), 0..10u8).prop_map(|(request, off)| DriverRequest { engaged: off > 0, ..request });
     prop_oneof![
         6 => messages::to_unit(PEERS as u8).prop_map(Event::Message),
-        2 => wish.prop_map(|wish| Event::Message(Message::EgoIntent(wish))),
+        2 => request.prop_map(|request| Event::Message(Message::DriverRequest(request))),
         2 => messages::motion().prop_map(|motion| Event::Message(Message::Ego(Said::Motion(motion)))),
         3 => (0..BLOCK, 0u8..16, any::<[u8; 8]>()).prop_map(|(id, counter, data)| Event::Sealed(id, counter, data)),
         1 => frame.prop_map(|(id, data, remote)| Event::Any(AnyFrame { id, data, remote })),

@@ -8,9 +8,9 @@ use holdover::controller::{FallbackCause, FaultCause, Mode};
 use holdover::time::{Duration, Instant};
 use holdover::units::Acceleration;
 use holdover::wire::command::{Effort, ModeCode};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Predecessor, StationHash};
-use traffic::{EGO, PERIOD, TARGET, Traffic, Unit, pages, settled, wish};
+use traffic::{EGO, PERIOD, TARGET, Traffic, Unit, pages, request, settled};
 
 fn unit() -> Unit {
     Unit::new(&Config::car(EGO)).expect("the configuration is sound")
@@ -19,7 +19,7 @@ fn unit() -> Unit {
 #[test]
 fn not_engaged_the_unit_stands_by_and_keeps_up_with_what_is_demanded() {
     let (mut unit, mut traffic) = settled();
-    traffic.wish = EgoIntent { engaged: false, ..wish(Predecessor::Station(TARGET)) };
+    traffic.request = DriverRequest { engaged: false, ..request(Predecessor::Station(TARGET)) };
     let answer = traffic.run(&mut unit, 11);
     assert_eq!((answer.mode, answer.command.mode), (Mode::Standby, ModeCode::Standby));
     assert_eq!(answer.command.acceleration, Acceleration::ZERO, "the ego says that nothing is demanded of it");
@@ -29,7 +29,7 @@ fn not_engaged_the_unit_stands_by_and_keeps_up_with_what_is_demanded() {
 fn with_the_link_on_or_leading_it_cooperates() {
     let (mut unit, mut traffic) = settled();
     assert_eq!(traffic.step(&mut unit).mode, Mode::Cooperative);
-    traffic.wish = wish(Predecessor::None);
+    traffic.request = request(Predecessor::None);
     traffic.target = false;
     assert_eq!(traffic.run(&mut unit, 100).mode, Mode::Cooperative);
 }
@@ -56,7 +56,7 @@ fn with_the_link_off_it_holds_over_and_falls_back_when_that_has_lasted_too_long(
 #[test]
 fn in_a_fallback_the_braking_grows_with_time_and_no_further_than_normal() {
     let (mut unit, mut traffic) = settled();
-    traffic.wish = wish(Predecessor::Unknown);
+    traffic.request = request(Predecessor::Unknown);
     let mut last = traffic.run(&mut unit, 11).command.acceleration;
     for period in 0..1_200 {
         let answer = traffic.step(&mut unit);
@@ -70,7 +70,7 @@ fn in_a_fallback_the_braking_grows_with_time_and_no_further_than_normal() {
 #[test]
 fn a_target_that_nobody_ever_heard_is_a_fallback() {
     let (mut unit, mut traffic) = settled();
-    traffic.wish = wish(Predecessor::Station(StationHash(200)));
+    traffic.request = request(Predecessor::Station(StationHash(200)));
     let mode = traffic.run(&mut unit, 11).mode;
     assert!(matches!(mode, Mode::Fallback { cause: FallbackCause::NeverHeard, .. }), "{mode:?}");
 }

@@ -4,12 +4,12 @@
 mod rig;
 
 use holdover::config::Envelope;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::units::Distance;
-use holdover::wire::intent::Intent;
+use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::road::Road;
-use rig::{TARGET, config, intent, metres};
+use rig::{TARGET, config, metres, parameters};
 
 const NEW_NAME: StationHash = StationHash(77);
 const OTHER: StationHash = StationHash(78);
@@ -25,7 +25,7 @@ fn road() -> Road {
 }
 
 /// A motion of the vehicle ahead by this name in this slot, so far from where it is.
-fn say(road: &mut Road, station: StationHash, slot: Slot, off: f64, accuracy: f64) -> Result<(), Refusal> {
+fn say(road: &mut Road, station: StationHash, slot: Slot, off: f64, accuracy: f64) -> Result<(), Cause> {
     let (now, body, a) = (road.now, road.target, road.acceleration);
     let motion = road.rig.motion(station, now, body.position + off, body.speed, a, a, Some((accuracy, 0.02)));
     road.rig.put(now, &Message::Peer(slot, Said::Motion(motion)))
@@ -57,7 +57,7 @@ fn a_new_name_that_follows_on_is_the_same_vehicle() {
     });
     assert_eq!(refused, 0);
     assert_eq!(road.rig.unit.peers().index_of(NEW_NAME), Some(2));
-    assert!(road.rig.unit.peers().get(2).is_some_and(|track| track.intent().is_some()), "what it said holds");
+    assert!(road.rig.unit.peers().get(2).is_some_and(|track| track.parameters().is_some()), "what it said holds");
     assert!(least > 0.3, "{least}");
 }
 
@@ -67,11 +67,7 @@ fn a_new_name_where_another_vehicle_could_be_is_a_conflict() {
         let mut road = road();
         road.senses.v2x = false;
         road.run(0.1);
-        assert_eq!(
-            say(&mut road, NEW_NAME, rig::SLOT, off, accuracy),
-            Err(Refusal::StationConflict),
-            "{off} {accuracy}"
-        );
+        assert_eq!(say(&mut road, NEW_NAME, rig::SLOT, off, accuracy), Err(Cause::StationConflict), "{off} {accuracy}");
         assert_eq!(road.rig.unit.peers().get(2).and_then(|track| track.station()), Some(TARGET));
     }
 }
@@ -116,10 +112,10 @@ fn the_vehicle_ahead_is_minded_when_its_slot_is_given_to_another_one() {
 #[test]
 fn what_a_station_said_of_itself_holds_in_its_next_slot() {
     let mut road = road();
-    let long = Intent { length: metres(18.0), ..intent(2.5, 8.0) };
+    let long = DrivingParameters { length: metres(18.0), ..parameters(2.5, 8.0) };
     road.senses.v2x = false;
     for _ in 0..2 {
-        let _ = road.rig.target(road.now, Said::Intent(long));
+        let _ = road.rig.target(road.now, Said::DrivingParameters(long));
     }
     road.run(2.2);
     for _ in 0..3 {
@@ -128,7 +124,7 @@ fn what_a_station_said_of_itself_holds_in_its_next_slot() {
     }
     let track = road.rig.unit.peers().get(0).unwrap();
     assert_eq!(track.station(), Some(TARGET));
-    let length = track.intent().map(|intent| intent.length);
+    let length = track.parameters().map(|parameters| parameters.length);
     assert!(length.is_some_and(|length| length.minus(metres(18.0)).magnitude() < Distance::from_mm(10)), "{length:?}");
 }
 

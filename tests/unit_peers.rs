@@ -51,7 +51,7 @@ fn a_slot_is_given_to_another_station_only_after_a_silence() {
             taken_over = Some(period);
             let track = unit.peers().get(1).expect("a slot");
             assert_eq!((track.station(), track.samples().len()), (Some(StationHash(7)), 1));
-            assert_eq!((track.intent(), track.knots()), (None, None), "what the other one said is forgotten");
+            assert_eq!((track.parameters(), track.knots()), (None, None), "what the other one said is forgotten");
         }
     }
     // The one behind spoke last in period 291 of the first 300; 2 s later is period 191 from here, checked after its tick.

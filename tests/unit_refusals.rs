@@ -5,7 +5,7 @@ mod traffic;
 
 use holdover::Reception;
 use holdover::controller::Mode;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Instant, Stamp};
 use holdover::units::Acceleration;
 use holdover::wire::bits::Payload;
@@ -18,16 +18,16 @@ use traffic::{
 };
 
 fn counts(unit: &Unit) -> Vec<u32> {
-    Refusal::ALL.iter().map(|cause| unit.health().of(*cause)).collect()
+    Cause::ALL.iter().map(|cause| unit.health().of(*cause)).collect()
 }
 
 /// A bad input is refused as `cause`, once, and the unit then answers as one that never got it.
-fn is_refused(cause: Refusal, bad: impl FnOnce(&mut Unit, &mut Traffic) -> Result<Reception, Refusal>) {
+fn is_refused(cause: Cause, bad: impl FnOnce(&mut Unit, &mut Traffic) -> Result<Reception, Cause>) {
     let (mut unit, mut traffic) = settled();
     let mut untouched = unit.clone();
     let before = counts(&unit);
     assert_eq!(bad(&mut unit, &mut traffic), Err(cause));
-    for (other, (before, after)) in Refusal::ALL.iter().zip(before.into_iter().zip(counts(&unit))) {
+    for (other, (before, after)) in Cause::ALL.iter().zip(before.into_iter().zip(counts(&unit))) {
         assert_eq!(after - before, u32::from(*other == cause), "count of {}", other.name());
     }
     stay_the_same(&mut unit, &mut untouched, &mut traffic);
@@ -55,7 +55,7 @@ fn stay_the_same(unit: &mut Unit, untouched: &mut Unit, traffic: &mut Traffic) {
 }
 
 /// All frames but the last are parts that are still to be completed.
-fn last(unit: &mut Unit, at: Instant, frames: &[Frame]) -> Result<Reception, Refusal> {
+fn last(unit: &mut Unit, at: Instant, frames: &[Frame]) -> Result<Reception, Cause> {
     let results = receive_all(unit, at, frames);
     let (last, parts) = results.split_last().expect("a message has frames");
     assert!(parts.iter().all(|part| *part == Ok(Reception::Pending)), "{parts:?}");
@@ -67,7 +67,7 @@ fn motion(
     unit: &mut Unit,
     traffic: &mut Traffic,
     change: impl FnOnce(&mut holdover::wire::motion::Motion, &Traffic),
-) -> Result<Reception, Refusal> {
+) -> Result<Reception, Cause> {
     let now = traffic.now();
     let mut motion = traffic.motion(BEHIND, -500_000, now);
     change(&mut motion, traffic);
@@ -76,7 +76,7 @@ fn motion(
 }
 
 /// The same for the ego's own.
-fn ego(unit: &mut Unit, traffic: &mut Traffic, after: Duration) -> Result<Reception, Refusal> {
+fn ego(unit: &mut Unit, traffic: &mut Traffic, after: Duration) -> Result<Reception, Cause> {
     let now = traffic.now();
     let motion = traffic.motion(EGO, 0, now.plus(after));
     let frames = traffic.frames(&Message::Ego(Said::Motion(motion)));
@@ -93,13 +93,13 @@ fn good(traffic: &mut Traffic) -> Frame {
 #[test]
 fn a_frame_that_is_not_8_bytes_long_or_remote() {
     for length in [0, 1, 7] {
-        is_refused(Refusal::Length, |unit, traffic| {
+        is_refused(Cause::Length, |unit, traffic| {
             let mut frame = AnyFrame::from(good(traffic));
             frame.data.truncate(length);
             unit.receive(traffic.now(), &frame)
         });
     }
-    is_refused(Refusal::Length, |unit, traffic| {
+    is_refused(Cause::Length, |unit, traffic| {
         unit.receive(traffic.now(), &AnyFrame { remote: true, ..good(traffic).into() })
     });
 }
@@ -107,7 +107,7 @@ fn a_frame_that_is_not_8_bytes_long_or_remote() {
 #[test]
 fn a_frame_with_a_wrong_checksum() {
     for bit in (0..64).step_by(9) {
-        is_refused(Refusal::Checksum, |unit, traffic| {
+        is_refused(Cause::Checksum, |unit, traffic| {
             let mut frame = good(traffic);
             frame.data[bit / 8] ^= 1 << (bit % 8);
             unit.receive(traffic.now(), &frame)
@@ -117,7 +117,7 @@ fn a_frame_with_a_wrong_checksum() {
 
 #[test]
 fn a_frame_that_comes_twice() {
-    is_refused(Refusal::Repeated, |unit, traffic| {
+    is_refused(Cause::Repeated, |unit, traffic| {
         let mut before = traffic.clone();
         before.period = 291; // when the one behind spoke last
         let (_, frames) = before.next();
@@ -130,7 +130,7 @@ fn a_frame_that_comes_twice() {
 
 #[test]
 fn a_frame_after_too_many_that_are_missing() {
-    is_refused(Refusal::CounterGap, |unit, traffic| {
+    is_refused(Cause::CounterGap, |unit, traffic| {
         let frames: [Frame; 5] = std::array::from_fn(|_| good(traffic));
         unit.receive(traffic.now(), &frames[4])
     });
@@ -138,7 +138,7 @@ fn a_frame_after_too_many_that_are_missing() {
 
 #[test]
 fn a_frame_with_counter_15() {
-    is_refused(Refusal::CounterRange, |unit, traffic| {
+    is_refused(Cause::CounterRange, |unit, traffic| {
         let frame = resealed(good(traffic), Some(15), |_| ());
         unit.receive(traffic.now(), &frame)
     });
@@ -146,7 +146,7 @@ fn a_frame_with_counter_15() {
 
 #[test]
 fn the_first_frame_of_an_identifier() {
-    is_refused(Refusal::NotYetTrusted, |unit, traffic| {
+    is_refused(Cause::NotYetTrusted, |unit, traffic| {
         let now = traffic.now();
         let motion = traffic.motion(StationHash(5), 0, now);
         let frame = traffic.peer(2, Said::Motion(motion))[0];
@@ -156,9 +156,11 @@ fn the_first_frame_of_an_identifier() {
 
 #[test]
 fn a_reserved_value() {
-    // The acceleration of MotionB, bits 29 to 39, as -1024; the part of an intent, bits 14 and 15, as 3.
-    for (said, frame, start, length, raw) in [(None, 1, 29, 11, 0x400), (Some(Said::Intent(leads())), 0, 14, 2, 3)] {
-        is_refused(Refusal::Range, |unit, traffic| {
+    // The acceleration of MotionB, bits 29 to 39, as -1024; the part of driving parameters, bits 14 and 15, as 3.
+    for (said, frame, start, length, raw) in
+        [(None, 1, 29, 11, 0x400), (Some(Said::DrivingParameters(leads())), 0, 14, 2, 3)]
+    {
+        is_refused(Cause::Range, |unit, traffic| {
             let now = traffic.now();
             let motion = traffic.motion(BEHIND, -500_000, now);
             let frame = traffic.peer(1, said.unwrap_or(Said::Motion(motion)))[frame];
@@ -172,7 +174,7 @@ fn a_reserved_value() {
 
 #[test]
 fn parts_that_do_not_belong_together() {
-    is_refused(Refusal::Torn, |unit, traffic| {
+    is_refused(Cause::Torn, |unit, traffic| {
         let (now, first, second) = (traffic.now(), good(traffic), good(traffic));
         assert_eq!(unit.receive(now, &first), Ok(Reception::Pending));
         unit.receive(now, &second)
@@ -186,41 +188,41 @@ fn a_stamp_that_is_too_old_or_in_the_future() {
             motion.stamp = traffic.gnss(traffic.now().plus(Duration::from_micros(after))).stamp();
         }
     };
-    is_refused(Refusal::Stale, |unit, traffic| motion(unit, traffic, stamped(-10_000_100)));
-    is_refused(Refusal::Stale, |unit, traffic| motion(unit, traffic, stamped(-12_000_000)));
-    is_refused(Refusal::Future, |unit, traffic| motion(unit, traffic, stamped(5_100)));
-    is_refused(Refusal::Future, |unit, traffic| motion(unit, traffic, stamped(1_000_000)));
-    is_refused(Refusal::Stale, |unit, traffic| ego(unit, traffic, Duration::from_micros(-50_100)));
-    is_refused(Refusal::Future, |unit, traffic| ego(unit, traffic, Duration::from_micros(5_100)));
+    is_refused(Cause::Stale, |unit, traffic| motion(unit, traffic, stamped(-10_000_100)));
+    is_refused(Cause::Stale, |unit, traffic| motion(unit, traffic, stamped(-12_000_000)));
+    is_refused(Cause::Future, |unit, traffic| motion(unit, traffic, stamped(5_100)));
+    is_refused(Cause::Future, |unit, traffic| motion(unit, traffic, stamped(1_000_000)));
+    is_refused(Cause::Stale, |unit, traffic| ego(unit, traffic, Duration::from_micros(-50_100)));
+    is_refused(Cause::Future, |unit, traffic| ego(unit, traffic, Duration::from_micros(5_100)));
 }
 
 #[test]
 fn a_stamp_that_is_held_already() {
-    is_refused(Refusal::Duplicate, |unit, traffic| {
+    is_refused(Cause::Duplicate, |unit, traffic| {
         motion(unit, traffic, |motion, traffic| {
             let spoken = Duration::from_millis(90); // the one behind spoke in period 291 of 300
             motion.stamp = traffic.gnss(traffic.now().minus(spoken)).stamp();
         })
     });
-    is_refused(Refusal::Duplicate, |unit, traffic| ego(unit, traffic, Duration::from_millis(-10)));
+    is_refused(Cause::Duplicate, |unit, traffic| ego(unit, traffic, Duration::from_millis(-10)));
 }
 
 #[test]
 fn a_sample_that_is_older_than_all_that_are_held() {
-    is_refused(Refusal::OutOfOrder, |unit, traffic| {
+    is_refused(Cause::OutOfOrder, |unit, traffic| {
         assert_eq!(unit.peers().get(1).map(|track| track.samples().len()), Some(traffic::SAMPLES));
         motion(unit, traffic, |motion, traffic| {
             motion.stamp = traffic.gnss(traffic.now().minus(Duration::from_millis(2_000))).stamp();
         })
     });
-    is_refused(Refusal::OutOfOrder, |unit, traffic| ego(unit, traffic, Duration::from_millis(-15)));
+    is_refused(Cause::OutOfOrder, |unit, traffic| ego(unit, traffic, Duration::from_millis(-15)));
 }
 
 #[test]
 fn a_slot_beyond_the_capacity() {
     for slot in [PEERS as u8, 15] {
-        is_refused(Refusal::UnknownSlot, |unit, traffic| {
-            let frame = traffic.peer(slot, Said::Intent(leads()))[0];
+        is_refused(Cause::UnknownSlot, |unit, traffic| {
+            let frame = traffic.peer(slot, Said::DrivingParameters(leads()))[0];
             unit.receive(traffic.now(), &frame)
         });
     }
@@ -228,7 +230,7 @@ fn a_slot_beyond_the_capacity() {
 
 #[test]
 fn another_station_in_the_slot_of_one_that_is_heard() {
-    is_refused(Refusal::StationConflict, |unit, traffic| {
+    is_refused(Cause::StationConflict, |unit, traffic| {
         motion(unit, traffic, |motion, _| motion.station = StationHash(77))
     });
 }
@@ -236,10 +238,10 @@ fn another_station_in_the_slot_of_one_that_is_heard() {
 #[test]
 fn another_station_that_is_refused_leaves_the_slot_to_the_one_that_is_silent() {
     type Change = fn(&mut holdover::wire::motion::Motion);
-    let changes: [(Refusal, Change); 3] = [
-        (Refusal::TooFar, |motion| motion.position = WirePosition::from_mm(9_000_000)),
-        (Refusal::Implausible, |motion| motion.acceleration = Acceleration::from_mm_per_s2(-15_000)),
-        (Refusal::Stale, |motion| motion.stamp = Stamp::from_raw(motion.stamp.raw().wrapping_sub(110_000))),
+    let changes: [(Cause, Change); 3] = [
+        (Cause::TooFar, |motion| motion.position = WirePosition::from_mm(9_000_000)),
+        (Cause::Implausible, |motion| motion.acceleration = Acceleration::from_mm_per_s2(-15_000)),
+        (Cause::Stale, |motion| motion.stamp = Stamp::from_raw(motion.stamp.raw().wrapping_sub(110_000))),
     ];
     for (cause, change) in changes {
         let (mut unit, mut traffic) = settled();
@@ -253,7 +255,7 @@ fn another_station_that_is_refused_leaves_the_slot_to_the_one_that_is_silent() {
         let frames = traffic.peer(0, Said::Motion(motion));
         assert_eq!(last(&mut unit, now, &frames), Err(cause));
         let track = unit.peers().get(0).expect("a slot");
-        assert_eq!((track.station(), track.intent().is_some()), (Some(traffic::TARGET), true), "{cause:?}");
+        assert_eq!((track.station(), track.parameters().is_some()), (Some(traffic::TARGET), true), "{cause:?}");
         let (mut after, mut expected) = (unit.clone(), untouched.clone());
         let (after, expected) = (after.tick(now), expected.tick(now));
         assert_eq!((after.mode, after.estimate), (expected.mode, expected.estimate), "{cause:?}");
@@ -266,7 +268,7 @@ fn another_station_that_is_refused_leaves_the_slot_to_the_one_that_is_silent() {
 fn a_peer_that_is_too_far_away() {
     // The ego is 30 m along by now.
     for mm in [1_530_200, -1_470_200, 10_000_000] {
-        is_refused(Refusal::TooFar, |unit, traffic| {
+        is_refused(Cause::TooFar, |unit, traffic| {
             motion(unit, traffic, |motion, _| motion.position = WirePosition::from_mm(mm))
         });
     }
@@ -274,7 +276,7 @@ fn a_peer_that_is_too_far_away() {
 
 #[test]
 fn a_follow_up_without_its_sync_message() {
-    is_refused(Refusal::SyncSequence, |unit, traffic| {
+    is_refused(Cause::SyncSequence, |unit, traffic| {
         let frame = traffic.frames(&Message::FollowUp(FollowUp { sequence: 3, micros: 0 }))[0];
         unit.receive(traffic.now(), &frame)
     });
@@ -282,7 +284,7 @@ fn a_follow_up_without_its_sync_message() {
 
 #[test]
 fn a_synchronisation_that_was_long_on_its_way() {
-    is_refused(Refusal::SyncLate, |unit, traffic| {
+    is_refused(Cause::SyncLate, |unit, traffic| {
         let now = traffic.now();
         let frames = traffic.time_base();
         let results = receive_all(unit, now.plus(Duration::from_micros(5_100)), &frames);
@@ -293,7 +295,7 @@ fn a_synchronisation_that_was_long_on_its_way() {
 
 #[test]
 fn a_synchronisation_that_is_ahead() {
-    is_refused(Refusal::SyncEarly, |unit, traffic| {
+    is_refused(Cause::SyncEarly, |unit, traffic| {
         let before = Traffic { offset: traffic.offset.minus(Duration::from_micros(60_000)), ..traffic.clone() };
         let (now, sequence) = (traffic.now(), traffic.sequence);
         let ahead = before.gnss(now).as_micros();
@@ -316,7 +318,7 @@ fn a_follow_up_of_another_sync_message_which_does_not_spoil_the_right_one() {
     let right = traffic.frames(&Message::FollowUp(FollowUp { sequence: 14, micros }))[0];
     let results = receive_all(&mut unit, now, &[sync, wrong, right, right]);
     let taken = Ok(Reception::Taken);
-    assert_eq!(results, [taken, Err(Refusal::SyncSequence), taken, Err(Refusal::Repeated)]);
+    assert_eq!(results, [taken, Err(Cause::SyncSequence), taken, Err(Cause::Repeated)]);
 }
 
 #[test]
@@ -326,7 +328,7 @@ fn a_time_that_runs_backwards() {
     let last = traffic.now().minus(traffic::PERIOD);
     let (again, back) = (unit.clone().tick(last), unit.tick(last.minus(Duration::from_millis(1_000))));
     assert_eq!((again.command, again.mode, again.estimate), (back.command, back.mode, back.estimate));
-    assert_eq!(unit.health().of(Refusal::ClockBackwards), before[Refusal::ClockBackwards as usize] + 1);
+    assert_eq!(unit.health().of(Cause::ClockBackwards), before[Cause::ClockBackwards as usize] + 1);
     assert_eq!(traffic.step(&mut unit).mode.code(), again.mode.code());
 }
 
@@ -355,16 +357,16 @@ fn every_count_is_told_on_the_bus_under_its_name() {
     let (mut unit, mut traffic) = settled();
     let wrong = Frame { id: 0x484, data: [0xAA; 8] };
     (0..7).for_each(|_| drop_result(unit.receive(traffic.now(), &wrong)));
-    assert!(unit.health().of(Refusal::Checksum) >= 7);
+    assert!(unit.health().of(Cause::Checksum) >= 7);
     let mut told = std::collections::BTreeMap::new();
     // A page comes every ten periods; the first is the one that a listener does not trust yet.
-    for _ in 0..10 * (Refusal::ALL.len() + 1) {
+    for _ in 0..10 * (Cause::ALL.len() + 1) {
         for page in pages(&traffic.step(&mut unit).frames) {
             assert_eq!(page.count, unit.health().of(page.cause));
             told.insert(page.cause.name(), page.count);
         }
     }
-    assert_eq!(told.len(), Refusal::ALL.len(), "{told:?}");
-    assert_eq!(told["checksum"], unit.health().of(Refusal::Checksum));
+    assert_eq!(told.len(), Cause::ALL.len(), "{told:?}");
+    assert_eq!(told["checksum"], unit.health().of(Cause::Checksum));
     assert_eq!(told["jump"], 0);
 }

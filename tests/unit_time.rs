@@ -4,7 +4,7 @@
 mod traffic;
 
 use holdover::Config;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, GnssTime, Instant, Stamp};
 use holdover::units::Speed;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -82,7 +82,7 @@ fn a_unit_that_never_was_synchronised_drives_by_what_it_hears() {
     traffic.sync = false;
     let answer = traffic.run(&mut unit, 300);
     assert_eq!(answer.mode, holdover::controller::Mode::Cooperative);
-    assert_eq!(unit.health().of(Refusal::Stale) + unit.health().of(Refusal::Future), 0);
+    assert_eq!(unit.health().of(Cause::Stale) + unit.health().of(Cause::Future), 0);
 }
 
 #[test]

@@ -7,7 +7,7 @@ mod rig;
 
 use std::collections::BTreeMap;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -22,7 +22,7 @@ use rig::{EGO, Rig, Unit, instant, mps, mps2};
 const MAY_CHANGE: [&str; 6] = ["receiver", "health", "suspects", "agreed", "is_disputed", "sender_clock"];
 
 /// All that a unit holds, as text, without what a refusal may change.
-fn snapshot(unit: &Unit, cause: Refusal) -> String {
+fn snapshot(unit: &Unit, cause: Cause) -> String {
     let (mut kept, mut skipped, mut axes) = (String::new(), None, None);
     for line in format!("{unit:#?}").lines() {
         let depth = line.len() - line.trim_start().len();
@@ -41,7 +41,7 @@ fn snapshot(unit: &Unit, cause: Refusal) -> String {
         let is_doubt_of_time = cause.name().starts_with("sync_") && ["mark", "doubted"].contains(&name);
         // Who is too far away to be driven by is known to be there all the same.
         // By a sender's clock that is found to be ahead less is certain.
-        let is_far = matches!(cause, Refusal::TooFar | Refusal::Future) && ["bound", "course"].contains(&name);
+        let is_far = matches!(cause, Cause::TooFar | Cause::Future) && ["bound", "course"].contains(&name);
         let is_waiting = axes.is_some() && name == "tie";
         if MAY_CHANGE.contains(&name) || is_doubt_of_time || is_far || is_waiting {
             skipped = line.ends_with(['{', '(', '[']).then_some(depth);
@@ -148,7 +148,7 @@ impl World {
             }
             13 => self.any(&messages::to_unit(4)),
             14 => Message::Range(self.any(&messages::range_sample())),
-            _ => Message::Peer(slot, Said::Intent(rig::intent(2.0, self.random.extreme(2.0, 9.0)))),
+            _ => Message::Peer(slot, Said::DrivingParameters(rig::parameters(2.0, self.random.extreme(2.0, 9.0)))),
         }
     }
 
@@ -174,8 +174,8 @@ impl World {
 
     fn run(mut self, messages: u32) -> BTreeMap<&'static str, u32> {
         self.rig.power_up(true, 0);
-        let _ = self.rig.wish(-50_000, true, Predecessor::Station(StationHash(2)));
-        let _ = self.rig.wish(-40_000, true, Predecessor::Station(StationHash(2)));
+        let _ = self.rig.request(-50_000, true, Predecessor::Station(StationHash(2)));
+        let _ = self.rig.request(-40_000, true, Predecessor::Station(StationHash(2)));
         for _ in 0..messages {
             self.now += [1_000, 10_000, 10_000, 40_000][self.random.below(4) as usize];
             if self.random.happens(0.01) {

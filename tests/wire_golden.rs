@@ -1,15 +1,15 @@
 //! One of each message as literal bytes: the layout cannot drift unnoticed. Who changes one of these changes what every
 //! other node on the bus has to read.
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 use holdover::wire::command::{Command, Effort, ModeCode};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::estimate::{Ends, TargetEstimate};
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::horizon::{Knot, Knots};
-use holdover::wire::intent::{Intent, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::route::Route;
@@ -44,8 +44,8 @@ fn motion() -> Said {
     })
 }
 
-fn intent() -> Said {
-    Said::Intent(Intent {
+fn parameters() -> Said {
+    Said::DrivingParameters(DrivingParameters {
         length: m(4_800),
         standstill: m(2_000),
         predecessor: Predecessor::Station(StationHash(0x5C)),
@@ -98,7 +98,7 @@ fn route() -> Said {
 
 #[test]
 fn every_message_has_these_bytes() {
-    let ego_intent = EgoIntent {
+    let driver_request = DriverRequest {
         engaged: true,
         predecessor: Predecessor::Station(StationHash(0x5C)),
         target_speed: v(11_000),
@@ -123,7 +123,7 @@ fn every_message_has_these_bytes() {
         ends: Some(ends),
     };
     let status = Status {
-        cause: Refusal::Torn,
+        cause: Cause::Torn,
         count: 1_234_567,
         mode: ModeCode::Cooperative,
         detail: 21,
@@ -136,20 +136,20 @@ fn every_message_has_these_bytes() {
         command(Effort::Force(3_456)),
         command(Effort::BrakeTorque(765)),
         Message::Ego(motion()),
-        Message::EgoIntent(ego_intent),
+        Message::DriverRequest(driver_request),
         Message::Ego(geo()),
         Message::Range(range),
         Message::Unserved(Unserved { intersection: 201, legs: 0b1000_0110, ahead: Some(m(-31_416)), stations: 17 }),
         Message::Estimate(estimate),
         Message::Own(motion()),
         Message::Own(horizon()),
-        Message::Own(intent()),
+        Message::Own(parameters()),
         Message::Own(geo()),
         Message::Own(route()),
         Message::Status(status),
         Message::Peer(Slot(7), motion()),
         Message::Peer(Slot(7), horizon()),
-        Message::Peer(Slot(7), intent()),
+        Message::Peer(Slot(7), parameters()),
         Message::Peer(Slot(7), geo()),
         Message::Peer(Slot(7), route()),
     ];

@@ -5,7 +5,7 @@
 mod messages;
 mod rig;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Instant};
 use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, StationHash};
 use proptest::strategy::{Strategy, ValueTree};
@@ -31,7 +31,7 @@ impl<const PEERS: usize> Bus<PEERS> {
         frames
     }
 
-    fn hear(&mut self, at: Instant, frames: &[Frame]) -> Vec<Result<Received, Refusal>> {
+    fn hear(&mut self, at: Instant, frames: &[Frame]) -> Vec<Result<Received, Cause>> {
         frames.iter().map(|frame| self.receiver.receive(at, frame)).collect()
     }
 }
@@ -75,7 +75,12 @@ fn kinds() -> Vec<Kind> {
                 peer(Said::Horizon(holdover::wire::horizon::Knots { tag: 2, ..drawn(messages::knots(), r) }))
             }),
         ),
-        kind("intent", Role::Unit, 500, Box::new(move |r| peer(Said::Intent(drawn(messages::intent(), r))))),
+        kind(
+            "parameters",
+            Role::Unit,
+            500,
+            Box::new(move |r| peer(Said::DrivingParameters(drawn(messages::parameters(), r)))),
+        ),
         kind("place", Role::Unit, 100, Box::new(move |r| peer(Said::Geo(drawn(messages::geo(), r))))),
         kind("route", Role::Unit, 200, Box::new(move |r| peer(Said::Route(drawn(messages::route(), r))))),
         kind(
@@ -95,8 +100,8 @@ fn one_lost_frame_and_a_silence_of_any_length_make_no_message_of_two() {
     for kind in kinds() {
         let parts = Bus::<8>::new(kind.role).frames(&(kind.draw)(&mut runner)).len();
         for (lost, k) in (0..parts).flat_map(|lost| (1..=12i64).chain([100, 6_000]).map(move |k| (lost, k))) {
-            // The sender itself counts the tags of intents; only in a silence of 15 times 3 frames do its counters come round.
-            let unheard = if kind.name == "intent" { 4 * k - 1 } else { 0 };
+            // The sender itself counts the tags of driving parameters; only in a silence of 15 times 3 frames do its counters come round.
+            let unheard = if kind.name == "parameters" { 4 * k - 1 } else { 0 };
             if unheard % 5 != 0 {
                 continue;
             }
@@ -121,7 +126,7 @@ fn one_lost_frame_and_a_silence_of_any_length_make_no_message_of_two() {
             let expected = Received::Whole(new);
             assert_eq!(whole.last(), Some(&&expected), "{} without {lost}, {k}", kind.name);
             let others = whole.iter().filter(|heard| matches!(heard, Received::Whole(_))).count();
-            let torn = heard.iter().filter(|heard| **heard == Err(Refusal::Torn)).count();
+            let torn = heard.iter().filter(|heard| **heard == Err(Cause::Torn)).count();
             assert_eq!((others, torn), (1, 1), "{} without {lost}, {k}", kind.name);
         }
     }
@@ -146,13 +151,13 @@ fn one_lost_frame_beside_an_overtaken_message_of_its_tag_makes_no_message_of_two
             let mut frames = bus.frames(&old);
             frames.remove(lost);
             bus.hear(at, &frames);
-            // The tags of intents are not their station's, but counted as they are handed on: none meets its own so soon.
-            if kind.name == "intent" {
+            // The tags of driving parameters are not their station's, but counted as they are handed on: none meets its own so soon.
+            if kind.name == "parameters" {
                 continue;
             }
             let frames = bus.frames(&new);
             let heard = bus.hear(at.plus(Duration::from_millis(3)), &frames);
-            let torn = heard.iter().filter(|heard| **heard == Err(Refusal::Torn)).count();
+            let torn = heard.iter().filter(|heard| **heard == Err(Cause::Torn)).count();
             assert_eq!((heard.last(), torn), (Some(&Ok(Received::Whole(new))), 1), "{} without {lost}", kind.name);
             assert_eq!(heard.iter().filter(|heard| matches!(heard, Ok(Received::Whole(_)))).count(), 1);
         }
@@ -253,7 +258,7 @@ fn halves_of_two_stations_ten_minutes_apart_make_no_message() {
         }
         let second = halves(&mut rig, &mut sender, StationHash(66), later, (900.0, 5.0));
         let before = rig.unit.peers().get(2).unwrap().samples().to_vec();
-        assert_eq!(rig.unit.receive(rig::instant(later), &second[lost]), Err(Refusal::Torn));
+        assert_eq!(rig.unit.receive(rig::instant(later), &second[lost]), Err(Cause::Torn));
         assert_eq!(rig.unit.peers().get(2).unwrap().samples(), before);
     }
 }

@@ -3,11 +3,11 @@
 mod messages;
 
 use embedded_can::{ExtendedId, Id, StandardId};
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::catalogue::{CATALOGUE, data_id};
 use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
-use messages::{from_unit, geo, intent, knots, motion, to_unit};
+use messages::{from_unit, geo, knots, motion, parameters, to_unit};
 use proptest::prelude::*;
 
 const BASE: BaseId = BaseId::DEFAULT;
@@ -27,7 +27,7 @@ fn acquainted<const PEERS: usize>(role: Role) -> (Sender<PEERS>, Receiver<PEERS>
             let offset = line.offset_for(Slot(slot));
             let frame = Frame { id: BASE.plus(offset), data: e2e::protect([0; 8], data_id(offset), 14) };
             let heard = receiver.receive(Instant::ZERO, &frame);
-            assert!(matches!(heard, Err(Refusal::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
+            assert!(matches!(heard, Err(Cause::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
         }
     }
     (Sender::new(BASE), receiver)
@@ -112,11 +112,11 @@ proptest! {
                 match receiver.receive(Instant::ZERO, odd) {
                     Ok(Received::Foreign) => prop_assert_eq!(&before, &receiver),
                     // one frame of noise in 256 has the right CRC; it may be trusted if its counter fits too
-                    Ok(_) | Err(Refusal::Torn) => receiver = before,
-                    Err(Refusal::Length | Refusal::UnknownSlot | Refusal::CounterRange) => {
+                    Ok(_) | Err(Cause::Torn) => receiver = before,
+                    Err(Cause::Length | Cause::UnknownSlot | Cause::CounterRange) => {
                         prop_assert_eq!(&before, &receiver);
                     }
-                    Err(Refusal::Checksum) => {}
+                    Err(Cause::Checksum) => {}
                     Err(_) => receiver = before,
                 }
             }
@@ -143,7 +143,7 @@ proptest! {
                 }
                 Ok(Received::Foreign | Received::Pending) => {}
                 Err(refusal) => prop_assert!(
-                    matches!(refusal, Refusal::NotYetTrusted | Refusal::Range | Refusal::Torn), "{:?}", refusal
+                    matches!(refusal, Cause::NotYetTrusted | Cause::Range | Cause::Torn), "{:?}", refusal
                 ),
             }
         }
@@ -159,7 +159,7 @@ proptest! {
         frames.remove(lost);
         frames.extend(frames_of(&mut sender, &Message::Peer(Slot(3), Said::Horizon(second))));
         let heard: Vec<_> = frames.iter().map(|frame| receiver.receive(Instant::ZERO, frame)).collect();
-        prop_assert_eq!(heard.iter().filter(|heard| **heard == Err(Refusal::Torn)).count(), 1);
+        prop_assert_eq!(heard.iter().filter(|heard| **heard == Err(Cause::Torn)).count(), 1);
         prop_assert_eq!(heard.last(), Some(&Ok(Received::Whole(Message::Peer(Slot(3), Said::Horizon(second))))));
     }
 
@@ -170,17 +170,17 @@ proptest! {
         let a = frames_of(&mut sender, &Message::Ego(Said::Motion(first)));
         let b = frames_of(&mut sender, &Message::Ego(Said::Motion(second)));
         prop_assert_eq!(receiver.receive(Instant::ZERO, &a[0]), Ok(Received::Pending));
-        prop_assert_eq!(receiver.receive(Instant::ZERO, &b[1]), Err(Refusal::Torn));
+        prop_assert_eq!(receiver.receive(Instant::ZERO, &b[1]), Err(Cause::Torn));
         prop_assert_eq!(receiver.receive(Instant::ZERO, &b[0]), Ok(Received::Whole(Message::Ego(Said::Motion(second)))));
     }
 
     #[test]
-    fn intents_in_a_row_carry_tags_that_differ(intents in proptest::collection::vec(intent(), 5)) {
+    fn intents_in_a_row_carry_tags_that_differ(parameter_messages in proptest::collection::vec(parameters(), 5)) {
         let mut sender = Sender::<0>::new(BASE);
-        let tags: Vec<_> = intents
+        let tags: Vec<_> = parameter_messages
             .iter()
-            .map(|intent| {
-                let frames = frames_of(&mut sender, &Message::Own(Said::Intent(*intent)));
+            .map(|parameters| {
+                let frames = frames_of(&mut sender, &Message::Own(Said::DrivingParameters(*parameters)));
                 let tags: Vec<_> = frames.iter().map(|frame| frame.data[1] >> 4 & 3).collect();
                 assert!(tags.windows(2).all(|pair| pair[0] == pair[1]));
                 tags[0]
@@ -190,11 +190,11 @@ proptest! {
     }
 
     #[test]
-    fn what_the_catalogue_does_not_have_is_not_sent(intent in intent(), position in geo()) {
+    fn what_the_catalogue_does_not_have_is_not_sent(parameters in parameters(), position in geo()) {
         let mut sender = Sender::<2>::new(BASE);
         let mut emitted = 0;
         let mut emit = |_| emitted += 1;
-        prop_assert_eq!(sender.send(&Message::Ego(Said::Intent(intent)), &mut emit), Err(Unsent::NoLine));
+        prop_assert_eq!(sender.send(&Message::Ego(Said::DrivingParameters(parameters)), &mut emit), Err(Unsent::NoLine));
         let beyond = Message::Peer(Slot(2), Said::Geo(position));
         prop_assert_eq!(sender.send(&beyond, &mut emit), Err(Unsent::UnknownSlot));
         prop_assert_eq!(emitted, 0);
@@ -212,8 +212,8 @@ fn frames_that_are_not_ours_to_read_are_told_apart_from_bad_ones() {
     assert_eq!(heard(odd(id(0x483), false, 8)), Ok(Received::Foreign), "an identifier without a line");
     assert_eq!(heard(odd(id(0x482), false, 8)), Ok(Received::Foreign), "the unit's own command");
     assert_eq!(heard(odd(Id::Extended(ExtendedId::new(0x480).unwrap()), false, 8)), Ok(Received::Foreign));
-    assert_eq!(heard(odd(id(0x480), true, 8)), Err(Refusal::Length));
-    assert_eq!(heard(odd(id(0x480), false, 7)), Err(Refusal::Length));
-    assert_eq!(heard(odd(id(0x4C8), false, 8)), Err(Refusal::Checksum), "slot 1 of 2, a checksum of 0");
-    assert_eq!(heard(odd(id(0x4D0), false, 8)), Err(Refusal::UnknownSlot), "slot 2 of 2");
+    assert_eq!(heard(odd(id(0x480), true, 8)), Err(Cause::Length));
+    assert_eq!(heard(odd(id(0x480), false, 7)), Err(Cause::Length));
+    assert_eq!(heard(odd(id(0x4C8), false, 8)), Err(Cause::Checksum), "slot 1 of 2, a checksum of 0");
+    assert_eq!(heard(odd(id(0x4D0), false, 8)), Err(Cause::UnknownSlot), "slot 2 of 2");
 }

@@ -5,7 +5,7 @@
 mod drive;
 
 use drive::Heard;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::StationHash;
 use holdover::{Config, OnboardUnit, config::Envelope, time::Duration};
@@ -27,7 +27,7 @@ fn main() {
             println!("{now} {:x} {data}", frame.id);
         }
     }
-    for cause in Refusal::ALL {
+    for cause in Cause::ALL {
         println!("{} {}", -64 - cause as i32, unit.health().of(cause));
     }
 }

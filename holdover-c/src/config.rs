@@ -79,7 +79,7 @@ pub struct Law {
     pub damping_ms: u32,
     /// Largest acceleration on a free road in mm/s2.
     pub free_road_acceleration_mm_s2: u32,
-    /// Speed wanted on a free road until `EgoIntent` says otherwise, in mm/s.
+    /// Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.
     pub target_speed_mm_s: u32,
     /// Speed never demanded beyond, in mm/s.
     pub max_speed_mm_s: u32,

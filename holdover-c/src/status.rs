@@ -6,7 +6,7 @@
 use core::ffi::CStr;
 
 use holdover::ConfigError;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 
 /// What became of a call. Negative: it was refused, for the cause that the code names. A refused call changes nothing; a
 /// refused frame changes its cause's count and the end-to-end state of its identifier.
@@ -163,41 +163,41 @@ impl From<ConfigError> for Status {
     }
 }
 
-impl From<Refusal> for Status {
-    fn from(cause: Refusal) -> Self {
+impl From<Cause> for Status {
+    fn from(cause: Cause) -> Self {
         match cause {
-            Refusal::Length => Self::RefusedLength,
-            Refusal::Checksum => Self::RefusedChecksum,
-            Refusal::Repeated => Self::RefusedRepeated,
-            Refusal::CounterGap => Self::RefusedCounterGap,
-            Refusal::CounterRange => Self::RefusedCounterRange,
-            Refusal::NotYetTrusted => Self::RefusedNotYetTrusted,
-            Refusal::Range => Self::RefusedRange,
-            Refusal::Torn => Self::RefusedTorn,
-            Refusal::Stale => Self::RefusedStale,
-            Refusal::Future => Self::RefusedFuture,
-            Refusal::Duplicate => Self::RefusedDuplicate,
-            Refusal::OutOfOrder => Self::RefusedOutOfOrder,
-            Refusal::UnknownSlot => Self::RefusedUnknownSlot,
-            Refusal::StationConflict => Self::RefusedStationConflict,
-            Refusal::TooFar => Self::RefusedTooFar,
-            Refusal::SyncSequence => Self::RefusedSyncSequence,
-            Refusal::Jump => Self::RefusedJump,
-            Refusal::Implausible => Self::RefusedImplausible,
-            Refusal::Stuck => Self::RefusedStuck,
-            Refusal::ClockBackwards => Self::RefusedClockBackwards,
-            Refusal::ReceiveOverflow => Self::RefusedReceiveOverflow,
-            Refusal::Overrun => Self::RefusedOverrun,
-            Refusal::TransmitOverflow => Self::RefusedTransmitOverflow,
-            Refusal::BusOff => Self::RefusedBusOff,
-            Refusal::Restart => Self::RefusedRestart,
-            Refusal::OffRoute => Self::RefusedOffRoute,
-            Refusal::Overlooked => Self::RefusedOverlooked,
-            Refusal::SyncLate => Self::RefusedSyncLate,
-            Refusal::SyncEarly => Self::RefusedSyncEarly,
-            Refusal::PeerClock => Self::RefusedPeerClock,
-            Refusal::RangeDisagrees => Self::RefusedRangeDisagrees,
-            Refusal::Unreachable => Self::RefusedUnreachable,
+            Cause::Length => Self::RefusedLength,
+            Cause::Checksum => Self::RefusedChecksum,
+            Cause::Repeated => Self::RefusedRepeated,
+            Cause::CounterGap => Self::RefusedCounterGap,
+            Cause::CounterRange => Self::RefusedCounterRange,
+            Cause::NotYetTrusted => Self::RefusedNotYetTrusted,
+            Cause::Range => Self::RefusedRange,
+            Cause::Torn => Self::RefusedTorn,
+            Cause::Stale => Self::RefusedStale,
+            Cause::Future => Self::RefusedFuture,
+            Cause::Duplicate => Self::RefusedDuplicate,
+            Cause::OutOfOrder => Self::RefusedOutOfOrder,
+            Cause::UnknownSlot => Self::RefusedUnknownSlot,
+            Cause::StationConflict => Self::RefusedStationConflict,
+            Cause::TooFar => Self::RefusedTooFar,
+            Cause::SyncSequence => Self::RefusedSyncSequence,
+            Cause::Jump => Self::RefusedJump,
+            Cause::Implausible => Self::RefusedImplausible,
+            Cause::Stuck => Self::RefusedStuck,
+            Cause::ClockBackwards => Self::RefusedClockBackwards,
+            Cause::ReceiveOverflow => Self::RefusedReceiveOverflow,
+            Cause::Overrun => Self::RefusedOverrun,
+            Cause::TransmitOverflow => Self::RefusedTransmitOverflow,
+            Cause::BusOff => Self::RefusedBusOff,
+            Cause::Restart => Self::RefusedRestart,
+            Cause::OffRoute => Self::RefusedOffRoute,
+            Cause::Overlooked => Self::RefusedOverlooked,
+            Cause::SyncLate => Self::RefusedSyncLate,
+            Cause::SyncEarly => Self::RefusedSyncEarly,
+            Cause::PeerClock => Self::RefusedPeerClock,
+            Cause::RangeDisagrees => Self::RefusedRangeDisagrees,
+            Cause::Unreachable => Self::RefusedUnreachable,
         }
     }
 }
@@ -277,6 +277,6 @@ pub fn name(code: i32) -> &'static CStr {
 ///
 /// # Errors
 /// [`Status::NoCause`] if it is not the code of a refused frame.
-pub fn cause_of(code: i32) -> Result<Refusal, Status> {
-    Refusal::ALL.into_iter().find(|cause| Status::from(*cause) as i32 == code).ok_or(Status::NoCause)
+pub fn cause_of(code: i32) -> Result<Cause, Status> {
+    Cause::ALL.into_iter().find(|cause| Status::from(*cause) as i32 == code).ok_or(Status::NoCause)
 }

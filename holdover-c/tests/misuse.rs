@@ -188,7 +188,7 @@ fn frames_that_no_bus_can_have_are_refused() {
 fn only_refusals_are_counted() {
     let mut memory = Memory::filled(0);
     assert_eq!(memory.init(), Status::Ok);
-    for cause in [0, -1, -63, -64 - holdover::health::Refusal::ALL.len() as i32, i32::MIN, i32::MAX] {
+    for cause in [0, -1, -63, -64 - holdover::health::Cause::ALL.len() as i32, i32::MIN, i32::MAX] {
         assert_eq!(count(memory.at(0), cause), (Status::NoCause, 0), "{cause}");
     }
 }
@@ -220,7 +220,7 @@ fn every_code_has_a_name_of_its_own_and_no_other_number_has_one() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), codes.len());
-    for cause in holdover::health::Refusal::ALL {
+    for cause in holdover::health::Cause::ALL {
         let code = Status::from(cause) as i32;
         assert_eq!(code, -64 - cause as i32);
         assert_eq!(name(code).split_once(": ").map(|(_, name)| name), Some(cause.name()));

@@ -3,7 +3,7 @@
 
 use holdover::units::Position;
 use holdover::wire::Predecessor;
-use holdover::wire::intent::Intent;
+use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::motion::Motion;
 
 /// A vehicle's state as a receiver decoded it, with when it was true and when it came.
@@ -24,12 +24,12 @@ pub struct Heard {
     /// The acceleration last demanded of the actuators.
     pub demand_mps2: f64,
     /// How the vehicle will drive; `None`: this message says nothing about it, and what was said before still holds.
-    pub intent: Option<HeardIntent>,
+    pub parameters: Option<HeardParameters>,
 }
 
 /// The parameters of the law that a vehicle says it drives by; limits are magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeardIntent {
+pub struct HeardParameters {
     /// Bumper to bumper, `l`.
     pub length_m: f64,
     /// Distance kept at standstill, `s_0`.
@@ -69,35 +69,35 @@ impl Heard {
             speed_mps: motion.speed.get().to_num(),
             acceleration_mps2: motion.acceleration.get().to_num(),
             demand_mps2: motion.demand.get().to_num(),
-            intent: None,
+            parameters: None,
         }
     }
 
-    /// The same, with what the vehicle's latest intent message says.
+    /// The same, with what the vehicle's latest driving parameters message says.
     #[must_use]
-    pub fn with_intent(self, intent: HeardIntent) -> Self {
-        Self { intent: Some(intent), ..self }
+    pub fn with_parameters(self, parameters: HeardParameters) -> Self {
+        Self { parameters: Some(parameters), ..self }
     }
 }
 
-impl HeardIntent {
-    /// What a decoded intent message says. It names the predecessor by the hash of its station; which vehicle of the run
+impl HeardParameters {
+    /// What a decoded driving parameters message says. It names the predecessor by the hash of its station; which vehicle of the run
     /// that is, the receiver says.
     #[must_use]
-    pub fn from_intent(intent: &Intent, predecessor: Option<usize>) -> Self {
+    pub fn from_parameters(parameters: &DrivingParameters, predecessor: Option<usize>) -> Self {
         Self {
-            length_m: intent.length.get().to_num(),
-            standstill_m: intent.standstill.get().to_num(),
-            leads: intent.predecessor == Predecessor::None,
+            length_m: parameters.length.get().to_num(),
+            standstill_m: parameters.standstill.get().to_num(),
+            leads: parameters.predecessor == Predecessor::None,
             predecessor,
-            target_speed_mps: intent.target_speed.get().to_num(),
-            time_gap_s: intent.time_gap.get().to_num(),
-            gain: intent.gain.get().to_num(),
-            damping_s: intent.damping.get().to_num(),
-            lag_s: intent.lag.get().to_num(),
-            acceleration_mps2: intent.limits.acceleration.get().to_num(),
-            braking_mps2: intent.limits.braking.get().to_num(),
-            jerk_mps3: intent.limits.jerk.get().to_num(),
+            target_speed_mps: parameters.target_speed.get().to_num(),
+            time_gap_s: parameters.time_gap.get().to_num(),
+            gain: parameters.gain.get().to_num(),
+            damping_s: parameters.damping.get().to_num(),
+            lag_s: parameters.lag.get().to_num(),
+            acceleration_mps2: parameters.limits.acceleration.get().to_num(),
+            braking_mps2: parameters.limits.braking.get().to_num(),
+            jerk_mps3: parameters.limits.jerk.get().to_num(),
         }
     }
 }
@@ -108,7 +108,7 @@ mod tests {
     use holdover::time::Stamp;
     use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
     use holdover::wire::StationHash;
-    use holdover::wire::intent::Limits;
+    use holdover::wire::driving_parameters::Limits;
     use holdover::wire::motion::WirePosition;
 
     #[test]
@@ -135,14 +135,14 @@ mod tests {
                 speed_mps: 1.5,
                 acceleration_mps2: -1.25,
                 demand_mps2: 0.125,
-                intent: None
+                parameters: None
             }
         );
     }
 
     #[test]
     fn an_intent_keeps_its_numbers_and_tells_a_leader_from_a_silent_one() {
-        let intent = |predecessor| Intent {
+        let parameters = |predecessor| DrivingParameters {
             length: Distance::from_bits(9 << 19),
             standstill: Distance::from_bits(2 << 20),
             predecessor,
@@ -159,10 +159,10 @@ mod tests {
             },
             horizon_tenths: 50,
         };
-        let heard = HeardIntent::from_intent(&intent(Predecessor::Station(StationHash(3))), Some(2));
+        let heard = HeardParameters::from_parameters(&parameters(Predecessor::Station(StationHash(3))), Some(2));
         assert_eq!(
             heard,
-            HeardIntent {
+            HeardParameters {
                 length_m: 4.5,
                 standstill_m: 2.0,
                 leads: false,
@@ -177,7 +177,7 @@ mod tests {
                 jerk_mps3: 2.5
             }
         );
-        assert!(HeardIntent::from_intent(&intent(Predecessor::None), None).leads);
-        assert!(!HeardIntent::from_intent(&intent(Predecessor::Unknown), None).leads);
+        assert!(HeardParameters::from_parameters(&parameters(Predecessor::None), None).leads);
+        assert!(!HeardParameters::from_parameters(&parameters(Predecessor::Unknown), None).leads);
     }
 }

@@ -8,34 +8,34 @@ use holdover::units::Position;
 use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
 
 use crate::bus::Frame;
-use crate::heard::{Heard, HeardIntent};
+use crate::heard::{Heard, HeardParameters};
 use crate::modem::PEERS;
 use crate::vehicle::{EPOCH_US, gnss, index_of};
 
 /// The listener.
 pub struct Observer {
     receiver: Receiver<PEERS>,
-    intents: BTreeMap<u8, HeardIntent>,
+    parameter_messages: BTreeMap<u8, HeardParameters>,
 }
 
 impl Observer {
     /// On a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { receiver: Receiver::new(base, Role::Unit), intents: BTreeMap::new() }
+        Self { receiver: Receiver::new(base, Role::Unit), parameter_messages: BTreeMap::new() }
     }
 
-    /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest intent from the same slot. `near` is a position to
+    /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest driving parameters from the same slot. `near` is a position to
     /// unwrap positions near.
     pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
         let at = Instant::from_micros(gnss(at_s).as_micros()); // which has no times before its start
         match self.receiver.receive(at, frame) {
-            Ok(Received::Whole(Message::Peer(slot, Said::Intent(intent)))) => {
-                let predecessor = match intent.predecessor {
+            Ok(Received::Whole(Message::Peer(slot, Said::DrivingParameters(parameters)))) => {
+                let predecessor = match parameters.predecessor {
                     Predecessor::Station(station) => index_of(station),
                     Predecessor::None | Predecessor::Unknown => None,
                 };
-                self.intents.insert(slot.0, HeardIntent::from_intent(&intent, predecessor));
+                self.parameter_messages.insert(slot.0, HeardParameters::from_parameters(&parameters, predecessor));
                 None
             }
             Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
@@ -45,8 +45,8 @@ impl Observer {
                 let vehicle = index_of(motion.station)?;
                 let position = motion.position.nearest_to(near);
                 let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, &motion);
-                Some(match self.intents.get(&slot.0) {
-                    Some(intent) => heard.with_intent(*intent),
+                Some(match self.parameter_messages.get(&slot.0) {
+                    Some(parameters) => heard.with_parameters(*parameters),
                     None => heard,
                 })
             }

@@ -57,7 +57,7 @@ pub struct Leader {
     pub target_speed_mps: f64,
     /// The speeds that it wants from those times on: `(s, m/s)`, in order of time; empty: always the one above.
     pub program: Vec<(f64, f64)>,
-    /// The drive that it follows instead, from its first sample on. A leader on a recording publishes no intent.
+    /// The drive that it follows instead, from its first sample on. A leader on a recording publishes no driving parameters.
     pub motion: Option<Motion>,
 }
 

@@ -7,7 +7,7 @@ use std::io;
 use holdover::coordination::{Itinerary, MapError};
 use holdover::time::Instant;
 use holdover::wire::command::{Effort, ModeCode};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
@@ -32,7 +32,7 @@ mod warm_up;
 
 pub use alias::Alias;
 pub use quantities::{acceleration, distance, duration, fine_seconds, metres, seconds, speed};
-pub use station::{index_of, station, wish};
+pub use station::{index_of, request, station};
 pub use time::{EPOCH_US, gnss, micros};
 pub use unit::Unit;
 
@@ -47,7 +47,7 @@ const SYNC_EVERY_S: f64 = 0.5;
 const LOCATE_EVERY_S: f64 = 0.1;
 /// What a unit outside said of its target is held for so long: the message's timeout.
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
-/// Cycle of the driver's wish, in seconds.
+/// Cycle of the driver's request, in seconds.
 const WISH_EVERY_S: f64 = 0.1;
 
 /// A vehicle of a run.
@@ -72,7 +72,7 @@ pub struct Vehicle {
     pub mode: ModeCode,
     /// What its unit said last of its target.
     pub estimate: Option<TargetEstimate>,
-    wish: EgoIntent,
+    request: DriverRequest,
     clock_offset_us: u64,
     sensors: Sensors,
     ground: Option<Ground>,
@@ -103,13 +103,13 @@ impl Vehicle {
         config: &Config,
         plant: Plant,
         length_m: f64,
-        wish: EgoIntent,
+        request: DriverRequest,
         clock_offset_us: u64,
         sensors: Sensors,
     ) -> Result<Self, ConfigError> {
         let bus = MemoryBus::new();
         let mut relay = Relay::new(config.base_id);
-        if let Predecessor::Station(ahead) = wish.predecessor {
+        if let Predecessor::Station(ahead) = request.predecessor {
             relay.set_out(Course::behind(ahead));
         }
         Ok(Self {
@@ -117,13 +117,13 @@ impl Vehicle {
             plant,
             length_m,
             unit: Unit::new(config)?,
-            engaged: wish.engaged,
+            engaged: request.engaged,
             command_mps2: 0.0,
             effort: Effort::Force(0),
             limited: false,
             mode: ModeCode::Standby,
             estimate: None,
-            wish,
+            request,
             clock_offset_us,
             sensors,
             ground: None,
@@ -159,7 +159,7 @@ impl Vehicle {
 
     /// Lets the driver want another speed from now on.
     pub fn want(&mut self, target_speed_mps: f64) {
-        self.wish.target_speed = speed(target_speed_mps);
+        self.request.target_speed = speed(target_speed_mps);
     }
 
     /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
@@ -189,7 +189,7 @@ impl Vehicle {
 
     /// Lets its driver engage the unit, if it is to drive at all, or not yet.
     pub fn engage(&mut self, engages: bool) {
-        self.engaged = engages && self.wish.engaged;
+        self.engaged = engages && self.request.engaged;
     }
 
     /// Messages that its modem had no slot for.
@@ -240,7 +240,7 @@ impl Vehicle {
             self.put(at_s, &Message::Unserved(unserved))?;
         }
         if is_due(at_s, WISH_EVERY_S, period_s) {
-            self.wish(at_s)?;
+            self.request(at_s)?;
         }
         if is_due(at_s, SYNC_EVERY_S, period_s) {
             self.synchronise(at_s)?;
@@ -278,10 +278,10 @@ impl Vehicle {
     }
 
     /// What the driver wants.
-    fn wish(&mut self, at_s: f64) -> io::Result<()> {
-        let predecessor = self.alias.of_predecessor(self.wish.predecessor);
-        let wish = EgoIntent { engaged: self.engaged, predecessor, ..self.wish };
-        self.put(at_s, &Message::EgoIntent(wish))
+    fn request(&mut self, at_s: f64) -> io::Result<()> {
+        let predecessor = self.alias.of_predecessor(self.request.predecessor);
+        let request = DriverRequest { engaged: self.engaged, predecessor, ..self.request };
+        self.put(at_s, &Message::DriverRequest(request))
     }
 
     /// A message from the channel.

@@ -10,7 +10,7 @@ use std::io;
 use std::rc::Rc;
 
 use holdover::config::Envelope;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::BaseId;
 use holdover::{Config, ConfigError};
@@ -25,7 +25,7 @@ use crate::plant::{Machine, Plant};
 use crate::scenario::Scenario;
 use crate::sensors::Sensors;
 use crate::streams::{Purpose, stream, unit};
-use crate::vehicle::{Alias, Vehicle, duration, fine_seconds, metres, seconds, speed, station, wish};
+use crate::vehicle::{Alias, Vehicle, duration, fine_seconds, metres, request, seconds, speed, station};
 
 mod air;
 mod tick;
@@ -47,7 +47,7 @@ pub struct Trace {
     /// The vehicle whose position is estimated, and by whom.
     pub measured: Measured,
     /// Refusals of all units together, by cause.
-    pub refusals: Vec<(Refusal, u64)>,
+    pub refusals: Vec<(Cause, u64)>,
     /// The channel with all that happened on it.
     pub channel: Channel,
     /// The bus of one vehicle, if it was asked for: times of the run and frames.
@@ -106,7 +106,7 @@ impl<'a> World<'a> {
             let config = config(scenario, index);
             let is_recorded = index == 0 && scenario.leader.motion.is_some();
             let plant = Plant::cruising(machine(scenario, index), state.position_m, state.speed_mps);
-            let wish = wish(
+            let request = request(
                 index.checked_sub(1),
                 !is_recorded,
                 scenario.leader.followers_target_speed_mps(),
@@ -114,7 +114,7 @@ impl<'a> World<'a> {
             );
             let clock_offset_us = clock_offset(seed, index);
             let sensors = Sensors::new(described, seed, index);
-            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, wish, clock_offset_us, sensors)?);
+            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, request, clock_offset_us, sensors)?);
         }
         let measured = Measured::of(scenario);
         let starts_m = vehicles.iter().map(|vehicle: &Vehicle| vehicle.plant.position_m).collect();
@@ -288,7 +288,7 @@ impl<'a> World<'a> {
     /// # Errors
     /// The buses'.
     pub fn finish(mut self, mut trace: Trace) -> io::Result<Trace> {
-        trace.refusals = Refusal::ALL
+        trace.refusals = Cause::ALL
             .iter()
             .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
             .collect();

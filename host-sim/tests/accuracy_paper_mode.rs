@@ -9,7 +9,7 @@
 use holdover::config::Model;
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Position, Seconds, Speed};
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -87,8 +87,8 @@ fn motion(vehicle: usize, stamp_us: i64) -> Motion {
     }
 }
 
-fn intent(vehicle: usize) -> Intent {
-    Intent {
+fn parameters(vehicle: usize) -> DrivingParameters {
+    DrivingParameters {
         length: Distance::from_mm(4_800 + 700 * vehicle as i32),
         standstill: Distance::from_mm(2_000),
         predecessor: vehicle.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(station(ahead))),
@@ -115,7 +115,7 @@ fn differences(delay_us: i64, before_us: [i64; VEHICLES]) -> [f64; VEHICLES] {
         scene.synchronise(at_us, sequence);
     }
     for vehicle in (0..VEHICLES).chain(0..VEHICLES) {
-        scene.say(-200_000, &Message::Peer(Slot(vehicle as u8), Said::Intent(intent(vehicle))));
+        scene.say(-200_000, &Message::Peer(Slot(vehicle as u8), Said::DrivingParameters(parameters(vehicle))));
         scene.say(-200_000, &Message::Peer(Slot(vehicle as u8), Said::Motion(motion(vehicle, -200_000 - delay_us))));
     }
     // The first tick puts the grid on the multiples of the step, and lies before all messages that count.

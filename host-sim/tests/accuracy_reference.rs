@@ -6,13 +6,13 @@ use std::cell::Cell;
 use holdover::estimator::Horizon;
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Distance, FineSeconds, Gain, Jerk, Speed};
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::quantity::Quantity;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover::{Config, OnboardUnit};
-use holdover_sim::heard::{Heard, HeardIntent};
+use holdover_sim::heard::{Heard, HeardParameters};
 use holdover_sim::reference::{
     Ahead, Parameters, PositionRule, State, actuated, demand_follow, demand_lead, faded, limited,
 };
@@ -50,7 +50,7 @@ struct Vehicle {
     /// How old its sample is at the first tick.
     age: Duration,
     motion: Motion,
-    intent: Intent,
+    parameters: DrivingParameters,
 }
 
 fn steps<Q: Quantity + std::fmt::Debug>(range: std::ops::RangeInclusive<i64>, per_unit: i64) -> BoxedStrategy<Q> {
@@ -68,14 +68,14 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn intent()(
+    fn parameters()(
         length in steps::<Distance>(0..=4095, 100), standstill in steps(0..=1023, 100),
         target_speed in prop_oneof![6 => steps::<Speed>(0..=30_000, 500), 1 => steps(0..=100, 500)],
         time_gap in steps(20..=799, 200), gain in steps::<Gain>(10..=3999, 1000), damping in steps(0..=3999, 1000),
         lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
-    ) -> Intent {
+    ) -> DrivingParameters {
         let predecessor = Predecessor::Unknown;
-        Intent {
+        DrivingParameters {
             length, standstill, predecessor, target_speed, time_gap, gain, damping, lag, limits, horizon_tenths: 0,
         }
     }
@@ -100,18 +100,18 @@ fn chain(
     age: std::ops::RangeInclusive<i64>,
 ) -> impl Strategy<Value = Vec<Vehicle>> {
     let kind = prop_oneof![4 => Just(Kind::Leads), 1 => Just(Kind::Undecided), 1 => Just(Kind::Silent)];
-    let vehicle = (motion(), intent(), -20_000i64..=300_000, age);
+    let vehicle = (motion(), parameters(), -20_000i64..=300_000, age);
     let vehicles = proptest::collection::vec(vehicle, 1..=PEERS);
     let slots = Just((0..PEERS as u8).collect::<Vec<_>>()).prop_shuffle();
     (kind, first_age, vehicles, slots, 0i64..4_000_000).prop_map(|(kind, first_age, vehicles, slots, mut front_mm)| {
         let mut chain: Vec<Vehicle> = Vec::new();
-        for ((mut motion, mut intent, gap_mm, age), slot) in vehicles.into_iter().zip(slots) {
+        for ((mut motion, mut parameters, gap_mm, age), slot) in vehicles.into_iter().zip(slots) {
             let (kind, age) = if chain.is_empty() { (kind, first_age) } else { (Kind::Follows, age) };
             if let Some(ahead) = chain.last() {
-                front_mm -= i64::from(ahead.intent.length.to_mm()) + gap_mm;
+                front_mm -= i64::from(ahead.parameters.length.to_mm()) + gap_mm;
             }
             let station = |place: usize| StationHash(place as u8 + 1);
-            intent.predecessor = match kind {
+            parameters.predecessor = match kind {
                 Kind::Leads => Predecessor::None,
                 Kind::Follows => Predecessor::Station(station(chain.len() - 1)),
                 Kind::Undecided | Kind::Silent => Predecessor::Unknown,
@@ -120,8 +120,9 @@ fn chain(
             motion.station = station(chain.len());
             motion.position = WirePosition::from_mm(front_mm);
             motion.stamp = gnss(START.minus(age)).stamp();
-            let (motion, intent) = (Motion::decode(&motion.encode()), Intent::decode(&intent.encode(0)));
-            chain.push(Vehicle { kind, slot, age, motion, intent });
+            let (motion, parameters) =
+                (Motion::decode(&motion.encode()), DrivingParameters::decode(&parameters.encode(0)));
+            chain.push(Vehicle { kind, slot, age, motion, parameters });
         }
         chain
     })
@@ -153,7 +154,7 @@ fn unit(chain: &[Vehicle]) -> Unit {
         let peer = |said| Message::Peer(Slot(vehicle.slot), said);
         say(&mut unit, START, peer(Said::Motion(vehicle.motion)));
         if vehicle.kind != Kind::Silent {
-            say(&mut unit, START, peer(Said::Intent(vehicle.intent)));
+            say(&mut unit, START, peer(Said::DrivingParameters(vehicle.parameters)));
         }
     }
     unit.tick(START);
@@ -179,13 +180,13 @@ fn advance(state: State, vehicle: &Vehicle, law: &Parameters, ahead: Option<(&St
 fn reference(chain: &[Vehicle], disturbance: impl Fn(usize) -> (f64, f64)) -> Vec<Vec<State>> {
     let mut horizons: Vec<Vec<State>> = Vec::new();
     for (place, vehicle) in chain.iter().enumerate() {
-        let law = Parameters::from(&HeardIntent::from_intent(&vehicle.intent, None));
+        let law = Parameters::from(&HeardParameters::from_parameters(&vehicle.parameters, None));
         let heard = Heard::from_motion(0.0, 0.0, place, vehicle.motion.position.face_value(), &vehicle.motion);
         let ahead_at = |k: usize| {
             let ahead = place.checked_sub(1)?;
             let length_m = match chain[ahead].kind {
                 Kind::Silent => LENGTH_UNPUBLISHED_M,
-                _ => chain[ahead].intent.length.get().to_num(),
+                _ => chain[ahead].parameters.length.get().to_num(),
             };
             Some((&horizons[ahead][k], length_m))
         };

@@ -4,7 +4,7 @@
 use holdover_sim::baseline::{
     Baseline, constant_acceleration::ConstantAcceleration, kalman::Kalman, paper::Paper, singer::Singer,
 };
-use holdover_sim::heard::{Heard, HeardIntent};
+use holdover_sim::heard::{Heard, HeardParameters};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -35,7 +35,7 @@ struct Message {
 impl Message {
     /// The standstill distance, the lag and the limits are not in the vectors, because no baseline may use them.
     fn heard(&self) -> Heard {
-        let intent = self.length_m.map(|length_m| HeardIntent {
+        let parameters = self.length_m.map(|length_m| HeardParameters {
             length_m,
             standstill_m: 2.0,
             leads: self.predecessor.is_none(),
@@ -57,7 +57,7 @@ impl Message {
             speed_mps: self.speed_mps,
             acceleration_mps2: self.acceleration_mps2,
             demand_mps2: self.acceleration_mps2,
-            intent,
+            parameters,
         }
     }
 }
@@ -144,7 +144,7 @@ fn constant_acceleration_and_singer_are_their_differential_equations() {
             speed_mps: row.speed_mps,
             acceleration_mps2: row.acceleration_mps2,
             demand_mps2: row.acceleration_mps2,
-            intent: None,
+            parameters: None,
         };
         let estimate = |mut baseline: Box<dyn Baseline>| {
             baseline.hear(&heard);

@@ -135,7 +135,7 @@ fn expected_of_said(said: &Said) -> Expected {
             .value("Demand", si!(m.demand))
             .either("PositionAccuracy", m.position_accuracy.map(|d| si!(d)), "not published")
             .either("SpeedAccuracy", m.speed_accuracy.map(|v| si!(v)), "not published"),
-        Said::Intent(i) => e
+        Said::DrivingParameters(i) => e
             .value("Tag", 1)
             .value("Length", si!(i.length))
             .value("Standstill", si!(i.standstill))
@@ -180,7 +180,7 @@ fn expected_of(message: &Message) -> Expected {
         Message::Ego(said) | Message::Own(said) | Message::Peer(_, said) => expected_of_said(said),
         Message::Sync(s) => e.value("Sequence", s.sequence).value("Seconds", s.seconds),
         Message::FollowUp(f) => e.value("Sequence", f.sequence).value("Micros", f.micros),
-        Message::EgoIntent(i) => e
+        Message::DriverRequest(i) => e
             .name("Engaged", if i.engaged { "drive" } else { "off" })
             .predecessor(i.predecessor)
             .value("TargetSpeed", si!(i.target_speed))
@@ -233,7 +233,7 @@ fn names_of(message: &Message) -> Vec<String> {
     let two = |name: &str| vec![format!("{name}A"), format!("{name}B")];
     let of_said = |speaker: String, said: &Said| match said {
         Said::Motion(_) => two(&format!("{speaker}Motion")),
-        Said::Intent(_) => vec![format!("{speaker}Intent")],
+        Said::DrivingParameters(_) => vec![format!("{speaker}DrivingParameters")],
         Said::Horizon(_) => vec![format!("{speaker}Horizon")],
         Said::Geo(_) => vec![format!("{speaker}Position")],
         Said::Route(_) => vec![format!("{speaker}Route")],
@@ -244,7 +244,7 @@ fn names_of(message: &Message) -> Vec<String> {
         Message::Peer(Slot(slot), said) => of_said(format!("Peer{slot}"), said),
         Message::Sync(_) => vec!["TimeSync".into()],
         Message::FollowUp(_) => vec!["TimeFollowUp".into()],
-        Message::EgoIntent(_) => vec!["EgoIntent".into()],
+        Message::DriverRequest(_) => vec!["DriverRequest".into()],
         Message::Range(_) => vec!["RangeSensor".into()],
         Message::Unserved(_) => vec!["PeersUnserved".into()],
         Message::Command(_) => vec!["MotionCommand".into()],

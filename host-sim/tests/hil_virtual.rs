@@ -277,8 +277,8 @@ impl Rig for NoPower {
         self.rig.interface(up)
     }
 
-    fn villain(&mut self) -> io::Result<&mut dyn Port> {
-        self.rig.villain()
+    fn injector(&mut self) -> io::Result<&mut dyn Port> {
+        self.rig.injector()
     }
 
     fn has_ended(&mut self) -> Option<String> {

@@ -147,7 +147,7 @@ fn every_frame_is_recognised_refused_or_ignored() {
     for cause in ["checksum", "repeated", "not_yet_trusted"] {
         assert!(summary["refused"][cause].as_u64().unwrap() > 0, "{summary}");
     }
-    for message in ["EgoMotionA", "EgoMotionB", "EgoIntent", "TimeSync", "TimeFollowUp", "Peer0MotionA"] {
+    for message in ["EgoMotionA", "EgoMotionB", "DriverRequest", "TimeSync", "TimeFollowUp", "Peer0MotionA"] {
         assert!(summary["recognised"][message].as_u64().unwrap() > 0, "{summary}");
     }
     assert_eq!(summary["state_changed"], true);

@@ -4,8 +4,8 @@
 use super::{Config, Prediction};
 use crate::parameters;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
-use crate::wire::intent::Limits;
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use crate::wire::driving_parameters::Limits;
 
 /// Why a configuration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,7 +122,7 @@ impl Config {
                     && e.speed > Speed::ZERO
                     && e.margin >= Distance::ZERO
                     && (Duration::ZERO..=millis(500)).contains(&e.delay)
-                    && (Share::ZERO..=Share::ONE).contains(&e.lag_tolerance)
+                    && (Fraction::ZERO..=Fraction::ONE).contains(&e.lag_tolerance)
                     && self.lag.plus(self.lag.share(e.lag_tolerance)) <= LONGEST_LAG
             }),
             ConfigError::Envelope,

@@ -3,7 +3,7 @@
 
 use crate::estimator::Reading;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Share, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Speed};
 
 /// What is still between the estimate and what the controller sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Blend {
 
     /// One period later, `keep` being the share that is left after it.
     #[must_use]
-    pub fn faded(&self, keep: Share) -> Self {
+    pub fn faded(&self, keep: Fraction) -> Self {
         // Distances and speeds have fewer fraction bits than accelerations, but the same word times a share.
         let word = |bits: i32| Acceleration::from_bits(bits).share(keep).to_bits();
         Self {
@@ -58,7 +58,7 @@ impl Blend {
 
 /// The share that is left after one period.
 #[must_use]
-pub fn keep_over(period: Duration) -> Share {
+pub fn keep_over(period: Duration) -> Fraction {
     crate::estimator::Decay::over(period, BLEND).keep
 }
 

@@ -5,7 +5,7 @@
 //! the look-up interpolates, beyond the last ones it takes the last.
 //!
 //! Gains stay what they are for as long as the association lasts, so the loop is linear in all that time. They are whole
-//! thousandths, which is what `PeerIntent` says of them: others predict the vehicle with the very gains that it drives by.
+//! thousandths, which is what `PeerDrivingParameters` says of them: others predict the vehicle with the very gains that it drives by.
 //! With the next association they may jump, and the demand does not, because the limit on its jerk holds across it.
 
 use super::gain_table::{

@@ -14,10 +14,10 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Driver, Follower, Leader, Reading, State, Stride};
+use crate::estimator::{Follower, Leader, Reading, State, Stride, VehicleModel};
 use crate::held::Held;
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
 /// What the controller drives by in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum Course {
     /// The ego's own law: free road, or behind a target whose reading is of one period from now.
     Law {
         /// How the ego drives.
-        driver: Driver,
+        driver: VehicleModel,
         /// The target's reading and length.
         target: Option<(Reading, Option<Distance>)>,
         /// No more acceleration than this, whatever the law asks for.
@@ -56,12 +56,12 @@ pub enum Course {
 pub struct Controller {
     demand: Acceleration,
     blend: Blend,
-    keep: Share,
+    keep: Fraction,
     period: FineSeconds,
     /// Since when the course is caution.
     caution: Option<Instant>,
     /// The step of the law that was driven by last, which is made of a driver and a length.
-    stride: Held<(Driver, Option<Distance>, Stride)>,
+    stride: Held<(VehicleModel, Option<Distance>, Stride)>,
 }
 
 /// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
@@ -89,7 +89,7 @@ impl Controller {
         Self {
             demand: Acceleration::ZERO,
             blend: Blend::NONE,
-            keep: Share::ZERO,
+            keep: Fraction::ZERO,
             period: FineSeconds::ZERO,
             caution: None,
             stride: Held::Nothing,
@@ -146,7 +146,7 @@ impl Controller {
     fn by_law(
         &mut self,
         config: &Config,
-        driver: &Driver,
+        driver: &VehicleModel,
         ego: &State,
         target: Option<(Reading, Option<Distance>)>,
         cap: Acceleration,
@@ -174,20 +174,20 @@ impl Controller {
         let Seen { gain, damping, time_gap } = CRUISE;
         let time_gap = time_gap.max(config.law.time_gap);
         let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
-        let wish = law.wish(ego, ahead.position.ring(), ahead.speed);
+        let desired = law.desired(ego, ahead.position.ring(), ahead.speed);
         let limits = config.limits;
-        let free = Leader::new(config.law.free_road_acceleration, target_speed).wish(ego.speed);
-        let capped = wish.min(free).min(speed_cap(config.law.max_speed, ego.speed));
+        let free = Leader::new(config.law.free_road_acceleration, target_speed).desired(ego.speed);
+        let capped = desired.min(free).min(speed_cap(config.law.max_speed, ego.speed));
         self.slewed(config, capped.limited(limits.braking.negated(), limits.acceleration))
     }
 
-    fn slewed(&self, config: &Config, wish: Acceleration) -> Acceleration {
-        self.slewed_by(config.limits.jerk, wish)
+    fn slewed(&self, config: &Config, desired: Acceleration) -> Acceleration {
+        self.slewed_by(config.limits.jerk, desired)
     }
 
-    fn slewed_by(&self, jerk: Jerk, wish: Acceleration) -> Acceleration {
+    fn slewed_by(&self, jerk: Jerk, desired: Acceleration) -> Acceleration {
         let slew = jerk.over(self.period);
-        wish.limited(self.demand.minus(slew), self.demand.plus(slew))
+        desired.limited(self.demand.minus(slew), self.demand.plus(slew))
     }
 }
 

@@ -18,7 +18,7 @@
 //!     +--- Fault  from everywhere while engaged: own motion unknown; left when that has not been so for RECOVER
 //! ```
 //!
-//! The driver's wish comes first, then the ego's own state (without it nothing can be commanded but braking), then the
+//! The driver's request comes first, then the ego's own state (without it nothing can be commanded but braking), then the
 //! target. Cooperative and Holdover drive by the same law on the same estimate, so passing between them changes nothing
 //! but what is said; that is why they need no hysteresis beyond the link's own tolerance. Leaving Fallback or Fault
 //! changes the law, so it takes the cause to be gone for a while; the controller's limit on jerk leads over.
@@ -109,7 +109,7 @@ pub enum TargetFact {
 /// What decides the mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Facts {
-    /// The driver's wish.
+    /// The driver's request.
     pub engaged: bool,
     /// Whether the ego's own motion is known.
     pub ego: Result<(), FaultCause>,

@@ -16,7 +16,7 @@ use crate::wire::{Predecessor, StationHash};
 /// What a peer says of its place at an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Standing {
+pub struct PeerApproach {
     /// The intersection's place on the ego's way.
     pub crossing: usize,
     /// Leg by which it comes.
@@ -37,7 +37,7 @@ pub struct Standing {
 struct Tie {
     stamp: Stamp,
     place: WirePosition,
-    standing: Standing,
+    standing: PeerApproach,
 }
 
 /// A peer's axis.
@@ -46,7 +46,7 @@ struct Tie {
 pub struct Axis {
     newest: Held<(StationHash, Stamp, WirePosition)>,
     tie: Held<Tie>,
-    standing: Held<Standing>,
+    standing: Held<PeerApproach>,
     /// What is added to its positions, in millimetres modulo 2²⁵.
     offset: Held<i32>,
 }
@@ -62,7 +62,7 @@ impl Axis {
 
     /// What the peer says, once its axis is known.
     #[must_use]
-    pub fn standing(&self) -> Option<&Standing> {
+    pub fn standing(&self) -> Option<&PeerApproach> {
         self.offset.as_ref().and(self.standing.as_ref())
     }
 
@@ -74,7 +74,7 @@ impl Axis {
         stamp: Stamp,
         crossing: Position,
         distance: Distance,
-        standing: Standing,
+        standing: PeerApproach,
     ) -> Option<Distance> {
         let place = WirePosition::from_position(crossing.ahead(distance.negated()));
         self.tie.set(Tie { stamp, place, standing });
@@ -114,7 +114,7 @@ impl Axis {
         let tie = self.tie.get().filter(|tie| tie.stamp == stamp)?;
         let held = self.standing().filter(|held| held.crossing == tie.standing.crossing);
         let since = held.map_or(tie.standing.since, |held| held.since);
-        self.standing.set(Standing { since, ..tie.standing });
+        self.standing.set(PeerApproach { since, ..tie.standing });
         let offset = tie.place.mm_ahead_of(position);
         let Some(before) = self.offset.get() else {
             self.offset.set(offset);
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    const STANDING: Standing = Standing {
+    const STANDING: PeerApproach = PeerApproach {
         crossing: 0,
         leg: 1,
         arrival: None,
@@ -196,7 +196,7 @@ mod tests {
         translated(&mut axis, &motion(3, 7, 1_000));
         place(&mut axis, 7, 500_000, 80_000);
         let crossing = |axis: &Axis| axis.standing().map(|standing| standing.crossing);
-        let next = Standing { crossing: 1, ..STANDING };
+        let next = PeerApproach { crossing: 1, ..STANDING };
         assert_eq!(axis.place(Stamp::from_raw(8), Position::from_mm(700_000), Distance::from_mm(280_000), next), None);
         assert_eq!(crossing(&axis), Some(0));
         assert_eq!(translated(&mut axis, &motion(3, 8, 2_000)), Some(420_000));

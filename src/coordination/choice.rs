@@ -1,6 +1,6 @@
 //! Whom the ego has to mind: what a review finds enters; whom the ego follows, and whose way it must not get into, leaves.
 
-use super::Gentleness;
+use super::ComfortBraking;
 
 /// Whom the ego has to mind, as of the last review.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub struct Choice {
     /// Whether the ego is to stop before the next conflict area, whomever it follows.
     pub is_held: bool,
     /// How gently the ego brakes for the target.
-    pub gentleness: Gentleness,
+    pub comfort: ComfortBraking,
     /// All that are ahead in the order; also those that are only estimated to have left.
     pub ahead: Slots,
     /// All that are ahead on the same leg. Nobody passes there: who was ahead for certain is, whatever is believed of him since.
@@ -33,7 +33,7 @@ impl Choice {
         order: None,
         lane: None,
         is_held: false,
-        gentleness: Gentleness::NONE,
+        comfort: ComfortBraking::NONE,
         ahead: Slots::NONE,
         leading: Slots::NONE,
         beyond: Slots::NONE,

@@ -31,7 +31,7 @@ pub enum MapError {
     Order,
     /// A leg is numbered [`LEGS`] or more.
     Leg,
-    /// Half a conflict area is negative, or longer than 5.115 m: twice that has to fit the standstill distance of `Intent`.
+    /// Half a conflict area is negative, or longer than 5.115 m: twice that has to fit the standstill distance of `DrivingParameters`.
     Area,
     /// A path has no segment.
     Path,

@@ -15,25 +15,25 @@
 
 pub mod axis;
 mod choice;
-mod gentleness;
+mod comfort_braking;
 mod lane;
 pub mod map;
 pub mod order;
 pub mod path;
-mod patience;
 mod present;
 mod review;
+mod yield_timer;
 
-pub use axis::{Axis, Standing};
+pub use axis::{Axis, PeerApproach};
 pub use choice::{Choice, Slots};
-pub use gentleness::Gentleness;
+pub use comfort_braking::ComfortBraking;
 pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
 pub use order::{Arrival, Entry, Regard};
 pub use path::{Path, Place, Scale, Segment};
 pub(crate) use present::{Present, Side};
 
 use lane::Lane;
-use patience::Patience;
+use yield_timer::YieldTimer;
 
 use crate::held::Held;
 use crate::time::{Duration, Instant};
@@ -82,7 +82,7 @@ pub struct Coordination<const PEERS: usize> {
     registration: Held<Registration>,
     axes: [Axis; PEERS],
     /// With those that do not heed the ego.
-    patience: [Patience; PEERS],
+    yield_timer: [YieldTimer; PEERS],
     lane: Lane<PEERS>,
     claim: Held<StationHash>,
     choice: Choice,
@@ -101,7 +101,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             current: 0,
             registration: Held::Nothing,
             axes: [Axis::UNKNOWN; PEERS],
-            patience: [Patience::FULL; PEERS],
+            yield_timer: [YieldTimer::FULL; PEERS],
             lane: Lane::UNKNOWN,
             claim: Held::Nothing,
             choice: Choice::NONE,
@@ -127,7 +127,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.current = 0;
         self.registration.clear();
         self.axes = [Axis::UNKNOWN; PEERS];
-        self.patience = [Patience::FULL; PEERS];
+        self.yield_timer = [YieldTimer::FULL; PEERS];
         self.lane = Lane::UNKNOWN;
         self.claim.clear();
         self.choice = Choice::NONE;
@@ -190,7 +190,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// What a peer says of its place.
     #[must_use]
-    pub fn standing(&self, index: usize) -> Option<&Standing> {
+    pub fn standing(&self, index: usize) -> Option<&PeerApproach> {
         self.axes.get(index)?.standing()
     }
 
@@ -213,14 +213,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// Whether the ego and a station that stands there come by the same leg.
     #[must_use]
-    pub(crate) fn is_on_lane(&self, standing: &Standing) -> bool {
+    pub(crate) fn is_on_lane(&self, standing: &PeerApproach) -> bool {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(standing.crossing));
         crossing.is_some_and(|crossing| crossing.leg == standing.leg)
     }
 
     /// Whether a station is at the crossing that is next for the ego.
     #[must_use]
-    pub(crate) const fn is_here(&self, standing: &Standing) -> bool {
+    pub(crate) const fn is_here(&self, standing: &PeerApproach) -> bool {
         standing.crossing == self.current
     }
 
@@ -275,15 +275,15 @@ impl<const PEERS: usize> Coordination<PEERS> {
         if self.registration.as_ref().is_none() {
             self.registration.set(Registration { arrival, since: now });
             self.claim.clear();
-            self.patience = [Patience::FULL; PEERS];
+            self.yield_timer = [YieldTimer::FULL; PEERS];
         }
     }
 
     /// Another station has this slot now: what was decided of the one before it does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         self.choice.vacate(index);
-        if let Some(patience) = self.patience.get_mut(index) {
-            *patience = Patience::FULL;
+        if let Some(yield_timer) = self.yield_timer.get_mut(index) {
+            *yield_timer = YieldTimer::FULL;
         }
         self.forget_lane(index);
     }
@@ -294,9 +294,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
     }
 
     /// Chooses whom to follow, and how gently to brake for it, and takes note of who is ahead on the lane.
-    pub(crate) fn choose(&mut self, target: Option<usize>, gentleness: Gentleness, lane: Option<usize>) {
+    pub(crate) fn choose(&mut self, target: Option<usize>, comfort: ComfortBraking, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
-        (self.choice.target, self.choice.gentleness, self.choice.lane) = (slot(target), gentleness, slot(lane));
+        (self.choice.target, self.choice.comfort, self.choice.lane) = (slot(target), comfort, slot(lane));
     }
 
     /// Takes note of who is ahead on the same leg, and who of them is beyond the radio's reach.
@@ -326,14 +326,20 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
     /// there: if that one comes by another leg, the more so the farther the conflict area is.
-    pub(crate) fn gentleness(&self, standing: &Standing, next: usize, front: Position, speed: Speed) -> Gentleness {
+    pub(crate) fn comfort(
+        &self,
+        standing: &PeerApproach,
+        next: usize,
+        front: Position,
+        speed: Speed,
+    ) -> ComfortBraking {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
         let shared = crossing.filter(|crossing| standing.crossing == next && standing.leg != crossing.leg);
         let Some((crossing, point)) = shared.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)))
         else {
-            return Gentleness::NONE;
+            return ComfortBraking::NONE;
         };
-        Gentleness::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
+        ComfortBraking::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
     }
 
     /// Whether the ego, with its front bumper there, at this speed and with that crossing next, follows one that stands there: who
@@ -341,13 +347,13 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// stop gently any more.
     pub(crate) fn is_announced(
         &self,
-        standing: &Standing,
+        standing: &PeerApproach,
         at: Instant,
         next: usize,
         front: Position,
         speed: Speed,
     ) -> bool {
-        at.since(standing.since) >= ANNOUNCED || self.gentleness(standing, next, front, speed) == Gentleness::NONE
+        at.since(standing.since) >= ANNOUNCED || self.comfort(standing, next, front, speed) == ComfortBraking::NONE
     }
 }
 

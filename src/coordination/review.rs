@@ -34,7 +34,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
             let counts = !is_far_behind && heard.since(registration.since) >= REVIEW;
             let regard = Regard::of(entry, &ego, present.iter().map(|other| &other.entry));
             let regard = if counts { regard } else { Regard::Heeds };
-            let is_over = self.patience.get_mut(*index).is_some_and(|patience| patience.is_over(*heard, regard));
+            let is_over =
+                self.yield_timer.get_mut(*index).is_some_and(|yield_timer| yield_timer.is_over(*heard, regard));
             if is_over && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
                 given_way = Some(entry);
             }

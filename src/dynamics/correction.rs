@@ -21,7 +21,7 @@ use crate::estimator::{Actuator, Decay, State};
 use crate::fixed::{quotient, saturate_i32};
 use crate::held::Held;
 use crate::time::Duration;
-use crate::units::{Acceleration, Share, Speed};
+use crate::units::{Acceleration, Fraction, Speed};
 
 /// `1/ω`: short enough for what follows the demand. Speeds by 2 mm/s make the disturbance jitter by 2 mm/s².
 const TIME_CONSTANT: Duration = Duration::from_millis(100);
@@ -45,7 +45,7 @@ struct Memory {
     disturbance: Acceleration,
     actuator: Actuator,
     /// `1 - z²`, and `(1 - z)²/h` in 1/s.
-    shares: (Share, Share),
+    shares: (Fraction, Fraction),
 }
 
 impl Correction {
@@ -77,15 +77,18 @@ impl Memory {
         let unlimited = Model { limits: false, ..Model::HOLDOVER };
         let time_constant = TIME_CONSTANT.max(config.period.times(PERIODS));
         let kept = Decay::over(config.period, time_constant).keep;
-        let squared = |share: Share| Acceleration::from_bits(share.to_bits()).share(share).to_bits();
-        let lost = i64::from(squared(Share::ONE.minus(kept)));
+        let squared = |share: Fraction| Acceleration::from_bits(share.to_bits()).share(share).to_bits();
+        let lost = i64::from(squared(Fraction::ONE.minus(kept)));
         // At most 1.7: at 20 ms and a time constant of five periods.
         let per_second = quotient(lost.saturating_mul(1_000_000), config.period.as_micros());
         Self {
             state: *ego,
             disturbance: Acceleration::ZERO,
             actuator: Actuator::over(config.period, lag, &config.limits, &unlimited),
-            shares: (Share::ONE.minus(Share::from_bits(squared(kept))), Share::from_bits(saturate_i32(per_second))),
+            shares: (
+                Fraction::ONE.minus(Fraction::from_bits(squared(kept))),
+                Fraction::from_bits(saturate_i32(per_second)),
+            ),
         }
     }
 

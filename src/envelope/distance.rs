@@ -6,7 +6,7 @@
 
 use super::hardest;
 use crate::config::Envelope;
-use crate::estimator::bound::{Bound, Reach};
+use crate::estimator::bound::{AccelerationRange, Bound};
 use crate::fixed::quotient;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
@@ -46,7 +46,7 @@ impl Obstacle {
 
     /// The rear of a vehicle of that length, of whose front this is certain at now.
     #[must_use]
-    pub fn rear(bound: &Bound, length: Distance, reach: &Reach) -> Self {
+    pub fn rear(bound: &Bound, length: Distance, reach: &AccelerationRange) -> Self {
         let position = bound.lowest_position().ahead(length.negated());
         Self { position, speed: bound.lowest_speed().max(Speed::ZERO), braking: reach.braking }
     }

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::estimator::bound::Bound;
-use crate::units::{Distance, FineSeconds, Jerk, Share};
+use crate::units::{Distance, FineSeconds, Fraction, Jerk};
 
 const LIMITS: Envelope = Envelope {
     acceleration: Acceleration::from_mm_per_s2(2000),
@@ -12,7 +12,7 @@ const LIMITS: Envelope = Envelope {
     speed: Speed::from_mm_per_s(30_000),
     margin: Distance::from_mm(500),
     delay: Duration::from_millis(10),
-    lag_tolerance: Share::ZERO,
+    lag_tolerance: Fraction::ZERO,
 };
 const PERIOD: Duration = Duration::from_millis(10);
 const FREE: Situation = Situation { is_fresh: true, spare: Spare::ENDLESS };
@@ -33,19 +33,19 @@ fn around(mm: i32) -> impl Iterator<Item = i32> {
 
 #[test]
 fn nothing_beyond_the_absolute_limits_gets_out() {
-    for wish in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
+    for desired in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
         for last in around(2000).chain(around(-6000)).filter(|last| (-6000..=2000).contains(last)) {
-            let out = gate(&LIMITS, wish, &ego(0, 0, last), &FREE, PERIOD);
-            assert!(out <= LIMITS.acceleration && out >= LIMITS.braking.negated(), "{wish:?} {last:?}");
+            let out = gate(&LIMITS, desired, &ego(0, 0, last), &FREE, PERIOD);
+            assert!(out <= LIMITS.acceleration && out >= LIMITS.braking.negated(), "{desired:?} {last:?}");
         }
     }
 }
 
 #[test]
 fn no_change_is_faster_than_the_limit_on_jerk() {
-    for wish in around(100).chain(around(-100)) {
-        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego(0, 0, 0), &FREE, PERIOD).to_mm_per_s2();
-        assert_eq!(out, wish.clamp(-100, 100));
+    for desired in around(100).chain(around(-100)) {
+        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(0, 0, 0), &FREE, PERIOD).to_mm_per_s2();
+        assert_eq!(out, desired.clamp(-100, 100));
     }
 }
 
@@ -60,21 +60,21 @@ fn at_the_speed_limit_nothing_accelerates() {
 #[test]
 fn a_stale_ego_does_not_accelerate() {
     let stale = Situation { is_fresh: false, ..FREE };
-    for wish in around(0) {
-        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego(10_000, 0, 0), &stale, PERIOD);
-        assert_eq!(out.to_mm_per_s2(), wish.clamp(-100, 0));
+    for desired in around(0) {
+        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(10_000, 0, 0), &stale, PERIOD);
+        assert_eq!(out.to_mm_per_s2(), desired.clamp(-100, 0));
     }
 }
 
 #[test]
 fn the_gate_only_ever_makes_a_demand_more_careful() {
-    for wish in (-7000..3000).step_by(370) {
+    for desired in (-7000..3000).step_by(370) {
         for room in (-10_000..100_000).step_by(7_310) {
-            let ego = ego(15_000, 0, wish.clamp(-6000, 2000));
+            let ego = ego(15_000, 0, desired.clamp(-6000, 2000));
             let spare = spare(&LIMITS, &ego, &Obstacle::standing(Position::from_mm(room)));
             let situation = Situation { is_fresh: true, spare };
-            let out = gate(&LIMITS, Acceleration::from_mm_per_s2(wish), &ego, &situation, PERIOD);
-            assert!(out.to_mm_per_s2() <= wish || wish < -6000, "{wish} {room} {out:?}");
+            let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego, &situation, PERIOD);
+            assert!(out.to_mm_per_s2() <= desired || desired < -6000, "{desired} {room} {out:?}");
         }
     }
 }
@@ -137,13 +137,19 @@ fn who_stands_and_is_told_to_brake_is_safe_wherever_it_stands() {
 
 #[test]
 fn the_rear_of_a_vehicle_is_its_near_end_less_its_length() {
-    use crate::estimator::bound::{Doubt, Reach};
-    let (at, doubt) = (crate::time::Instant::ZERO, Doubt::default());
+    use crate::estimator::bound::{AccelerationRange, Uncertainty};
+    let (at, uncertainty) = (crate::time::Instant::ZERO, Uncertainty::default());
     for (front, length) in [(0, 0), (50_000, 4_800), (-7, 18_750)] {
-        let bound = Bound::around(at, Position::from_mm(front), Speed::from_mm_per_s(7_000), &doubt, &Reach::WORST);
-        let found = Obstacle::rear(&bound, Distance::from_mm(length), &Reach::WORST);
+        let bound = Bound::around(
+            at,
+            Position::from_mm(front),
+            Speed::from_mm_per_s(7_000),
+            &uncertainty,
+            &AccelerationRange::WORST,
+        );
+        let found = Obstacle::rear(&bound, Distance::from_mm(length), &AccelerationRange::WORST);
         assert_eq!(found.position.to_mm(), front - i64::from(length));
-        assert_eq!((found.speed.to_mm_per_s(), found.braking), (7_000, Reach::WORST.braking));
+        assert_eq!((found.speed.to_mm_per_s(), found.braking), (7_000, AccelerationRange::WORST.braking));
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a vehicle's controller and actuators make of a wish: the wished acceleration enters, limited in size and jerk
+//! What a vehicle's controller and actuators make of a desired: the desired acceleration enters, limited in size and jerk
 //! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
 //! because the model must be the controller.
 
@@ -9,7 +9,7 @@ use crate::config::Model;
 use crate::fixed::{Rest, mul_hi, product, sum};
 use crate::time::Duration;
 use crate::units::{Acceleration, FineSeconds, Jerk, RingPosition, Speed};
-use crate::wire::intent::Limits;
+use crate::wire::driving_parameters::Limits;
 
 /// A vehicle's state at one step of a horizon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,18 +24,18 @@ pub struct State {
     /// Acceleration demanded in the step before.
     pub demand: Acceleration,
     /// What is below the last bits of position and speed.
-    pub rests: Rests,
+    pub remainders: Remainders,
 }
 
 /// What hundreds of steps would lose of position and speed if each of them were rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Rests {
+pub struct Remainders {
     position: Rest,
     speed: Rest,
 }
 
-impl Rests {
+impl Remainders {
     /// Of a state that is exactly its words.
     pub const NONE: Self = Self { position: Rest::NONE, speed: Rest::NONE };
     /// Of no state: all zero.
@@ -74,14 +74,14 @@ impl Actuator {
         }
     }
 
-    /// The demand that comes of a wish: at most the jerk limit away from the last one, and within the limits on
+    /// The demand that comes of a desired: at most the jerk limit away from the last one, and within the limits on
     /// acceleration as far as the jerk limit lets it get there.
     #[inline(always)]
     #[must_use]
-    pub fn limit(&self, wish: Acceleration, last: Acceleration) -> Acceleration {
+    pub fn limit(&self, desired: Acceleration, last: Acceleration) -> Acceleration {
         let low = last.minus(self.slew).max(self.floor);
         let high = last.plus(self.slew).min(self.ceiling);
-        wish.min(high).max(low)
+        desired.min(high).max(low)
     }
 
     /// The gain in speed at an acceleration over the step.
@@ -107,14 +107,20 @@ impl Actuator {
         // Less than 2⁶¹ each: 64 m/s² in 25 bits, for 1 s in 30 bits.
         let gained =
             product(demand.to_bits(), self.step.to_bits()).wrapping_add(product(behind.to_bits(), self.slip.to_bits()));
-        let (word, mut rest) = sum(state.speed.to_bits(), state.rests.speed, gained);
+        let (word, mut rest) = sum(state.speed.to_bits(), state.remainders.speed, gained);
         let mut speed = Speed::from_bits(word);
         if word < 0 {
             (speed, rest, acceleration) = (Speed::ZERO, Rest::NONE, at_rest(acceleration));
         }
         let (position, rest_of_position) =
-            self.path.follow::<TRAPEZOID>(state.position, state.rests.position, state.speed, speed);
-        State { position, speed, acceleration, demand, rests: Rests { position: rest_of_position, speed: rest } }
+            self.path.follow::<TRAPEZOID>(state.position, state.remainders.position, state.speed, speed);
+        State {
+            position,
+            speed,
+            acceleration,
+            demand,
+            remainders: Remainders { position: rest_of_position, speed: rest },
+        }
     }
 }
 
@@ -130,10 +136,10 @@ impl Actuator {
         &self,
         mut state: State,
         steps: impl Iterator<Item = (&'a mut Step, A)>,
-        wish: impl Fn(&State, A) -> Acceleration,
+        desired: impl Fn(&State, A) -> Acceleration,
     ) -> State {
         for (out, beside) in steps {
-            state = self.go::<true>(state, self.limit(wish(&state, beside), state.demand));
+            state = self.go::<true>(state, self.limit(desired(&state, beside), state.demand));
             *out = Step { position: state.position, speed: state.speed };
         }
         state

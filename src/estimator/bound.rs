@@ -16,7 +16,7 @@
 use crate::fixed::{per_15_625, per_million, quotient};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
-use crate::wire::intent::Limits;
+use crate::wire::driving_parameters::Limits;
 
 /// The highest speed there is: what the wire can say, in µm/s.
 const TOP_SPEED: i64 = 65_534_000;
@@ -27,14 +27,14 @@ const MICRO: i64 = 1_000_000;
 /// How fast a vehicle can change its speed, as magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Reach {
+pub struct AccelerationRange {
     /// Hardest acceleration.
     pub acceleration: Acceleration,
     /// Hardest braking.
     pub braking: Acceleration,
 }
 
-impl Reach {
+impl AccelerationRange {
     /// What is physically possible on a dry road with any road vehicle, where nothing was published.
     pub const WORST: Self =
         Self { acceleration: Acceleration::from_mm_per_s2(6_000), braking: Acceleration::from_mm_per_s2(12_000) };
@@ -59,7 +59,7 @@ impl Reach {
 /// What is uncertain about a sample at its stamp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Doubt {
+pub struct Uncertainty {
     /// Position, to either side.
     pub position: Distance,
     /// Speed, to either side.
@@ -122,20 +122,26 @@ impl Bound {
     /// Around a sample that is taken to be of `at`. The bound is that of `at` or of the latest instant that the sample may
     /// really be from.
     #[must_use]
-    pub fn around(at: Instant, position: Position, speed: Speed, doubt: &Doubt, reach: &Reach) -> Self {
+    pub fn around(
+        at: Instant,
+        position: Position,
+        speed: Speed,
+        uncertainty: &Uncertainty,
+        reach: &AccelerationRange,
+    ) -> Self {
         let (position, speed) = (micro_position(position), (i64::from(speed.to_bits()), 23));
-        let off = micro_up(doubt.position.to_bits(), 20);
-        let faster = micro_up(doubt.speed.to_bits(), 23);
+        let off = micro_up(uncertainty.position.to_bits(), 20);
+        let faster = micro_up(uncertainty.speed.to_bits(), 23);
         let slow = micro_down_64(speed.0, speed.1).saturating_sub(faster).max(0);
         let fast = micro_up_64(speed.0, speed.1).saturating_add(faster).max(0);
         let near = End { position: position.0.saturating_sub(off), speed: slow };
         let far = End { position: position.1.saturating_add(off), speed: fast };
         // Of the earliest instant the far end has come furthest; the near end is furthest back if it is of the latest. The
         // speeds may have changed for the whole of the time in doubt, either way.
-        let whole = doubt.earlier.plus(doubt.later).as_micros().clamp(0, LONGEST);
+        let whole = uncertainty.earlier.plus(uncertainty.later).as_micros().clamp(0, LONGEST);
         let slower = near.braked(whole, reach.braking);
         Self {
-            at: at.plus(doubt.later),
+            at: at.plus(uncertainty.later),
             near: End { position: near.position, speed: slower.speed },
             far: far.accelerated(whole, reach.acceleration),
         }
@@ -164,7 +170,7 @@ impl Bound {
 
     /// The bound at a later instant; at an earlier one it is what it is.
     #[must_use]
-    pub fn after(&self, now: Instant, reach: &Reach) -> Self {
+    pub fn after(&self, now: Instant, reach: &AccelerationRange) -> Self {
         let micros = now.since(self.at).as_micros();
         if micros <= 0 {
             return *self;
@@ -179,7 +185,7 @@ impl Bound {
 
     /// What both bounds agree on, at the later one's instant; `None` if they contradict one another.
     #[must_use]
-    pub fn and(&self, other: &Self, reach: &Reach) -> Option<Self> {
+    pub fn and(&self, other: &Self, reach: &AccelerationRange) -> Option<Self> {
         let at = self.at.max(other.at);
         let (a, b) = (self.after(at, reach), other.after(at, reach));
         let near = End { position: a.near.position.max(b.near.position), speed: a.near.speed.max(b.near.speed) };
@@ -216,7 +222,7 @@ impl Bound {
     /// Where the near end comes to rest if it goes on braking: behind this the vehicle cannot stop, however long the
     /// silence. It never moves back, rounded down.
     #[must_use]
-    pub fn nearest_stop(&self, reach: &Reach) -> Position {
+    pub fn nearest_stop(&self, reach: &AccelerationRange) -> Position {
         let stopped = self.near.braked(LONGEST, reach.braking);
         Position::from_bits(floor_shifted(stopped.position, 20))
     }

@@ -10,7 +10,7 @@
 //!   forecast of it anywhere.
 //! * A *reading* is limited at its instant, whatever it comes from.
 
-use super::bound::{Bound, Reach};
+use super::bound::{AccelerationRange, Bound};
 use super::horizon::Reading;
 use crate::peers::Sample;
 use crate::time::Duration;
@@ -35,7 +35,7 @@ pub fn limited(reading: Reading, bound: &Bound) -> Reading {
 }
 
 /// A sample that was outside the bound, moved into it; `None` where nothing is to be moved.
-pub(super) fn moved(sample: &Sample, bound: &Bound, reach: &Reach) -> Option<Sample> {
+pub(super) fn moved(sample: &Sample, bound: &Bound, reach: &AccelerationRange) -> Option<Sample> {
     let bound = bound.after(sample.at, reach);
     let later = bound.at().since(sample.at);
     if later > CARRIED {
@@ -58,7 +58,13 @@ pub(super) fn moved(sample: &Sample, bound: &Bound, reach: &Reach) -> Option<Sam
 
 /// Whether its sender can take the path of a horizon of so many tenths of a second that begins with the sample, as far as its
 /// knots are rebuilt.
-pub(super) fn is_reachable(knots: &Knots, tenths: u8, sample: &Sample, bound: &Bound, reach: &Reach) -> bool {
+pub(super) fn is_reachable(
+    knots: &Knots,
+    tenths: u8,
+    sample: &Sample,
+    bound: &Bound,
+    reach: &AccelerationRange,
+) -> bool {
     knots.knots.iter().zip(SHARES_PER_MILLE).all(|(knot, share)| {
         let after = i64::from(tenths).saturating_mul(i64::from(share)).saturating_mul(100);
         let at = sample.at.plus(Duration::from_micros(after));

@@ -3,7 +3,7 @@
 
 use crate::fixed::{divide, quotient, saturate_i32};
 use crate::time::Duration;
-use crate::units::{FineSeconds, Share};
+use crate::units::{FineSeconds, Fraction};
 
 /// ln 2 in 32 fraction bits.
 const LN_2: u64 = 2_977_044_472;
@@ -14,7 +14,7 @@ const ONE: u64 = 1 << 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decay {
     /// The share `φ = e^(-h/T)` that is left; 0 if there is no lag, 1 if no time passes.
-    pub keep: Share,
+    pub keep: Fraction,
     /// `T (1 - φ)`: what the deviation still adds to the speed while it dies out.
     pub slip: FineSeconds,
 }
@@ -24,25 +24,25 @@ impl Decay {
     #[must_use]
     pub fn over(step: Duration, time_constant: Duration) -> Self {
         let keep = keep(step, time_constant);
-        // Share and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
-        let lost = Share::ONE.minus(keep);
+        // Fraction and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
+        let lost = Fraction::ONE.minus(keep);
         let product = time_constant.as_micros().max(0).saturating_mul(i64::from(lost.to_bits()));
         Self { keep, slip: FineSeconds::from_bits(saturate_i32(quotient(product.saturating_add(500_000), 1_000_000))) }
     }
 }
 
 /// `e^(-h/T)`.
-fn keep(step: Duration, time_constant: Duration) -> Share {
+fn keep(step: Duration, time_constant: Duration) -> Fraction {
     let (step, time_constant) =
         (step.as_micros().max(0).unsigned_abs(), time_constant.as_micros().max(0).unsigned_abs());
     // Beyond 22 time constants nothing of 30 bits is left; below, the quotient fits 37 bits.
     if step > 0 && step >= time_constant.saturating_mul(22) {
-        return Share::ZERO;
+        return Fraction::ZERO;
     }
     let x = divide(step.saturating_mul(ONE), time_constant);
     let halvings = x / LN_2;
     let rest = x.saturating_sub(halvings.saturating_mul(LN_2));
-    Share::from_bits(rounded(exp_of_minus(rest), halvings.saturating_add(2)))
+    Fraction::from_bits(rounded(exp_of_minus(rest), halvings.saturating_add(2)))
 }
 
 /// `e^(-x)` for `x` in [0, ln 2), both in 32 fraction bits: the Taylor series by Horner's rule. The first term left out
@@ -96,14 +96,14 @@ mod tests {
 
     #[test]
     fn without_lag_nothing_is_kept() {
-        let nothing = Decay { keep: Share::ZERO, slip: FineSeconds::ZERO };
+        let nothing = Decay { keep: Fraction::ZERO, slip: FineSeconds::ZERO };
         assert_eq!(Decay::over(Duration::from_millis(10), Duration::ZERO), nothing);
     }
 
     #[test]
     fn without_time_everything_is_kept() {
         for lag in [0, 300] {
-            assert_eq!(keep(Duration::ZERO, Duration::from_millis(lag)), Share::ONE);
+            assert_eq!(keep(Duration::ZERO, Duration::from_millis(lag)), Fraction::ONE);
         }
     }
 }

@@ -8,7 +8,7 @@
 //! v* = [ v - κ ( r + v δt - r_p + l + s_0 - γ v_p ) ] / [ 1 + κ (t_g + γ) ],   κ = α k δt,  α = 1
 //! ```
 //!
-//! and the wish is `(v* - v)/δt`, which is
+//! and the desired is `(v* - v)/δt`, which is
 //!
 //! ```text
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
@@ -72,7 +72,7 @@ impl Follower {
     /// Eq. 13 as an acceleration, before the limits.
     #[inline(always)]
     #[must_use]
-    pub fn wish(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
+    pub fn desired(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
         let half = state.speed.over(self.half_gap);
         let closing = state.speed.minus(ahead_speed).over(self.damping);
         let behind = state.position.ahead_of(ahead).plus(closing).plus(self.spacing);
@@ -150,7 +150,7 @@ mod tests {
         let state = State { speed, ..State::default() };
         // At the end of the step the predecessor is one step further.
         let ahead = Position::ZERO.ring().ahead(spacing).ahead(speed.over(time_gap)).ahead(speed.over(step.seconds()));
-        assert!(law.wish(&state, ahead, speed).to_bits().abs() < 1 << 10);
+        assert!(law.desired(&state, ahead, speed).to_bits().abs() < 1 << 10);
     }
 
     #[test]
@@ -163,12 +163,12 @@ mod tests {
         for (mm_per_s, is_faster) in [(12_900, true), (13_000, false), (13_100, false)] {
             let state = State { speed: Speed::from_mm_per_s(mm_per_s), ..State::default() };
             let ahead = Position::from_mm(400_000).ring();
-            let wish = over(Some(catch_up)).wish(&state, ahead, Speed::from_mm_per_s(11_000));
+            let desired = over(Some(catch_up)).desired(&state, ahead, Speed::from_mm_per_s(11_000));
             // K = 0.5/1.015 and t_g + δt = 1.01.
             let exact = 0.5 / 1.015 * 1.01 * f64::from(13_000 - mm_per_s);
-            assert!((f64::from(wish.to_mm_per_s2()) - exact).abs() < 1.0, "{mm_per_s} {wish:?}");
-            assert_eq!(wish > Acceleration::ZERO, is_faster);
-            assert!(over(None).wish(&state, ahead, state.speed) > Acceleration::from_mm_per_s2(60_000));
+            assert!((f64::from(desired.to_mm_per_s2()) - exact).abs() < 1.0, "{mm_per_s} {desired:?}");
+            assert_eq!(desired > Acceleration::ZERO, is_faster);
+            assert!(over(None).desired(&state, ahead, state.speed) > Acceleration::from_mm_per_s2(60_000));
         }
     }
 

@@ -1,17 +1,17 @@
 //! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
 //! horizon brought up to now leaves.
 
-use super::actuator::{Rests, State};
+use super::actuator::{Remainders, State};
 use super::delay::adjusted;
-use super::driver::{Driver, Stride};
 use super::horizon::{Anchor, Grid, Horizon, Step};
+use super::vehicle_model::{Stride, VehicleModel};
 use crate::config::Model;
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
 use crate::wire::curve::{Curve, Run};
+use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
-use crate::wire::intent::Intent;
 
 /// Whose horizon a follower's is computed from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,16 +42,16 @@ pub struct Forecast<'a, const STEPS: usize> {
 pub struct News<'a> {
     /// The vehicle's state.
     pub sample: &'a Sample,
-    /// The horizon that the vehicle sent, with its intent.
-    pub received: Option<(&'a Knots, &'a Intent)>,
+    /// The horizon that the vehicle sent, with its driving parameters.
+    pub received: Option<(&'a Knots, &'a DrivingParameters)>,
     /// How the vehicle drives.
-    pub driver: Driver,
+    pub driver: VehicleModel,
     /// Length of its predecessor.
     pub length_ahead: Option<Distance>,
 }
 
 impl<const STEPS: usize> Forecast<'_, STEPS> {
-    /// Starts the horizon anew from a sample, and from the vehicle's own horizon if it sent one with its intent.
+    /// Starts the horizon anew from a sample, and from the vehicle's own horizon if it sent one with its driving parameters.
     pub fn anchor(&self, horizon: &mut Horizon<STEPS>, present: i64, news: &News<'_>) {
         let sample = news.sample;
         let anchor =
@@ -62,7 +62,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let mut filling = Filling { horizon, present: from, anchor };
         let next = news
             .received
-            .and_then(|(knots, intent)| self.resample(&mut filling, knots, intent))
+            .and_then(|(knots, parameters)| self.resample(&mut filling, knots, parameters))
             .or_else(|| self.depart(&mut filling, news));
         if let Some((index, state)) = next {
             self.carry_on(&mut filling, index, state, self.end(present, sample));
@@ -115,7 +115,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             speed: sample.speed.max(Speed::ZERO),
             acceleration: sample.acceleration,
             demand: if self.model.last_demand { sample.demand } else { sample.acceleration },
-            rests: Rests::NONE,
+            remainders: Remainders::NONE,
         };
         let index;
         if self.model.stamped {
@@ -133,17 +133,22 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// Source (a): the sent horizon on the grid, from now to its end. One that ended before now is of no use.
-    fn resample(&self, filling: &mut Filling<'_, STEPS>, knots: &Knots, intent: &Intent) -> Option<(i64, State)> {
+    fn resample(
+        &self,
+        filling: &mut Filling<'_, STEPS>,
+        knots: &Knots,
+        parameters: &DrivingParameters,
+    ) -> Option<(i64, State)> {
         let anchor = filling.anchor;
         let start = Knot::start(anchor.speed, anchor.acceleration);
-        let curve = Curve::new(start, knots, Duration::from_millis(100).times(i64::from(intent.horizon_tenths)));
+        let curve = Curve::new(start, knots, Duration::from_millis(100).times(i64::from(parameters.horizon_tenths)));
         let first = self.grid.at_or_after(anchor.at).max(filling.present);
         let after = self.grid.time_of(first).since(anchor.at);
         let origin = anchor.position.ring();
         let acceleration = knots.knots.last()?.acceleration;
         let at = |(way, speed)| {
             let position = origin.ahead(way);
-            State { position, speed, acceleration, demand: acceleration, rests: Rests::NONE }
+            State { position, speed, acceleration, demand: acceleration, remainders: Remainders::NONE }
         };
         let mut runs = curve.runs(after, self.grid.step);
         let mut run = following(&mut runs)?;

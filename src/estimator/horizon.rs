@@ -4,7 +4,7 @@
 //! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step,
 //! and between steps, a reading is the cubic that meets both positions and both speeds.
 
-use super::actuator::{Rests, State};
+use super::actuator::{Remainders, State};
 use super::interpolation::{Approach, Cubic};
 use crate::fixed::quotient;
 use crate::time::{Duration, Instant};
@@ -119,7 +119,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
                 speed: Speed::ZERO,
                 acceleration: Acceleration::ZERO,
                 demand: Acceleration::ZERO,
-                rests: Rests::UNSET,
+                remainders: Remainders::UNSET,
             },
             anchor: Anchor {
                 at: Instant::ZERO,

@@ -2,7 +2,7 @@
 //! Driver Model's free-road term, eq. 8).
 //!
 //! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle see to it that it decelerates no harder
-//! than comfortable. A target speed below 0.1 m/s is a wish to stop, as hard as the vehicle's own limit on braking allows.
+//! than comfortable. A target speed below 0.1 m/s is a desired to stop, as hard as the vehicle's own limit on braking allows.
 
 use crate::fixed::{mul_hi, mul_shl_down, ratio, saturate_i32};
 use crate::parameters::{FREE_ROAD_RATIO_MILLI, STOP_SPEED};
@@ -17,7 +17,7 @@ pub struct Leader {
     inverse: i32,
 }
 
-/// The wish to stop: harder than any limit that a message can name, which is 20.46 m/s².
+/// The desired to stop: harder than any limit that a message can name, which is 20.46 m/s².
 const STOP: Acceleration = Acceleration::from_mm_per_s2(-20_460);
 /// The largest `v/v_∞` in 28 fraction bits.
 const RATIO_MAX: i32 = saturate_i32(ratio(FREE_ROAD_RATIO_MILLI, 1000, 28));
@@ -38,7 +38,7 @@ impl Leader {
     /// Eq. 8 before the limits.
     #[inline(always)]
     #[must_use]
-    pub fn wish(&self, speed: Speed) -> Acceleration {
+    pub fn desired(&self, speed: Speed) -> Acceleration {
         if self.inverse == 0 {
             return STOP;
         }
@@ -67,7 +67,7 @@ mod tests {
                 let speed = Speed::from_ratio(speed, 1000);
                 let share = speed.get().to_num::<f64>() / wanted;
                 let exact = largest * (1.0 - share.powi(4));
-                let got = leader.wish(speed).get().to_num::<f64>();
+                let got = leader.desired(speed).get().to_num::<f64>();
                 // Relative to the fourth power, the reciprocal's resolution (26 bits) counts four times: 1.5 µm/s² at
                 // 65 m/s. The rest is the resolution of the fourth power and of the acceleration.
                 let tolerance = 2e-7 + 0.73 * 4.0 * share.powi(4) * wanted * 2f64.powi(-27);
@@ -80,13 +80,13 @@ mod tests {
     fn far_above_the_target_the_wish_is_harder_than_any_comfortable_limit() {
         let leader = Leader::new(Acceleration::from_mm_per_s2(100), Speed::from_mm_per_s(1000));
         for speed in [2_800, 10_000, 60_000, 255_000] {
-            assert!(leader.wish(Speed::from_mm_per_s(speed)) <= BRAKING_MAX.negated(), "{speed}");
+            assert!(leader.desired(Speed::from_mm_per_s(speed)) <= BRAKING_MAX.negated(), "{speed}");
         }
     }
 
     #[test]
     fn no_target_speed_is_a_wish_to_stop() {
         let leader = Leader::new(Acceleration::from_mm_per_s2(730), Speed::from_mm_per_s(99));
-        assert_eq!(leader.wish(Speed::from_mm_per_s(50)), STOP);
+        assert_eq!(leader.desired(Speed::from_mm_per_s(50)), STOP);
     }
 }

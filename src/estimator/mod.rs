@@ -2,7 +2,7 @@
 //!
 //! Theory of operation, once a tick:
 //!
-//! * *News* of a peer (a newer sample, its own horizon, another intent) re-anchors its horizon: from (a) the horizon that
+//! * *News* of a peer (a newer sample, its own horizon, another driving parameters) re-anchors its horizon: from (a) the horizon that
 //!   it computed itself and sent, resampled onto the unit's grid, and from its end on, or else from its state at the
 //!   stamp, by (b) the unit's own model of it: Algorithm 2 for a leader, Algorithm 4 for a follower whose predecessor is
 //!   known, the fading acceleration for anyone else.
@@ -18,7 +18,6 @@ pub mod bound;
 pub mod certain;
 mod chain;
 mod delay;
-mod driver;
 mod exponential;
 pub mod follower;
 mod forecast;
@@ -26,14 +25,15 @@ mod horizon;
 mod interpolation;
 mod leader;
 mod position;
+mod vehicle_model;
 
-pub use actuator::{Actuator, Rests, State};
-pub use driver::{Aim, Driver, Stride};
+pub use actuator::{Actuator, Remainders, State};
 pub use exponential::Decay;
 pub use follower::Follower;
 pub use horizon::{Anchor, Grid, Horizon, Reading, Step};
 pub use leader::Leader;
 pub use position::Path;
+pub use vehicle_model::{Aim, Stride, VehicleModel};
 
 use chain::Chain;
 use forecast::{Ahead, Forecast, News, steps};
@@ -60,7 +60,7 @@ enum Source<'a> {
 pub struct Manner {
     /// The slot of whom it follows.
     pub target: Option<usize>,
-    driver: Driver,
+    driver: VehicleModel,
     length_ahead: Option<Distance>,
     stride: Stride,
 }
@@ -73,7 +73,7 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     /// Steps that a horizon is kept at.
     length: usize,
     horizons: [Horizon<STEPS>; PEERS],
-    /// The step of each peer, until its intent or its predecessor changes.
+    /// The step of each peer, until its driving parameters or its predecessor changes.
     strides: [Held<Stride>; PEERS],
     /// Whom each peer follows.
     aheads: [Held<Ahead>; PEERS],
@@ -206,16 +206,16 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let course = || {
             let length_ahead = match ahead {
                 Some(Ahead::Peer(other)) => {
-                    peers.get(other).and_then(|other| other.intent()).map(|intent| intent.length)
+                    peers.get(other).and_then(|other| other.parameters()).map(|parameters| parameters.length)
                 }
                 Some(Ahead::Own) => Some(*own_length),
                 None => None,
             };
-            let driver = match track.intent() {
-                Some(intent) if ahead.is_some() || intent.predecessor == Predecessor::None => {
-                    Driver::of_intent(intent, model)
+            let driver = match track.parameters() {
+                Some(parameters) if ahead.is_some() || parameters.predecessor == Predecessor::None => {
+                    VehicleModel::of_parameters(parameters, model)
                 }
-                _ => Driver::UNKNOWN,
+                _ => VehicleModel::UNKNOWN,
             };
             (driver, length_ahead)
         };
@@ -235,7 +235,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let delay = if model.stamped { None } else { Some(track.link().delay()) };
         let forecast = Forecast { grid, length: *length, model, stride, ahead, delay };
         let (sample, received) = match source {
-            Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.intent())),
+            Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.parameters())),
             Source::Seen(sample) => (sample, None),
             Source::Nothing => {
                 forecast.extend(horizon, present);
@@ -247,8 +247,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let reach = track.reach();
         let moved = bound.and_then(|bound| certain::moved(sample, bound, &reach));
         let sample = moved.as_ref().unwrap_or(sample);
-        let usable = received.filter(|(knots, intent)| {
-            bound.is_none_or(|bound| certain::is_reachable(knots, intent.horizon_tenths, sample, bound, &reach))
+        let usable = received.filter(|(knots, parameters)| {
+            bound.is_none_or(|bound| certain::is_reachable(knots, parameters.horizon_tenths, sample, bound, &reach))
         });
         let (driver, length_ahead) = course();
         forecast.anchor(horizon, present, &News { sample, received: usable, driver, length_ahead });
@@ -258,11 +258,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// How the ego drives behind a peer, if any, for its own horizon.
     pub fn manner<const SAMPLES: usize>(
         &self,
-        driver: Driver,
+        driver: VehicleModel,
         target: Option<usize>,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Manner {
-        let length_ahead = target.and_then(|index| peers.get(index)?.intent().map(|intent| intent.length));
+        let length_ahead = target.and_then(|index| peers.get(index)?.parameters().map(|parameters| parameters.length));
         Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
     }
 
@@ -351,7 +351,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     fn ahead<const SAMPLES: usize>(&self, peers: &Peers<PEERS, SAMPLES>, index: usize) -> Option<Ahead> {
-        match peers.get(index)?.intent()?.predecessor {
+        match peers.get(index)?.parameters()?.predecessor {
             Predecessor::Station(station) if station == self.station => Some(Ahead::Own),
             Predecessor::Station(station) => peers.index_of(station).filter(|other| *other != index).map(Ahead::Peer),
             Predecessor::None | Predecessor::Unknown => None,

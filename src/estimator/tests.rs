@@ -6,15 +6,15 @@ use crate::config::Config;
 use crate::peers::plausibility::{Belief, Certainty};
 use crate::time::Stamp;
 use crate::units::{Acceleration, FineSeconds, Gain, Jerk, Position, Seconds, Speed};
-use crate::wire::intent::{Intent, Limits};
+use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
 const STEPS: usize = 64;
 const GRID: Grid = Grid { origin: Instant::from_micros(9_000_000), step: Duration::from_millis(10) };
 const MODEL: Model = Model::HOLDOVER;
 
 /// A leader that wants 10 m/s.
-pub(crate) fn leader() -> Intent {
-    Intent {
+pub(crate) fn leader() -> DrivingParameters {
+    DrivingParameters {
         length: Distance::from_mm(4_800),
         standstill: Distance::from_mm(2_000),
         predecessor: Predecessor::None,
@@ -33,8 +33,8 @@ pub(crate) fn leader() -> Intent {
     }
 }
 
-fn follower() -> Intent {
-    Intent { predecessor: Predecessor::Station(StationHash(1)), ..leader() }
+fn follower() -> DrivingParameters {
+    DrivingParameters { predecessor: Predecessor::Station(StationHash(1)), ..leader() }
 }
 
 /// So long before the grid's step 0.
@@ -56,7 +56,7 @@ fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
 }
 
 /// A driver with its stride behind a car.
-fn course(driver: Driver, model: &Model) -> (Driver, Stride) {
+fn course(driver: VehicleModel, model: &Model) -> (VehicleModel, Stride) {
     (driver, driver.over(GRID.step, CAR, model))
 }
 
@@ -71,13 +71,18 @@ fn forecast<'a>(
     Forecast { grid: &GRID, length, model, stride, ahead, delay: None }
 }
 
-fn news(sample: &Sample, driver: Driver) -> News<'_> {
+fn news(sample: &Sample, driver: VehicleModel) -> News<'_> {
     News { sample, received: None, driver, length_ahead: CAR }
 }
 
-fn anchored(intent: &Intent, sample: &Sample, length: usize, ahead: Option<&Horizon<STEPS>>) -> Horizon<STEPS> {
+fn anchored(
+    parameters: &DrivingParameters,
+    sample: &Sample,
+    length: usize,
+    ahead: Option<&Horizon<STEPS>>,
+) -> Horizon<STEPS> {
     let mut horizon = Horizon::empty();
-    let (driver, stride) = course(Driver::of_intent(intent, &MODEL), &MODEL);
+    let (driver, stride) = course(VehicleModel::of_parameters(parameters, &MODEL), &MODEL);
     forecast(&stride, length, &MODEL, ahead).anchor(&mut horizon, 0, &news(sample, driver));
     horizon
 }
@@ -109,11 +114,11 @@ fn a_sample_from_the_future_is_where_its_horizon_begins_and_before_it_speed_is_c
 #[test]
 fn a_horizon_that_is_extended_is_the_one_that_was_longer_from_the_start() {
     let ahead = anchored(&leader(), &sample(0, 8_000, 500), STEPS, None);
-    for (intent, ahead) in [(leader(), None), (follower(), Some(&ahead))] {
+    for (parameters, ahead) in [(leader(), None), (follower(), Some(&ahead))] {
         let sample = sample(23_400, 12_000, -1_500);
-        let long = anchored(&intent, &sample, 50, ahead);
-        let mut extended = anchored(&intent, &sample, 20, ahead);
-        let (_, stride) = course(Driver::of_intent(&intent, &MODEL), &MODEL);
+        let long = anchored(&parameters, &sample, 50, ahead);
+        let mut extended = anchored(&parameters, &sample, 20, ahead);
+        let (_, stride) = course(VehicleModel::of_parameters(&parameters, &MODEL), &MODEL);
         let forecast = forecast(&stride, 20, &MODEL, ahead);
         for present in [1, 2, 12, 30] {
             forecast.extend(&mut extended, present);
@@ -129,7 +134,7 @@ fn a_horizon_that_is_extended_is_the_one_that_was_longer_from_the_start() {
 #[test]
 fn after_a_pause_longer_than_the_ring_there_is_nothing_to_extend() {
     let mut horizon = anchored(&leader(), &sample(0, 10_000, 0), 20, None);
-    let (_, stride) = course(Driver::of_intent(&leader(), &MODEL), &MODEL);
+    let (_, stride) = course(VehicleModel::of_parameters(&leader(), &MODEL), &MODEL);
     let forecast = forecast(&stride, 20, &MODEL, None);
     let mut within = horizon.clone();
     forecast.extend(&mut within, STEPS as i64);
@@ -141,7 +146,7 @@ fn after_a_pause_longer_than_the_ring_there_is_nothing_to_extend() {
 #[test]
 fn a_horizon_that_ends_is_kept_from_its_sample_on_and_never_extended() {
     let model = Model { endless: false, ..MODEL };
-    let (driver, stride) = course(Driver::of_intent(&leader(), &model), &model);
+    let (driver, stride) = course(VehicleModel::of_parameters(&leader(), &model), &model);
     let forecast = forecast(&stride, 20, &model, None);
     let mut horizon = Horizon::empty();
     forecast.anchor(&mut horizon, 0, &news(&sample(50_000, 10_000, 0), driver));
@@ -164,7 +169,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     track.admit(braking, Certainty::NONE, Belief::Agrees);
     track.intend(
         GRID.origin,
-        Intent { predecessor: Predecessor::Station(StationHash(77)), ..leader() },
+        DrivingParameters { predecessor: Predecessor::Station(StationHash(77)), ..leader() },
         Duration::from_millis(10_000),
     );
     estimator.note_change(&peers);
@@ -189,14 +194,14 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
         let mut peers = Peers::<2, 4>::idle();
         peers.start(config.link.period);
         // The leader stands; the follower is 20 m behind it at 10 m/s, and brakes.
-        let stands = Intent { target_speed: Speed::ZERO, ..leader() };
+        let stands = DrivingParameters { target_speed: Speed::ZERO, ..leader() };
         let front_sample = sample(0, 0, 0);
         let back_sample =
             Sample { station: StationHash(2), position: Position::from_mm(4_980_000), ..sample(0, 10_000, 0) };
-        for (slot, sample, intent) in [(front, front_sample, stands), (back, back_sample, follower())] {
+        for (slot, sample, parameters) in [(front, front_sample, stands), (back, back_sample, follower())] {
             let track = peers.get_mut(crate::wire::Slot(slot)).unwrap();
             track.admit(sample, Certainty::NONE, Belief::Agrees);
-            track.intend(GRID.origin, intent, Duration::from_millis(10_000));
+            track.intend(GRID.origin, parameters, Duration::from_millis(10_000));
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);

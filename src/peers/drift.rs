@@ -14,9 +14,9 @@
 //! what it is faster. A slower one is none, by what the station says of itself.
 
 use super::Sample;
-use crate::estimator::bound::{Doubt, Reach};
+use crate::estimator::bound::{AccelerationRange, Uncertainty};
 use crate::fixed::{quotient, saturate_i32};
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::parameters::{SPEED_ROUNDING, UNPUBLISHED_SPEED_ACCURACY};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Position, Speed};
@@ -38,9 +38,9 @@ pub struct Course {
 
 impl Course {
     /// By one sample alone.
-    fn of(sample: &Sample, doubt: &Doubt, off: Speed) -> Self {
-        let moved = sample.speed.plus(off).over(uncertain(doubt).seconds());
-        let off = doubt.position.plus(moved).plus(ROUNDING);
+    fn of(sample: &Sample, uncertainty: &Uncertainty, off: Speed) -> Self {
+        let moved = sample.speed.plus(off).over(uncertain(uncertainty).seconds());
+        let off = uncertainty.position.plus(moved).plus(ROUNDING);
         Self { low: sample.position.ahead(off.negated()), high: sample.position.ahead(off) }
     }
 
@@ -53,25 +53,25 @@ impl Course {
     /// The course after a sample, from that at the sample before it; `None` where it begins anew with the next.
     ///
     /// # Errors
-    /// [`Refusal::Implausible`]: nothing is left of it, and the positions do not fit the speeds.
+    /// [`Cause::Implausible`]: nothing is left of it, and the positions do not fit the speeds.
     pub fn after(
         held: Option<&Self>,
         last: Option<&Sample>,
         sample: &Sample,
-        doubt: &Doubt,
-        reach: &Reach,
-    ) -> Result<Option<Self>, Refusal> {
-        if uncertain(doubt) > LEAST_CERTAIN {
+        uncertainty: &Uncertainty,
+        reach: &AccelerationRange,
+    ) -> Result<Option<Self>, Cause> {
+        if uncertain(uncertainty) > LEAST_CERTAIN {
             return Ok(None);
         }
-        let off = off(sample, doubt, reach);
-        let own = Self::of(sample, doubt, off);
+        let off = off(sample, uncertainty, reach);
+        let own = Self::of(sample, uncertainty, off);
         let (Some(held), Some(last)) = (held, last) else { return Ok(Some(own)) };
         let gap = sample.at.since(last.at);
         if gap <= Duration::ZERO || gap > LONGEST_GAP {
             return Ok(Some(own));
         }
-        let off_before = self::off(last, doubt, reach);
+        let off_before = self::off(last, uncertainty, reach);
         let mean =
             |one: Speed, other: Speed| Speed::from_bits(one.to_bits() / 2).plus(Speed::from_bits(other.to_bits() / 2));
         let way = mean(last.speed, sample.speed).over(gap.seconds());
@@ -79,20 +79,20 @@ impl Course {
         let either = mean(off_before, off).over(gap.seconds()).plus(bulge(reach, slope, gap)).plus(ROUNDING);
         let low = held.low.ahead(way).ahead(either.negated()).max(own.low);
         let high = held.high.ahead(way).ahead(either).min(own.high);
-        if low <= high { Ok(Some(Self { low, high })) } else { Err(Refusal::Implausible) }
+        if low <= high { Ok(Some(Self { low, high })) } else { Err(Cause::Implausible) }
     }
 }
 
 /// How far from its stamp a sample may have been true, either way.
-fn uncertain(doubt: &Doubt) -> Duration {
-    doubt.earlier.max(doubt.later)
+fn uncertain(uncertainty: &Uncertainty) -> Duration {
+    uncertainty.earlier.max(uncertainty.later)
 }
 
 /// How far off the speed at the stamp may be.
-fn off(sample: &Sample, doubt: &Doubt, reach: &Reach) -> Speed {
+fn off(sample: &Sample, uncertainty: &Uncertainty, reach: &AccelerationRange) -> Speed {
     let hardest = reach.acceleration.max(reach.braking);
     let accuracy = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
-    accuracy.plus(hardest.over(uncertain(doubt).fine_seconds()))
+    accuracy.plus(hardest.over(uncertain(uncertainty).fine_seconds()))
 }
 
 /// Of 15 fraction bits, rounded up: sums and products of a few of them stay below 2⁶³.
@@ -108,7 +108,7 @@ fn slope(from: Speed, to: Speed, gap: Duration) -> i64 {
 
 /// How much farther, or less far, than by the mean of its speeds a vehicle may get in a gap; the most for any slope if that is not
 /// known.
-fn bulge(reach: &Reach, slope: Option<i64>, gap: Duration) -> Distance {
+fn bulge(reach: &AccelerationRange, slope: Option<i64>, gap: Duration) -> Distance {
     let (a, b) = (coarse(reach.acceleration), coarse(reach.braking));
     let steepest = a.saturating_sub(b) / 2;
     let s = slope.unwrap_or(steepest).min(a).max(b.saturating_neg());

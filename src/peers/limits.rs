@@ -8,7 +8,7 @@
 //!   From then on what is certain is carried on by the softer ones, and what is from before up to that instant by the harder.
 //! * Before anything is published, the worst there is held.
 
-use crate::estimator::bound::{Bound, Doubt, Reach};
+use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
 use crate::units::{Position, Speed};
 
@@ -16,13 +16,13 @@ use crate::units::{Position, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
-    now: Reach,
+    now: AccelerationRange,
     /// Before `since`; nowhere softer than `now`.
-    before: Reach,
+    before: AccelerationRange,
     /// Since when `now` holds.
     since: Instant,
     /// The hardest published after `held`, while all of that was softer than `now` in one way or other.
-    softer: Reach,
+    softer: AccelerationRange,
     /// When limits were published last that are as hard as `now`.
     held: Instant,
 }
@@ -30,28 +30,34 @@ pub struct Limits {
 impl Limits {
     /// Of a station that has published them for the first time.
     #[must_use]
-    pub fn first(at: Instant, published: Reach) -> Self {
-        Self { now: published, before: Reach::WORST.or(published), since: at, softer: Reach::NONE, held: at }
+    pub fn first(at: Instant, published: AccelerationRange) -> Self {
+        Self {
+            now: published,
+            before: AccelerationRange::WORST.or(published),
+            since: at,
+            softer: AccelerationRange::NONE,
+            held: at,
+        }
     }
 
     /// Of a station that publishes these, received at `at`.
     #[must_use]
-    pub fn publish(self, at: Instant, published: Reach, stale: Duration) -> Self {
+    pub fn publish(self, at: Instant, published: AccelerationRange, stale: Duration) -> Self {
         let now = self.now.or(published);
         let harder = Self { now, before: self.before.or(published), ..self };
         if published == now {
-            return Self { softer: Reach::NONE, held: at, ..harder };
+            return Self { softer: AccelerationRange::NONE, held: at, ..harder };
         }
         let softer = self.softer.or(published);
         if at.since(self.held) < stale {
             return Self { softer, ..harder };
         }
-        Self { now: softer, before: now, since: at, softer: Reach::NONE, held: at }
+        Self { now: softer, before: now, since: at, softer: AccelerationRange::NONE, held: at }
     }
 
     /// Those that hold from [`since`](Self::since) on.
     #[must_use]
-    pub const fn now(&self) -> Reach {
+    pub const fn now(&self) -> AccelerationRange {
         self.now
     }
 
@@ -63,14 +69,14 @@ impl Limits {
 
     /// What is certain by a sample or a sight, of the instant from which on the limits of now hold or a later one.
     #[must_use]
-    pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
-        let reach = self.from(at.minus(doubt.earlier));
-        self.settled(&Bound::around(at, position, speed, doubt, &reach))
+    pub fn around(&self, at: Instant, position: Position, speed: Speed, uncertainty: &Uncertainty) -> Bound {
+        let reach = self.from(at.minus(uncertainty.earlier));
+        self.settled(&Bound::around(at, position, speed, uncertainty, &reach))
     }
 
     /// The hardest that hold from an instant on.
     #[must_use]
-    pub fn from(&self, at: Instant) -> Reach {
+    pub fn from(&self, at: Instant) -> AccelerationRange {
         if at < self.since { self.before } else { self.now }
     }
 }
@@ -82,9 +88,9 @@ mod tests {
 
     const STALE: Duration = Duration::from_millis(10_000);
 
-    fn reach(acceleration: i32, braking: i32) -> Reach {
+    fn reach(acceleration: i32, braking: i32) -> AccelerationRange {
         let of = |mps2| Acceleration::from_mm_per_s2(1_000 * mps2);
-        Reach { acceleration: of(acceleration), braking: of(braking) }
+        AccelerationRange { acceleration: of(acceleration), braking: of(braking) }
     }
 
     fn at(millis: u64) -> Instant {
@@ -92,7 +98,7 @@ mod tests {
     }
 
     /// Publishes one after the other; what holds after each.
-    fn publish(messages: &[(u64, Reach, Reach)]) -> Limits {
+    fn publish(messages: &[(u64, AccelerationRange, AccelerationRange)]) -> Limits {
         let mut limits = Limits::first(at(messages[0].0), messages[0].1);
         for (millis, published, expected) in messages {
             limits = limits.publish(at(*millis), *published, STALE);
@@ -127,7 +133,10 @@ mod tests {
 
     #[test]
     fn before_anything_was_published_the_worst_held() {
-        assert_eq!(Limits::first(at(7), reach(2, 8)).before, Reach::WORST);
-        assert_eq!(Limits::first(at(7), reach(2, 14)).before, Reach { braking: reach(2, 14).braking, ..Reach::WORST });
+        assert_eq!(Limits::first(at(7), reach(2, 8)).before, AccelerationRange::WORST);
+        assert_eq!(
+            Limits::first(at(7), reach(2, 14)).before,
+            AccelerationRange { braking: reach(2, 14).braking, ..AccelerationRange::WORST }
+        );
     }
 }

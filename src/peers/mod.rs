@@ -17,7 +17,7 @@ pub use sample::{Sample, timely};
 pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::Duration;
 use crate::wire::{Slot, StationHash};
 
@@ -41,9 +41,9 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
     /// The track of a slot, to be changed.
     ///
     /// # Errors
-    /// [`Refusal::UnknownSlot`] beyond the capacity.
-    pub fn get_mut(&mut self, slot: Slot) -> Result<&mut Track<SAMPLES>, Refusal> {
-        self.tracks.get_mut(usize::from(slot.0)).ok_or(Refusal::UnknownSlot)
+    /// [`Cause::UnknownSlot`] beyond the capacity.
+    pub fn get_mut(&mut self, slot: Slot) -> Result<&mut Track<SAMPLES>, Cause> {
+        self.tracks.get_mut(usize::from(slot.0)).ok_or(Cause::UnknownSlot)
     }
 
     /// The track of a slot by its index.

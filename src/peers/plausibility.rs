@@ -2,8 +2,8 @@
 //! wrong with it, leaves.
 //!
 //! What is certain is the [`Bound`] carried on from all believed samples. A sample that contradicts it cannot come from a
-//! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Refusal::Jump`], or
-//! [`Refusal::Stuck`] if it is the last one again), or its speed is ([`Refusal::Implausible`]). A speed that does not fit the
+//! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Cause::Jump`], or
+//! [`Cause::Stuck`] if it is the last one again), or its speed is ([`Cause::Implausible`]). A speed that does not fit the
 //! positions over many samples is implausible too, as soon as they have drifted apart by more than the published accuracies
 //! (`Course`); for half a second at most, as after that the course begins anew. An acceleration
 //! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
@@ -22,8 +22,8 @@ use super::drift::Course;
 use super::limits::Limits;
 use super::sender_clock::Off;
 use crate::config::Link;
-use crate::estimator::bound::{Bound, Doubt, Reach};
-use crate::health::Refusal;
+use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
+use crate::health::Cause;
 use crate::parameters::{
     FORGIVEN_AFTER, POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY,
     UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
@@ -80,11 +80,11 @@ pub struct Grounds {
     /// What is certain of its sender by it alone.
     pub around: Bound,
     /// What is uncertain about it.
-    pub doubt: Doubt,
+    pub uncertainty: Uncertainty,
     /// How fast its sender can change its speed.
-    pub reach: Reach,
+    pub reach: AccelerationRange,
     /// The hardest that it could since the sample before.
-    pub from_last: Reach,
+    pub from_last: AccelerationRange,
     /// With which messages come.
     pub period: Duration,
 }
@@ -95,7 +95,7 @@ pub struct Judgement {
     /// What is certain, and the evidence, after it. If it is refused, nothing but the evidence differs.
     pub certainty: Certainty,
     /// Whether it is believed.
-    pub verdict: Result<Belief, Refusal>,
+    pub verdict: Result<Belief, Cause>,
 }
 
 impl Certainty {
@@ -127,7 +127,7 @@ impl Certainty {
     }
 
     /// Narrows the bound by something else that is certain; whether they agree.
-    pub fn narrow(&mut self, other: &Bound, reach: &Reach) -> bool {
+    pub fn narrow(&mut self, other: &Bound, reach: &AccelerationRange) -> bool {
         let Some(bound) = self.bound.as_ref() else { return true };
         match bound.and(other, reach) {
             Some(both) => {
@@ -145,23 +145,23 @@ impl Certainty {
         Judgement { certainty: self, verdict }
     }
 
-    fn weigh(&mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Result<Belief, Refusal> {
-        let Grounds { around, doubt, reach, from_last, period } = grounds;
+    fn weigh(&mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Result<Belief, Cause> {
+        let Grounds { around, uncertainty, reach, from_last, period } = grounds;
         if self.suspects.is_some_and(|suspects| suspects.stamp == sample.stamp) {
-            return Err(Refusal::Duplicate);
+            return Err(Cause::Duplicate);
         }
-        let hardest = Reach::WORST.braking.max(reach.braking).max(reach.acceleration);
+        let hardest = AccelerationRange::WORST.braking.max(reach.braking).max(reach.acceleration);
         if sample.acceleration.magnitude() > hardest.plus(UNPUBLISHED_ACCELERATION_ACCURACY) {
-            return Err(Refusal::Implausible);
+            return Err(Cause::Implausible);
         }
         let Some(bound) = &self.bound else {
             self.bound = Some(*around);
-            self.course = Course::after(None, None, sample, doubt, reach).unwrap_or_default();
+            self.course = Course::after(None, None, sample, uncertainty, reach).unwrap_or_default();
             return Ok(Belief::Agrees);
         };
         if let Some(both) = bound.and(around, reach) {
             // Its place is certain all the same, so that this is no evidence of another one.
-            self.course = Course::after(self.course.as_ref(), last, sample, doubt, from_last)?;
+            self.course = Course::after(self.course.as_ref(), last, sample, uncertainty, from_last)?;
             self.agree(both);
             return Ok(Belief::Agrees);
         }
@@ -189,7 +189,7 @@ impl Certainty {
 
 impl Suspects {
     /// With one more, if they agree. It counts if it is not a part of the same burst.
-    fn joined_by(self, one: &Self, reach: &Reach, period: Duration) -> Option<Self> {
+    fn joined_by(self, one: &Self, reach: &AccelerationRange, period: Duration) -> Option<Self> {
         let bound = self.bound.and(&one.bound, reach)?;
         if one.counted.since(self.counted).times(2) < period {
             return Some(Self { bound, stamp: one.stamp, ..self });
@@ -202,30 +202,30 @@ impl Suspects {
 const _: () = assert!((RECOVERY_SAMPLES as u32) << MOST_STRIKES <= u8::MAX as u32);
 
 /// What contradicts what.
-fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, reach: &Reach) -> Refusal {
+fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, reach: &AccelerationRange) -> Cause {
     let carried = bound.after(around.at(), reach);
     let out_of_reach =
         around.highest_position() < carried.lowest_position() || around.lowest_position() > carried.highest_position();
     let same_again = last.is_some_and(|last| last.position == sample.position && last.speed == sample.speed);
     match (out_of_reach, same_again) {
-        (true, true) => Refusal::Stuck,
-        (true, false) => Refusal::Jump,
-        (false, _) => Refusal::Implausible,
+        (true, true) => Cause::Stuck,
+        (true, false) => Cause::Jump,
+        (false, _) => Cause::Implausible,
     }
 }
 
 /// What is uncertain about a sample of a sender whose clock is that far off.
 #[must_use]
-pub fn doubt(sample: &Sample, is_synchronised: bool, link: &Link, off: Off) -> Doubt {
+pub fn uncertainty(sample: &Sample, is_synchronised: bool, link: &Link, off: Off) -> Uncertainty {
     let (earlier, later) = if is_synchronised {
         // However the clocks are off, it was taken before it was received.
-        let (earlier, later) = off.doubt();
+        let (earlier, later) = off.uncertainty();
         (link.clock_error.plus(earlier), link.clock_error.plus(later).min(sample.received.since(sample.at)))
     } else {
         // It was taken for as old as the assumed delay, and may be of any age up to the largest.
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)
     };
-    Doubt {
+    Uncertainty {
         position: sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING),
         speed: sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING),
         earlier,

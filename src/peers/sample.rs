@@ -1,6 +1,6 @@
 //! A vehicle's state at an instant of the unit's own clock: a motion message with its stamp and position unwrapped.
 
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
@@ -9,14 +9,14 @@ use crate::wire::motion::Motion;
 /// Whether what was true at `at` and is received now is neither older than `stale` nor further in the future than `future`.
 ///
 /// # Errors
-/// [`Refusal::Stale`] and [`Refusal::Future`].
-pub fn timely(at: Instant, received: Instant, stale: Duration, future: Duration) -> Result<(), Refusal> {
+/// [`Cause::Stale`] and [`Cause::Future`].
+pub fn timely(at: Instant, received: Instant, stale: Duration, future: Duration) -> Result<(), Cause> {
     let age = received.since(at);
     if age > stale {
-        return Err(Refusal::Stale);
+        return Err(Cause::Stale);
     }
     if age < Duration::ZERO.minus(future) {
-        return Err(Refusal::Future);
+        return Err(Cause::Future);
     }
     Ok(())
 }

@@ -46,7 +46,7 @@ impl Off {
 
     /// How much earlier and later than [`corrected`](Self::corrected) it may have been sent than with clocks that are right.
     #[must_use]
-    pub fn doubt(self) -> (Duration, Duration) {
+    pub fn uncertainty(self) -> (Duration, Duration) {
         match self {
             Self::No => (Duration::ZERO, Duration::ZERO),
             Self::Ahead(ahead) => (UNDER_WAY, ahead),

@@ -2,14 +2,14 @@
 
 use super::*;
 use crate::config::{Config, Link as Limits};
-use crate::estimator::bound::Doubt;
+use crate::estimator::bound::Uncertainty;
 use crate::time::{GnssTime, Instant};
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::horizon::{KNOTS, Knot, Knots};
 
 const LIMITS: Limits = Config::car(StationHash(0)).link;
 /// Everybody is believed here; plausibility has its own facts.
-const DOUBT: Doubt = Doubt {
+const UNCERTAINTY: Uncertainty = Uncertainty {
     position: crate::units::Distance::from_mm(1_000_000),
     speed: Speed::from_mm_per_s(60_000),
     earlier: Duration::ZERO,
@@ -21,9 +21,9 @@ fn at(millis: u64) -> Instant {
 }
 
 /// Takes a sample in by all rules of a track.
-fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admission, Refusal> {
+fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admission, Cause> {
     timely(sample.at, sample.received, LIMITS.stale, LIMITS.future)?;
-    let judgement = track.judge(&sample, &DOUBT, LIMITS.period);
+    let judgement = track.judge(&sample, &UNCERTAINTY, LIMITS.period);
     match judgement.verdict {
         Ok(belief) => Ok(track.admit(sample, judgement.certainty, belief)),
         Err(cause) => {
@@ -64,7 +64,7 @@ fn held(track: &Track<4>) -> Vec<u64> {
 }
 
 /// Refused for this cause, with nothing changed.
-fn refuses(track: &Track<4>, sample: Sample, cause: Refusal) {
+fn refuses(track: &Track<4>, sample: Sample, cause: Cause) {
     let mut tried = track.clone();
     assert_eq!(admit(&mut tried, sample), Err(cause));
     assert_eq!((tried.samples(), tried.link()), (track.samples(), track.link()));
@@ -90,7 +90,7 @@ fn a_full_history_drops_its_oldest_for_anything_newer() {
     assert_eq!(held(&track), [200, 250, 300, 400]);
     assert_eq!(admit(&mut track, sample(450, 500)), Ok(Admission::News));
     assert_eq!(held(&track), [250, 300, 400, 450]);
-    refuses(&track, sample(249, 500), Refusal::OutOfOrder);
+    refuses(&track, sample(249, 500), Cause::OutOfOrder);
 }
 
 #[test]
@@ -99,9 +99,9 @@ fn a_stamp_is_too_old_or_too_new_beyond_its_limit_and_not_at_it() {
     let track = track([]);
     for (sample, refused) in [
         (sample(1_000, 1_000 + stale), None),
-        (sample(999, 1_000 + stale), Some(Refusal::Stale)),
+        (sample(999, 1_000 + stale), Some(Cause::Stale)),
         (sample(1_000 + future, 1_000), None),
-        (sample(1_001 + future, 1_000), Some(Refusal::Future)),
+        (sample(1_001 + future, 1_000), Some(Cause::Future)),
     ] {
         match refused {
             None => assert_eq!(admit(&mut track.clone(), sample), Ok(Admission::News)),
@@ -113,12 +113,12 @@ fn a_stamp_is_too_old_or_too_new_beyond_its_limit_and_not_at_it() {
 #[test]
 fn a_stamp_that_is_held_is_a_duplicate_within_its_own_turn_and_that_of_the_newest_always() {
     let track = track([100, 200]);
-    refuses(&track, sample(200, 260), Refusal::Duplicate);
-    refuses(&track, sample(100, 260), Refusal::Duplicate);
+    refuses(&track, sample(200, 260), Cause::Duplicate);
+    refuses(&track, sample(100, 260), Cause::Duplicate);
     // The same stamp comes round after 13.1072 s.
     let round = |millis| Sample { stamp: sample(millis, 0).stamp, ..sample(millis + 13_107, millis + 13_107) };
     assert_eq!(admit(&mut track.clone(), round(100)), Ok(Admission::News));
-    refuses(&track, round(200), Refusal::Duplicate);
+    refuses(&track, round(200), Cause::Duplicate);
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn a_slot_beyond_the_capacity_is_refused_and_a_station_is_found_by_its_name() {
         peers.start(LIMITS.period);
         peers
     };
-    assert_eq!(peers.get_mut(Slot(2)).err(), Some(Refusal::UnknownSlot));
+    assert_eq!(peers.get_mut(Slot(2)).err(), Some(Cause::UnknownSlot));
     assert_eq!(peers.index_of(StationHash(1)), None);
     let admitted = peers.get_mut(Slot(1)).map(|track| admit(track, sample(100, 100)));
     assert_eq!(admitted, Ok(Ok(Admission::News)));

@@ -4,18 +4,18 @@ use heapless::Vec;
 
 use super::limits::Limits;
 use super::link::Link;
-use super::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
+use super::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use super::sample::Sample;
 use super::sender_clock::{Off, SenderClock};
 use crate::config::Link as Settings;
-use crate::estimator::bound::{Bound, Doubt, Reach};
-use crate::health::Refusal;
+use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
+use crate::health::Cause;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
+use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::Knots;
-use crate::wire::intent::Intent;
 
 /// What an admitted sample is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,7 @@ pub enum Admission {
 pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
-    intent: Held<Intent>,
+    parameters: Held<DrivingParameters>,
     limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
@@ -47,7 +47,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         Self {
             samples: Vec::new(),
             certainty: Certainty::NONE,
-            intent: Held::Nothing,
+            parameters: Held::Nothing,
             limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
@@ -89,26 +89,26 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// How fast it can change its speed from the instant on that what is certain of it is of: as published (not by the last
     /// message alone, if softer limits were published), or the worst there is.
     #[must_use]
-    pub fn reach(&self) -> Reach {
-        self.limits.as_ref().map_or(Reach::WORST, Limits::now)
+    pub fn reach(&self) -> AccelerationRange {
+        self.limits.as_ref().map_or(AccelerationRange::WORST, Limits::now)
     }
 
     /// What a sample is judged by.
     #[must_use]
-    pub fn grounds(&self, around: Bound, doubt: Doubt, period: Duration) -> Grounds {
+    pub fn grounds(&self, around: Bound, uncertainty: Uncertainty, period: Duration) -> Grounds {
         let from_last = match (self.limits.as_ref(), self.newest()) {
-            (Some(limits), Some(last)) => limits.from(last.at.minus(doubt.earlier)),
+            (Some(limits), Some(last)) => limits.from(last.at.minus(uncertainty.earlier)),
             _ => self.reach(),
         };
-        Grounds { around, doubt, reach: self.reach(), from_last, period }
+        Grounds { around, uncertainty, reach: self.reach(), from_last, period }
     }
 
     /// What is certain of it by a sample, or by what another sensor saw of it.
     #[must_use]
-    pub fn around(&self, at: Instant, position: Position, speed: Speed, doubt: &Doubt) -> Bound {
+    pub fn around(&self, at: Instant, position: Position, speed: Speed, uncertainty: &Uncertainty) -> Bound {
         match self.limits.as_ref() {
-            Some(limits) => limits.around(at, position, speed, doubt),
-            None => Bound::around(at, position, speed, doubt, &Reach::WORST),
+            Some(limits) => limits.around(at, position, speed, uncertainty),
+            None => Bound::around(at, position, speed, uncertainty, &AccelerationRange::WORST),
         }
     }
 
@@ -126,15 +126,15 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Takes over what the same station said of how it drives in the slot in which it was before.
     pub fn follow_on(&mut self, before: &Self) {
-        if self.intent.as_ref().is_none() {
-            (self.intent, self.limits) = (before.intent, before.limits);
+        if self.parameters.as_ref().is_none() {
+            (self.parameters, self.limits) = (before.parameters, before.limits);
         }
     }
 
     /// What it said of how it drives.
     #[must_use]
-    pub const fn intent(&self) -> Option<&Intent> {
-        self.intent.as_ref()
+    pub const fn parameters(&self) -> Option<&DrivingParameters> {
+        self.parameters.as_ref()
     }
 
     /// The horizon that it computed from its newest sample, if that came.
@@ -167,13 +167,13 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         let before = self.clock_off();
         let begins = self.sender_clock.hear(received, stamped, limits.clock_error, limits.period);
         let off = self.clock_off();
-        let ((earlier, later), (earlier_before, later_before)) = (off.doubt(), before.doubt());
+        let ((earlier, later), (earlier_before, later_before)) = (off.uncertainty(), before.uncertainty());
         if (earlier > earlier_before || later > later_before)
             && let Some(newest) = self.newest().copied()
         {
             let newest = Sample { at: off.corrected(newest.at), ..newest };
-            let doubt = doubt(&newest, true, limits, off);
-            self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &doubt));
+            let uncertainty = uncertainty(&newest, true, limits, off);
+            self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &uncertainty));
         }
         off != Off::No && (begins || before == Off::No)
     }
@@ -197,24 +197,24 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Judges a sample of the slot's own station, by the first rule that it breaks:
     ///
-    /// 1. with a stamp that is held already, or was refused last: [`Refusal::Duplicate`]. A stamp comes round after 13.1 s, but
+    /// 1. with a stamp that is held already, or was refused last: [`Cause::Duplicate`]. A stamp comes round after 13.1 s, but
     ///    that of the newest held is taken for frozen whenever it comes again: the one honest sample in 131,072 that has it is lost;
-    /// 2. older than a full history: [`Refusal::OutOfOrder`];
+    /// 2. older than a full history: [`Cause::OutOfOrder`];
     /// 3. newer than all held, but contradicting what is certain of the station: see
     ///    [`plausibility`](super::plausibility).
     #[must_use]
-    pub fn judge(&self, sample: &Sample, doubt: &Doubt, period: Duration) -> Judgement {
+    pub fn judge(&self, sample: &Sample, uncertainty: &Uncertainty, period: Duration) -> Judgement {
         let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
         let is_frozen = self.newest().is_some_and(|newest| newest.stamp == sample.stamp);
         if is_frozen || self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
-            return verdict(Err(Refusal::Duplicate));
+            return verdict(Err(Cause::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
-            let around = self.around(sample.at, sample.position, sample.speed, doubt);
-            return self.certainty.judge(sample, self.newest(), &self.grounds(around, *doubt, period));
+            let around = self.around(sample.at, sample.position, sample.speed, uncertainty);
+            return self.certainty.judge(sample, self.newest(), &self.grounds(around, *uncertainty, period));
         }
         let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
-        verdict(if is_oldest && self.samples.is_full() { Err(Refusal::OutOfOrder) } else { Ok(Belief::Late) })
+        verdict(if is_oldest && self.samples.is_full() { Err(Cause::OutOfOrder) } else { Ok(Belief::Late) })
     }
 
     /// Takes in a sample that was judged to be believed like this, and what is certain with it.
@@ -249,16 +249,16 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Takes in what the station says of how it drives, received at `at`; whether that is new. Nothing that is older than `stale`
     /// comes after it.
-    pub fn intend(&mut self, at: Instant, intent: Intent, stale: Duration) -> bool {
-        let published = Reach::published(&intent.limits);
+    pub fn intend(&mut self, at: Instant, parameters: DrivingParameters, stale: Duration) -> bool {
+        let published = AccelerationRange::published(&parameters.limits);
         let limits = match self.limits.get() {
             Some(held) => held.publish(at, published, stale),
             None => Limits::first(at, published),
         };
         self.limits.set(limits);
         self.certainty.settle(&limits);
-        let is_new = self.intent.as_ref() != Some(&intent);
-        self.intent.set(intent);
+        let is_new = self.parameters.as_ref() != Some(&parameters);
+        self.parameters.set(parameters);
         is_new
     }
 

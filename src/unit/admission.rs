@@ -6,10 +6,10 @@
 
 use super::OnboardUnit;
 use crate::coordination::Axis;
-use crate::estimator::bound::{Bound, Doubt, Reach};
-use crate::health::Refusal;
+use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
+use crate::health::Cause;
 use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
-use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, doubt};
+use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use crate::peers::{Admission, Off, Sample, Track, timely};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
@@ -54,7 +54,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn verdict(&self) -> Result<(), Refusal> {
+    fn verdict(&self) -> Result<(), Cause> {
         self.sample.as_ref().map_or(Ok(()), |(_, judgement)| judgement.verdict.map(|_| ()))
     }
 }
@@ -64,15 +64,15 @@ impl Plan {
 fn weigh_anew<const SAMPLES: usize>(
     track: Option<&Track<SAMPLES>>,
     sample: &Sample,
-    doubt: Doubt,
+    uncertainty: Uncertainty,
     period: Duration,
 ) -> Judgement {
     let (at, position, speed) = (sample.at, sample.position, sample.speed);
     let (around, reach) = match track {
-        Some(track) => (track.around(at, position, speed, &doubt), track.reach()),
-        None => (Bound::around(at, position, speed, &doubt, &Reach::WORST), Reach::WORST),
+        Some(track) => (track.around(at, position, speed, &uncertainty), track.reach()),
+        None => (Bound::around(at, position, speed, &uncertainty, &AccelerationRange::WORST), AccelerationRange::WORST),
     };
-    let grounds = Grounds { around, doubt, reach, from_last: reach, period };
+    let grounds = Grounds { around, uncertainty, reach, from_last: reach, period };
     let judgement = Certainty::NONE.judge(sample, None, &grounds);
     let held = track.map_or(Certainty::NONE, |track| *track.certainty());
     if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
@@ -84,9 +84,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// The first cause for which it is refused. Nothing is changed then but the evidence: of misbehaviour, and of whose what else
     /// is said in the slot may be.
-    pub(super) fn take_motion(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<(), Refusal> {
+    pub(super) fn take_motion(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<(), Cause> {
         let index = usize::from(slot.0);
-        let holder = self.peers.get(index).ok_or(Refusal::UnknownSlot)?.station();
+        let holder = self.peers.get(index).ok_or(Cause::UnknownSlot)?.station();
         let plan = self.plan(at, index, holder, motion);
         let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
         let is_own = holder == Some(motion.station);
@@ -95,13 +95,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             plan => self.note_refused(index, is_own, plan.ok()),
         }
         // Who is ahead is refused before it has a slot of its own.
-        if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Refusal::Future)) {
+        if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Cause::Future)) {
             self.note_clock(at, index, motion);
         }
         verdict
     }
 
-    fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Refusal> {
+    fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Cause> {
         let link = &self.config.link;
         let seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
@@ -121,7 +121,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if seat.is_renamed
             && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
         {
-            return Err(Refusal::StationConflict);
+            return Err(Cause::StationConflict);
         }
         Ok(Plan { seat, placed, sample })
     }
@@ -132,7 +132,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Some((bound, newest)) = track.and_then(|track| track.certainty().bound().zip(track.newest())) else {
             return false;
         };
-        let bound = bound.after(sample.at, &track.map_or(Reach::WORST, Track::reach));
+        let bound = bound.after(sample.at, &track.map_or(AccelerationRange::WORST, Track::reach));
         let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
         let room = bound.highest_position().ahead_of(bound.lowest_position()).plus(off).plus(off);
         matches!(judgement.verdict, Ok(Belief::Agrees)) && sample.at > newest.at && room < SHORTEST
@@ -141,7 +141,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// A station speaks in one slot at a time, and a slot is one station's. If it was another one's, that one's time is over.
     ///
     /// # Errors
-    /// [`Refusal::StationConflict`]: the station was heard in another slot within `slot_reuse`, or the other one in this slot, and
+    /// [`Cause::StationConflict`]: the station was heard in another slot within `slot_reuse`, or the other one in this slot, and
     /// it is not certain that both are the same vehicle ([`continues`](Self::continues)). Or else whoever takes its name could
     /// end what is certain of it, and with that the check of whether what is said of it can be.
     fn seat(
@@ -150,7 +150,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         index: usize,
         holder: Option<StationHash>,
         station: StationHash,
-    ) -> Result<Seat, Refusal> {
+    ) -> Result<Seat, Cause> {
         if holder == Some(station) {
             return Ok(Seat { is_taken_over: false, is_renamed: false, left: None });
         }
@@ -162,7 +162,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_renamed = holder.is_some() && is_heard(index);
         // Where there are intersections a new name has to tell its way first.
         if is_renamed && self.coordination.itinerary().is_some() || left.is_some_and(is_heard) {
-            return Err(Refusal::StationConflict);
+            return Err(Cause::StationConflict);
         }
         Ok(Seat { is_taken_over: holder.is_some() && !is_renamed, is_renamed, left })
     }
@@ -191,20 +191,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Ok(Belief::Agrees) if is_known => judgement.certainty,
             _ => held,
         };
-        Judgement { certainty, verdict: Err(Refusal::TooFar) }
+        Judgement { certainty, verdict: Err(Cause::TooFar) }
     }
 
     fn weigh(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
         let off = track.map_or(Off::No, Track::clock_off);
-        let doubt = doubt(sample, self.is_synchronised(sample.received), &self.config.link, off);
+        let uncertainty = uncertainty(sample, self.is_synchronised(sample.received), &self.config.link, off);
         let period = self.config.link.period;
         match track {
             // On the axis as it was, on which everything is that is held.
             Some(track) if !placed.is_elsewhere() => {
                 let back = placed.moved.unwrap_or(Distance::ZERO).negated();
-                track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &doubt, period)
+                track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &uncertainty, period)
             }
-            _ => weigh_anew(track, sample, doubt, period),
+            _ => weigh_anew(track, sample, uncertainty, period),
         }
     }
 
@@ -262,7 +262,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let Some(stamped) = self.instant_of(motion.stamp, at) else { return };
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if track.hear_clock(at, stamped, &self.config.link) {
-            self.health.count(Refusal::PeerClock);
+            self.health.count(Cause::PeerClock);
         }
     }
 

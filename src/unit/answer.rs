@@ -9,7 +9,7 @@ use crate::time::Duration;
 use crate::wire::Frame;
 use crate::wire::command::Command;
 
-/// The most frames that one tick sends: command, estimate (2), motion (2), intent (3), horizon (5), route (2), status.
+/// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), status.
 pub const MAX_FRAMES: usize = 16;
 
 /// What became of a frame that was not refused.

@@ -5,11 +5,11 @@ use heapless::Vec;
 
 use super::OnboardUnit;
 use crate::coordination::{
-    Arrival, Axis, Crossing, Gentleness, Itinerary, MapError, Present, Side, Slots, Standing, standstill_behind,
+    Arrival, Axis, ComfortBraking, Crossing, Itinerary, MapError, PeerApproach, Present, Side, Slots, standstill_behind,
 };
 use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Gain, Position, Seconds, Speed};
@@ -19,7 +19,7 @@ use crate::wire::{Predecessor, Slot};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Sets out on a way through intersections: from now on, and until the unit is started anew, positions of peers are taken on
-    /// the virtual lane, and where `EgoIntent` names no predecessor the order at the intersections decides whom to follow.
+    /// the virtual lane, and where `DriverRequest` names no predecessor the order at the intersections decides whom to follow.
     ///
     /// # Errors
     /// What is wrong with the map; nothing is changed then.
@@ -30,7 +30,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// Whom the ego is to follow: whom it was told to, or whom the order has put ahead of it.
     pub(super) fn predecessor(&self) -> Predecessor {
         if !self.is_decided_by_order() {
-            return self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
+            return self.desired.as_ref().map_or(Predecessor::Unknown, |desired| desired.predecessor);
         }
         let Some(target) = self.coordination.choice().target else { return Predecessor::None };
         let station = self.peers.get(target.into()).and_then(|track| track.station());
@@ -39,8 +39,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whether the order decides whom to follow, and nobody else.
     pub(super) fn is_decided_by_order(&self) -> bool {
-        let wished = self.wish.as_ref().map_or(Predecessor::Unknown, |wish| wish.predecessor);
-        wished == Predecessor::Unknown && self.coordination.registration().is_some()
+        let desired = self.desired.as_ref().map_or(Predecessor::Unknown, |desired| desired.predecessor);
+        desired == Predecessor::Unknown && self.coordination.registration().is_some()
     }
 
     /// The slot of the vehicle that a sensor would see ahead.
@@ -52,13 +52,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Takes in where the ego is on the globe.
-    pub(super) fn take_ego_place(&mut self, at: Instant, geo: &GeoPosition) -> Result<(), Refusal> {
+    pub(super) fn take_ego_place(&mut self, at: Instant, geo: &GeoPosition) -> Result<(), Cause> {
         let (Some(itinerary), Some(ego)) = (self.coordination.itinerary(), self.ego.as_ref()) else { return Ok(()) };
         let since = self.instant_of(geo.stamp, at).unwrap_or(at).since(ego.at);
         if since.as_micros().unsigned_abs() > self.config.link.ego_timeout.as_micros().unsigned_abs() {
-            return Err(Refusal::Stale);
+            return Err(Cause::Stale);
         }
-        let place = itinerary.path.place(geo).ok_or(Refusal::OffRoute)?;
+        let place = itinerary.path.place(geo).ok_or(Cause::OffRoute)?;
         self.coordination.locate(ego.position.ahead(ego.speed.over(since.seconds())), place.along);
         Ok(())
     }
@@ -79,20 +79,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             return self.leave(slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
-        let standing = Standing { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
+        let standing = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
         self.take_standing(slot, route.stamp, crossing, route.distance, standing);
     }
 
     /// Takes in where a peer is on the globe, unless it says more than that.
     pub(super) fn take_peer_place(&mut self, at: Instant, slot: Slot, geo: &GeoPosition) {
         let index = usize::from(slot.0);
-        let says_more = |standing: &Standing| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
+        let says_more = |standing: &PeerApproach| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
         if self.coordination.itinerary().is_none() || self.coordination.standing(index).is_some_and(says_more) {
             return;
         }
         let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(slot) };
         let standing =
-            Standing { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
+            PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
         self.take_standing(slot, geo.stamp, crossing, distance, standing);
     }
 
@@ -113,7 +113,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         next
     }
 
-    fn take_standing(&mut self, slot: Slot, stamp: Stamp, crossing: &Crossing, distance: Distance, standing: Standing) {
+    fn take_standing(
+        &mut self,
+        slot: Slot,
+        stamp: Stamp,
+        crossing: &Crossing,
+        distance: Distance,
+        standing: PeerApproach,
+    ) {
         let index = usize::from(slot.0);
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
         let before = self.coordination.standing(index).copied();
@@ -125,7 +132,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// A peer that moves on to another intersection, on its way against the ego's, is far behind at once: until the next review
     /// the ego would follow it there.
-    fn note_moving_on(&mut self, index: usize, before: Option<Standing>) {
+    fn note_moving_on(&mut self, index: usize, before: Option<PeerApproach>) {
         let now = self.coordination.standing(index);
         if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
             self.coordination.review_at_once();
@@ -202,7 +209,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         self.coordination.hold(can_wait && (!has_room || self.is_crossed_by_unknown(now)));
         if self.coordination.review(now, self.config.station, &present) {
-            self.health.count(Refusal::Overlooked);
+            self.health.count(Cause::Overlooked);
         }
         self.coordination.note_lost(self.lost(now, front));
         let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
@@ -215,10 +222,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let target = self.more_careful(order, lane, now, next, front, state.speed);
         let followed = self.coordination.choice().target.map(usize::from);
         let target = target.filter(|target| self.is_in_the_way(*target, now, next, front, followed));
-        let (before, may) = (self.coordination.choice(), self.gentleness(target, next, front, state.speed));
+        let (before, may) = (self.coordination.choice(), self.comfort(target, next, front, state.speed));
         let is_new = before.target.map(usize::from) != target;
         // Who has had to brake harder goes on until that is over.
-        self.coordination.choose(target, if is_new { may } else { may.min(before.gentleness) }, lane);
+        self.coordination.choose(target, if is_new { may } else { may.min(before.comfort) }, lane);
         self.note_lane(now, front);
     }
 
@@ -270,7 +277,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     ) -> Option<usize> {
         let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
         let law = &self.config.law;
-        let gentle = self.gentleness(order, next, front, speed).limit(Acceleration::MAX);
+        let gentle = self.comfort(order, next, front, speed).limit(Acceleration::MAX);
         let least = front
             .ahead(speed.over(self.time_gap()))
             .ahead(speed.over(law.damping))
@@ -310,9 +317,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// How gently the ego may brake for a peer that it follows.
-    pub(super) fn gentleness(&self, index: Option<usize>, next: usize, front: Position, speed: Speed) -> Gentleness {
+    pub(super) fn comfort(&self, index: Option<usize>, next: usize, front: Position, speed: Speed) -> ComfortBraking {
         let standing = index.and_then(|index| self.coordination.standing(index));
-        standing.map_or(Gentleness::NONE, |standing| self.coordination.gentleness(standing, next, front, speed))
+        standing.map_or(ComfortBraking::NONE, |standing| self.coordination.comfort(standing, next, front, speed))
     }
 
     /// The standstill distance behind whom the ego follows.

@@ -2,7 +2,7 @@
 //! the rules of time and place.
 
 use super::OnboardUnit;
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::peers::{Sample, timely};
 use crate::time::{Instant, Stamp};
 use crate::wire::motion::Motion;
@@ -10,16 +10,16 @@ use crate::wire::{Message, Said, Slot};
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a whole message.
-    pub(super) fn take(&mut self, at: Instant, message: &Message) -> Result<(), Refusal> {
+    pub(super) fn take(&mut self, at: Instant, message: &Message) -> Result<(), Cause> {
         match message {
             Message::Sync(sync) => self.clock.sync(at, *sync),
             Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
             Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
-            Message::EgoIntent(wish) => {
-                if self.wish.as_ref().map(|held| held.predecessor) != Some(wish.predecessor) {
+            Message::DriverRequest(desired) => {
+                if self.desired.as_ref().map(|held| held.predecessor) != Some(desired.predecessor) {
                     self.ranging.note_named(at);
                 }
-                self.wish.set(*wish);
+                self.desired.set(*desired);
             }
             Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
             Message::Range(seen) => self.take_range(at, *seen)?,
@@ -31,7 +31,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Ok(())
     }
 
-    fn take_ego(&mut self, at: Instant, motion: &Motion) -> Result<(), Refusal> {
+    fn take_ego(&mut self, at: Instant, motion: &Motion) -> Result<(), Cause> {
         let instant = self.instant_of(motion.stamp, at).unwrap_or(at);
         timely(instant, at, self.config.link.ego_timeout, self.config.link.future)?;
         let near = self.ego.as_ref().map(|ego| ego.position);
@@ -39,28 +39,28 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if let Some(held) = self.ego.as_ref() {
             // Also after the stamp has come round: a clock that stands still says nothing new.
             if held.stamp == sample.stamp {
-                return Err(Refusal::Duplicate);
+                return Err(Cause::Duplicate);
             }
             if sample.at < held.at {
-                return Err(Refusal::OutOfOrder);
+                return Err(Cause::OutOfOrder);
             }
         }
         self.ego.set(sample);
         Ok(())
     }
 
-    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Refusal> {
+    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Cause> {
         let index = usize::from(slot.0);
         if !matches!(said, Said::Motion(_)) && self.peers.get_mut(slot)?.is_disputed() {
-            return Err(Refusal::StationConflict);
+            return Err(Cause::StationConflict);
         }
         match said {
             Said::Motion(motion) => self.take_motion(at, slot, motion)?,
-            Said::Intent(intent) => {
+            Said::DrivingParameters(parameters) => {
                 let track = self.peers.get_mut(slot)?;
                 // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
                 let is_young = track.newest().is_some_and(|newest| at.since(newest.at) <= self.config.link.stale);
-                if track.intend(at, *intent, self.config.link.stale) {
+                if track.intend(at, *parameters, self.config.link.stale) {
                     self.estimator.note_change(&self.peers);
                     if is_young {
                         self.estimator.note_news(index);

@@ -65,7 +65,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The length of a peer.
     pub(super) fn length_of(&self, index: usize) -> Distance {
-        self.peers.get(index).and_then(Track::intent).map_or(DEFAULT_LENGTH, |intent| intent.length)
+        self.peers.get(index).and_then(Track::parameters).map_or(DEFAULT_LENGTH, |parameters| parameters.length)
     }
 
     fn is_beyond(&self, index: usize, now: Instant, front: Position) -> bool {

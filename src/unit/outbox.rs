@@ -1,5 +1,5 @@
 //! What the unit sends: the state of this tick enters, frames by their schedule leave. Command and estimate every tick, the
-//! own motion and horizon at the link's period, the own intent every fifth time and when it changes, a page of health
+//! own motion and horizon at the link's period, the own driving parameters every fifth time and when it changes, a page of health
 //! with every own motion.
 
 use heapless::Vec;
@@ -9,25 +9,25 @@ use crate::config::Config;
 use crate::controller::Mode;
 use crate::dynamics::Inversion;
 use crate::estimator::bound::Bound;
-use crate::estimator::{Aim, Driver, Reading, State};
-use crate::health::Refusal;
+use crate::estimator::{Aim, Reading, State, VehicleModel};
+use crate::health::Cause;
 use crate::held::Held;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 use crate::wire::command::Command;
+use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::estimate::{Ends, TargetEstimate};
 use crate::wire::horizon::{Knot, Knots};
-use crate::wire::intent::Intent;
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
 use crate::wire::status::Status;
 use crate::wire::{Frame, Message, Predecessor, Said};
 
-/// How many own motions go by from one intent to the next.
+/// How many own motions go by from one driving parameters to the next.
 const INTENT_EVERY: u8 = 5;
-/// How often an intent is sent at once when it changes: whoever hears the first message of an identifier trusts it from the second
+/// How often driving parameters is sent at once when it changes: whoever hears the first message of an identifier trusts it from the second
 /// one on.
 const INTENT_AT_ONCE: u8 = 2;
 /// How many own motions go by from one route to the next; tags count modulo 4.
@@ -41,10 +41,10 @@ pub(super) struct Outbox {
     tag: u8,
     page: u8,
     due: Option<Instant>,
-    until_intent: u8,
-    /// How often the intent is still to be sent at once.
+    until_parameters: u8,
+    /// How often the driving parameters is still to be sent at once.
     at_once: u8,
-    intent: Held<Intent>,
+    parameters: Held<DrivingParameters>,
 }
 
 impl Outbox {
@@ -55,9 +55,9 @@ impl Outbox {
             tag: 0,
             page: 0,
             due: None,
-            until_intent: 0,
+            until_parameters: 0,
             at_once: 0,
-            intent: Held::Nothing,
+            parameters: Held::Nothing,
         }
     }
 
@@ -87,23 +87,23 @@ impl Outbox {
         true
     }
 
-    /// Whether an intent is due: it is another one, or its turn has come.
-    fn is_intent_due(&mut self, intent: Intent) -> bool {
-        if self.intent != Held::Value(intent) {
+    /// Whether driving parameters is due: it is another one, or its turn has come.
+    fn is_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
+        if self.parameters != Held::Value(parameters) {
             self.at_once = INTENT_AT_ONCE;
         }
-        let is_due = self.at_once > 0 || self.until_intent == 0;
+        let is_due = self.at_once > 0 || self.until_parameters == 0;
         self.at_once = self.at_once.saturating_sub(1);
-        self.until_intent = if is_due { INTENT_EVERY } else { self.until_intent }.saturating_sub(1);
-        self.intent.set(intent);
+        self.until_parameters = if is_due { INTENT_EVERY } else { self.until_parameters }.saturating_sub(1);
+        self.parameters.set(parameters);
         is_due
     }
 
     /// The next cause to report.
-    fn next_page(&mut self) -> Refusal {
-        let cause = Refusal::ALL.get(usize::from(self.page)).copied().unwrap_or(Refusal::Length);
+    fn next_page(&mut self) -> Cause {
+        let cause = Cause::ALL.get(usize::from(self.page)).copied().unwrap_or(Cause::Length);
         let next = self.page.saturating_add(1);
-        self.page = if usize::from(next) < Refusal::ALL.len() { next } else { 0 };
+        self.page = if usize::from(next) < Cause::ALL.len() { next } else { 0 };
         cause
     }
 }
@@ -171,9 +171,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.send_route(tag, ego, frames);
         let is_by_law = matches!(self.mode, Mode::Cooperative | Mode::Holdover { .. });
         if self.mode != Mode::Standby {
-            let intent = self.intent(is_by_law);
-            if self.outbox.is_intent_due(intent) {
-                self.emit(&Message::Own(Said::Intent(intent)), frames);
+            let parameters = self.parameters(is_by_law);
+            if self.outbox.is_parameters_due(parameters) {
+                self.emit(&Message::Own(Said::DrivingParameters(parameters)), frames);
             }
         }
         if is_by_law {
@@ -233,18 +233,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// How the ego says that it drives. When it does not drive by its law it says so by naming no predecessor.
-    fn intent(&self, is_by_law: bool) -> Intent {
+    fn parameters(&self, is_by_law: bool) -> DrivingParameters {
         let config = &self.config;
-        let Driver { aim, limits, .. } = self.driver();
+        let VehicleModel { aim, limits, .. } = self.driver();
         let law = &config.law;
         let (gain, damping, time_gap) = match aim {
             Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
             Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
         };
-        Intent {
+        DrivingParameters {
             length: config.length,
             standstill: self.standstill(),
-            predecessor: match self.wish.as_ref() {
+            predecessor: match self.desired.as_ref() {
                 Some(_) if is_by_law => self.predecessor(),
                 _ => Predecessor::Unknown,
             },

@@ -12,8 +12,8 @@
 
 use super::OnboardUnit;
 use super::sight::{Sight, Verdict};
-use crate::estimator::bound::{Bound, Doubt};
-use crate::health::Refusal;
+use crate::estimator::bound::{Bound, Uncertainty};
+use crate::health::Cause;
 use crate::parameters::{
     LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
     UNPUBLISHED_SPEED_ACCURACY,
@@ -29,21 +29,21 @@ const LEAST_SHARE: i64 = 16;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// Takes in a view of the vehicle ahead, received at `received`.
-    pub(super) fn take_range(&mut self, received: Instant, seen: RangeSample) -> Result<(), Refusal> {
-        let ego = self.ego.as_ref().ok_or(Refusal::Torn)?;
+    pub(super) fn take_range(&mut self, received: Instant, seen: RangeSample) -> Result<(), Cause> {
+        let ego = self.ego.as_ref().ok_or(Cause::Torn)?;
         let at = received.minus(seen.age);
         let since = at.since(ego.at);
         let earliest = Duration::ZERO.minus(RangeSample::OLDEST).minus(self.config.link.ego_timeout);
         if since > self.config.link.ego_timeout || since < earliest {
-            return Err(Refusal::Stale);
+            return Err(Cause::Stale);
         }
         // The ego's own motion, brought to the sight's instant.
         let gained = ego.acceleration.over(since.fine_seconds());
         let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
         let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
-        let doubt = self.doubt_of_sight(ego, since, &seen);
-        let mut sight = Sight { at, rear, speed, doubt, station: None };
+        let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
+        let mut sight = Sight { at, rear, speed, uncertainty, station: None };
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
@@ -59,14 +59,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn raise(&mut self, index: usize, sight: &Sight) -> bool {
         let Some(track) = self.peers.get_index_mut(index) else { return true };
         // However long it is, its front is not behind its rear.
-        let length = track.intent().map_or(Distance::ZERO, |intent| intent.length);
+        let length = track.parameters().map_or(Distance::ZERO, |parameters| parameters.length);
         let seen = sight.bound();
         track.narrow(&Bound::not_behind(seen.at(), seen.lowest_position().ahead(length)))
     }
 
     /// What is uncertain of a sight: the sensor's accuracies, the ego's own, and what the ego may have done between its
     /// own sample and the sight.
-    fn doubt_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Doubt {
+    fn uncertainty_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Uncertainty {
         // Its age is rounded up to a whole millisecond, in which the ego moved on.
         let unsaid = Duration::from_millis(1).min(seen.age);
         let apart = Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid);
@@ -78,7 +78,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let late = ego.speed.plus(own_speed).over(clock_error.plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
-        Doubt {
+        Uncertainty {
             position: seen.distance_accuracy.plus(own).plus(moved).plus(late).plus(roundings),
             speed: seen.speed_accuracy.plus(own_speed).plus(faster).plus(SPEED_ROUNDING).plus(SPEED_ROUNDING),
             earlier: clock_error,
@@ -92,13 +92,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_disputed = self.is_contradicted(index, now);
         let track = self.peers.get_index_mut(index)?;
         let (station, heard) = (track.station()?, track.newest().map(|newest| newest.received));
-        let Some(length) = track.intent().map(|intent| intent.length) else {
+        let Some(length) = track.parameters().map(|parameters| parameters.length) else {
             self.raise(index, sight);
             return None;
         };
         let front = sight.rear.ahead(length);
         let reach = track.reach();
-        let seen = track.around(sight.at, front, sight.speed, &sight.doubt);
+        let seen = track.around(sight.at, front, sight.speed, &sight.uncertainty);
         let before = track.certainty().bound().map(|bound| bound.after(sight.at, &reach));
         let verdict = if track.certainty().bound().is_none_or(|bound| bound.and(&seen, &reach).is_some()) {
             Verdict::Agrees
@@ -108,7 +108,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Verdict::Contradicts
         };
         if self.ranging.judge(station, now, verdict, heard) {
-            self.health.count(Refusal::RangeDisagrees);
+            self.health.count(Cause::RangeDisagrees);
         }
         if is_disputed {
             return None;
@@ -162,9 +162,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let estimate = self.estimator.read(index, sight.at)?;
         let half = |high: Position, low: Position| Distance::from_bits(high.ahead_of(low).to_bits() / 2);
         let width = half(bound.highest_position(), bound.lowest_position());
-        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.doubt.position.to_bits()));
+        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.uncertainty.position.to_bits()));
         let spread = bound.highest_speed().minus(bound.lowest_speed()).to_bits() / 2;
-        let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.doubt.speed.to_bits()));
+        let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.uncertainty.speed.to_bits()));
         if share.saturating_mul(LEAST_SHARE) < whole && speed_share.saturating_mul(LEAST_SHARE) < speed_whole {
             return None;
         }

@@ -11,7 +11,7 @@ use crate::envelope::{self, Obstacle};
 use crate::estimator::State;
 use crate::fixed::{quotient, saturate_i32};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Position, Share, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
 
 /// From when the ego enters until it has left a conflict area, about; as far as every unit looks ahead.
 const LEAVES: Duration = Duration::from_millis(3_900);
@@ -85,7 +85,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             speed: self.config.law.max_speed,
             margin: Distance::ZERO,
             delay: Duration::ZERO,
-            lag_tolerance: Share::ZERO,
+            lag_tolerance: Fraction::ZERO,
         };
         let ego = envelope::Ego {
             position: sample.position.ahead(ego.position.ahead_of(sample.position.ring())),

@@ -13,7 +13,7 @@
 //! held to be, and the contradiction lasts until the target is heard again, however long it is silent.
 
 use crate::estimator::Reading;
-use crate::estimator::bound::{Bound, Doubt, Reach};
+use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Position, Speed};
@@ -46,7 +46,7 @@ pub(super) struct Sight {
     /// Rear bumper of the vehicle ahead.
     pub rear: Position,
     pub speed: Speed,
-    pub doubt: Doubt,
+    pub uncertainty: Uncertainty,
     /// Whose it is, if it went into what is certain of that station.
     pub station: Option<StationHash>,
 }
@@ -54,7 +54,7 @@ pub(super) struct Sight {
 impl Sight {
     /// What is certain of the rear that was seen, by what was seen alone.
     pub fn bound(&self) -> Bound {
-        Bound::around(self.at, self.rear, self.speed, &self.doubt, &Reach::WORST)
+        Bound::around(self.at, self.rear, self.speed, &self.uncertainty, &AccelerationRange::WORST)
     }
 }
 
@@ -106,8 +106,9 @@ impl Ranging {
     pub(super) fn see(&mut self, sight: Sight) {
         let seen = sight.bound();
         // The same one again, or farther: nobody is where it was held to be, then.
-        let is_beyond =
-            |held: &Sight| seen.highest_position() >= held.bound().after(seen.at(), &Reach::WORST).lowest_position();
+        let is_beyond = |held: &Sight| {
+            seen.highest_position() >= held.bound().after(seen.at(), &AccelerationRange::WORST).lowest_position()
+        };
         if seen.lowest_speed() <= CRAWL {
             self.standing.set(sight);
         } else if self.standing.as_ref().is_some_and(is_beyond) {

@@ -6,7 +6,7 @@
 
 use super::bits::Payload;
 use super::tie::Tie;
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::{Duration, Instant};
 
 /// One part of a message.
@@ -59,9 +59,9 @@ impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
     /// `Torn`, once for each message that stays incomplete because this part belongs to another one (its tag differs,
     /// this part is here already, it was received more than `within` apart from the first one, or with it the counters are not
     /// those of one message); the part then begins the new message. `Range` for a part that there is not.
-    pub(super) fn add(&mut self, piece: &Piece) -> Result<Option<[Payload; PARTS]>, Refusal> {
+    pub(super) fn add(&mut self, piece: &Piece) -> Result<Option<[Payload; PARTS]>, Cause> {
         let Piece { at, within, part, tag, counter, payload } = *piece;
-        let place = self.parts.get_mut(usize::from(part)).ok_or(Refusal::Range)?;
+        let place = self.parts.get_mut(usize::from(part)).ok_or(Cause::Range)?;
         *place = payload;
         self.tie.note(part, counter);
         let bit = 1u8.checked_shl(u32::from(part)).unwrap_or(0);
@@ -81,7 +81,7 @@ impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
         }
         self.held |= bit;
         self.tag = tag;
-        if torn { Err(Refusal::Torn) } else { Ok(None) }
+        if torn { Err(Cause::Torn) } else { Ok(None) }
     }
 }
 
@@ -112,7 +112,7 @@ mod tests {
         let mut assembly = Assembly::<3, 1>::NEW;
         assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(None));
-        assert_eq!(assembly.add(&piece(7, 0, 2)), Err(Refusal::Torn));
+        assert_eq!(assembly.add(&piece(7, 0, 2)), Err(Cause::Torn));
         assert_eq!(assembly.add(&piece(7, 1, 2)), Ok(None));
         assert_eq!(assembly.add(&piece(7, 2, 2)), Ok(Some([P; 3])));
     }
@@ -121,14 +121,14 @@ mod tests {
     fn the_same_part_twice_under_one_tag_is_another_message() {
         let mut assembly = Assembly::<2, 1>::NEW;
         assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
-        assert_eq!(assembly.add(&piece(7, 0, 1)), Err(Refusal::Torn));
+        assert_eq!(assembly.add(&piece(7, 0, 1)), Err(Cause::Torn));
         assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(Some([P; 2])));
-        assert_eq!(assembly.add(&piece(7, 2, 1)), Err(Refusal::Range));
+        assert_eq!(assembly.add(&piece(7, 2, 1)), Err(Cause::Range));
     }
 
     #[test]
     fn parts_that_come_too_far_apart_make_no_message_whichever_comes_first() {
-        let torn = Err(Refusal::Torn);
+        let torn = Err(Cause::Torn);
         for (then, later) in [(0, 50_001), (50_001, 0), (0, 600_000_000)] {
             let mut assembly = Assembly::<2, 1>::NEW;
             assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(None));
@@ -148,7 +148,7 @@ mod tests {
         let mut assembly = Assembly::<3, 1>::NEW;
         assert_eq!(assembly.add(&piece(0, 0, 1)), Ok(None));
         assert_eq!(assembly.add(&piece(30_000, 1, 1)), Ok(None));
-        assert_eq!(assembly.add(&piece(60_000, 2, 1)), Err(Refusal::Torn));
+        assert_eq!(assembly.add(&piece(60_000, 2, 1)), Err(Cause::Torn));
     }
 
     #[test]
@@ -157,7 +157,7 @@ mod tests {
         for (lost, rest) in [(0, [1, 2]), (2, [0, 1])] {
             let mut assembly = Assembly::<3, 1>::NEW;
             (0..3).filter(|part| *part != lost).for_each(|part| assert_eq!(assembly.add(&of(0, part)), Ok(None)));
-            assert_eq!(assembly.add(&of(3, lost)), Err(Refusal::Torn));
+            assert_eq!(assembly.add(&of(3, lost)), Err(Cause::Torn));
             assert_eq!(assembly.add(&of(3, rest[0])), Ok(None));
             assert_eq!(assembly.add(&of(3, rest[1])), Ok(Some([P; 3])));
         }

@@ -9,7 +9,8 @@ use super::e2e::Limits;
 use super::field::{Field, Place};
 use super::index;
 use super::{
-    Slot, command, ego_intent, estimate, geo, horizon, intent, motion, range_sensor, route, status, sync, unserved,
+    Slot, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route, status,
+    sync, unserved,
 };
 
 /// Identifiers that the catalogue takes up, from the base on.
@@ -105,8 +106,8 @@ pub enum About {
     MotionB = 1,
     /// Its horizon.
     Horizon = 2,
-    /// Its intent.
-    Intent = 3,
+    /// Its driving parameters.
+    DrivingParameters = 3,
     /// Its place on the globe.
     Geo = 4,
     /// Its place on its route.
@@ -125,8 +126,8 @@ pub enum Content {
     FollowUp,
     /// [`command::Command`].
     Command,
-    /// [`ego_intent::EgoIntent`].
-    EgoIntent,
+    /// [`driver_request::DriverRequest`].
+    DriverRequest,
     /// [`range_sensor::RangeSample`].
     Range,
     /// [`unserved::Unserved`].
@@ -226,11 +227,11 @@ const fn timing(content: Content) -> (u16, u16, u8) {
         Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => (10, 50, 1),
         Content::Range => (20, 60, 1),
         Content::Unserved => (200, 600, 1),
-        Content::EgoIntent | Content::Status => (100, 300, 1),
+        Content::DriverRequest | Content::Status => (100, 300, 1),
         Content::Said(_, About::MotionA | About::MotionB) => (100, 300, 1),
         Content::Said(_, About::Horizon) => (100, 300, horizon::KNOTS as u8),
         Content::Said(_, About::Geo) => (100, 300, 2),
-        Content::Said(_, About::Intent) => (500, 1500, 3),
+        Content::Said(_, About::DrivingParameters) => (500, 1500, 3),
         Content::Said(_, About::Route) => (200, 600, 2),
     }
 }
@@ -242,7 +243,7 @@ const fn within(content: Content) -> u16 {
         Content::Sync
         | Content::FollowUp
         | Content::Command
-        | Content::EgoIntent
+        | Content::DriverRequest
         | Content::Range
         | Content::Unserved
         | Content::Status => 0,
@@ -259,7 +260,7 @@ const fn comment(content: Content) -> &'static str {
             "Second step: the Sync with the same Sequence was on the bus at Sync.Seconds plus Micros of GNSS time."
         }
         Content::Command => "Effort selects Force (driving) or BrakeTorque (braking). Not to be used in Mode standby.",
-        Content::EgoIntent => "What the driver or the planner wants.",
+        Content::DriverRequest => "What the driver or the planner wants.",
         Content::Range => "Not sent while nothing is measured ahead, or worse than the accuracies can say.",
         Content::Unserved => {
             "Sent on a route only. Legs by which the next vehicle into the conflict area, or one that is in it, has no slot; Ahead is the way of \
@@ -280,12 +281,12 @@ const fn comment(content: Content) -> &'static str {
         }
         Content::Said(_, About::Horizon) => {
             "5 frames of one Tag within 50 ms make one message; Tag is that of the Motion it starts from. Part n is the state after \
-             0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see Intent) after that Motion's Stamp; between them the way is a \
+             0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see DrivingParameters) after that Motion's Stamp; between them the way is a \
              quintic through position, speed and acceleration, plus Bow midway (64*Bow*s^3*(1-s)^3). At Speed 0 \
              Acceleration b tells when the vehicle came to rest: t = 12*D / (3*v + sqrt(9*v^2 + 12*(a-b)*D)) after part \
              n-1, whose speed and acceleration are v and a, on the way D between the two."
         }
-        Content::Said(_, About::Intent) => {
+        Content::Said(_, About::DrivingParameters) => {
             "3 frames of one Tag within 50 ms make one message. All limits are magnitudes."
         }
         Content::Said(_, About::Geo) => "2 frames of one Tag within 50 ms make one message.",
@@ -295,7 +296,7 @@ const fn comment(content: Content) -> &'static str {
     }
 }
 
-use About::{Geo, Horizon, Intent, MotionA, MotionB, Route};
+use About::{DrivingParameters, Geo, Horizon, MotionA, MotionB, Route};
 use Node::{Modem, Unit, Vehicle};
 use Speaker::{Ego, Own, Peer};
 
@@ -309,7 +310,7 @@ pub static CATALOGUE: [Line; LINES] = [
     line("MotionCommand", 0x02, Content::Command, Unit, command::FIELDS),
     line("EgoMotionA", 0x04, Content::Said(Ego, MotionA), Vehicle, motion::FIELDS_A),
     line("EgoMotionB", 0x05, Content::Said(Ego, MotionB), Vehicle, motion::FIELDS_B),
-    line("EgoIntent", 0x06, Content::EgoIntent, Vehicle, ego_intent::FIELDS),
+    line("DriverRequest", 0x06, Content::DriverRequest, Vehicle, driver_request::FIELDS),
     line("EgoPosition", 0x07, Content::Said(Ego, Geo), Vehicle, geo::FIELDS),
     line("RangeSensor", 0x08, Content::Range, Vehicle, range_sensor::FIELDS),
     line("PeersUnserved", 0x09, Content::Unserved, Modem, unserved::FIELDS),
@@ -318,14 +319,20 @@ pub static CATALOGUE: [Line; LINES] = [
     line("OwnMotionA", 0x10, Content::Said(Own, MotionA), Unit, motion::FIELDS_A),
     line("OwnMotionB", 0x11, Content::Said(Own, MotionB), Unit, motion::FIELDS_B),
     line("OwnHorizon", 0x12, Content::Said(Own, Horizon), Unit, horizon::FIELDS),
-    line("OwnIntent", 0x13, Content::Said(Own, Intent), Unit, intent::FIELDS),
+    line("OwnDrivingParameters", 0x13, Content::Said(Own, DrivingParameters), Unit, driving_parameters::FIELDS),
     line("OwnPosition", 0x14, Content::Said(Own, Geo), Unit, geo::FIELDS),
     line("OwnRoute", 0x15, Content::Said(Own, Route), Unit, route::FIELDS),
     line("Health", 0x18, Content::Status, Unit, status::FIELDS),
     line("Peer{slot}MotionA", 0x40, Content::Said(Peer, MotionA), Modem, motion::FIELDS_A),
     line("Peer{slot}MotionB", 0x41, Content::Said(Peer, MotionB), Modem, motion::FIELDS_B),
     line("Peer{slot}Horizon", 0x42, Content::Said(Peer, Horizon), Modem, horizon::FIELDS),
-    line("Peer{slot}Intent", 0x43, Content::Said(Peer, Intent), Modem, intent::FIELDS),
+    line(
+        "Peer{slot}DrivingParameters",
+        0x43,
+        Content::Said(Peer, DrivingParameters),
+        Modem,
+        driving_parameters::FIELDS,
+    ),
     line("Peer{slot}Position", 0x44, Content::Said(Peer, Geo), Modem, geo::FIELDS),
     line("Peer{slot}Route", 0x45, Content::Said(Peer, Route), Modem, route::FIELDS),
 ];
@@ -385,7 +392,12 @@ mod tests {
             }
             for field in line.fields {
                 let same = line.fields.iter().filter(|other| other.name == field.name).count();
-                assert!(same == 1 || line.content == Content::Said(Ego, Intent), "{} {}", line.name, field.name);
+                assert!(
+                    same == 1 || line.content == Content::Said(Ego, DrivingParameters),
+                    "{} {}",
+                    line.name,
+                    field.name
+                );
                 for raw in [Some(field.min), Some(field.max), field.none].into_iter().flatten() {
                     assert_eq!(field.raw(field.with_raw(Payload::EMPTY, raw)), raw, "{} {}", line.name, field.name);
                 }

@@ -18,7 +18,7 @@
 //! without the bow 15 mm. The shares were found by dynamic programming over all pairs of 40 candidates.
 
 use super::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
-use crate::fixed::{ShareFormat, mul_hi_share, quotient, saturate_i32, shl_saturating};
+use crate::fixed::{ShareFormat, mul_hi_fraction, quotient, saturate_i32, shl_saturating};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Speed};
 
@@ -124,10 +124,10 @@ impl Piece {
 
     /// Way and speed at a share from 0 to 1: 11 multiplications. The speed is never negative.
     #[inline(always)]
-    fn at_share(&self, share: i32) -> (Distance, Speed) {
+    fn at_fraction(&self, share: i32) -> (Distance, Speed) {
         let [w1, w2, w3, w4, w5, w6] = self.way;
         let [v0, v1, v2, v3, v4, v5] = self.speed;
-        let times = |sum: i32| mul_hi_share(sum, share).wrapping_shl(2); // at most the sum, which COEFFICIENT keeps small
+        let times = |sum: i32| mul_hi_fraction(sum, share).wrapping_shl(2); // at most the sum, which COEFFICIENT keeps small
         let up = |sum: i32, coefficient: i32| coefficient.wrapping_add(times(sum));
         let way = times(up(up(up(up(up(w6, w5), w4), w3), w2), w1));
         let speed = up(up(up(up(up(v5, v4), v3), v2), v1), v0);
@@ -138,7 +138,7 @@ impl Piece {
     /// The state at this time after its start, limited to its ends.
     fn at(&self, micros: i64) -> Knot {
         let share = self.share_of(micros);
-        let (displacement, speed) = self.at_share(share);
+        let (displacement, speed) = self.at_fraction(share);
         Knot { displacement, speed, acceleration: self.acceleration_at(share), bow: Distance::ZERO }
     }
 

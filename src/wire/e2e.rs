@@ -6,7 +6,7 @@
 //! `E2E_P01Check`. The unit calls it when a frame arrives, so `NoNewData` arises only where a caller polls; silence
 //! shows as the age of what was received last.
 
-use crate::health::Refusal;
+use crate::health::Cause;
 
 /// What the receiver tolerates on one identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +46,13 @@ impl Status {
     ///
     /// # Errors
     /// The refusal that stands for this status. `NoNewData` has no frame to refuse; it counts as a repetition.
-    pub const fn verdict(self) -> Result<(), Refusal> {
+    pub const fn verdict(self) -> Result<(), Cause> {
         match self {
             Self::Ok | Self::OkSomeLost => Ok(()),
-            Self::Initial | Self::Sync => Err(Refusal::NotYetTrusted),
-            Self::Repeated | Self::NoNewData => Err(Refusal::Repeated),
-            Self::WrongSequence => Err(Refusal::CounterGap),
-            Self::WrongCrc => Err(Refusal::Checksum),
+            Self::Initial | Self::Sync => Err(Cause::NotYetTrusted),
+            Self::Repeated | Self::NoNewData => Err(Cause::Repeated),
+            Self::WrongSequence => Err(Cause::CounterGap),
+            Self::WrongCrc => Err(Cause::Checksum),
         }
     }
 }
@@ -135,13 +135,13 @@ impl Check {
     ///
     /// # Errors
     /// The refusal of its [`Status`]; `CounterRange` for a good checksum over counter 15, which the profile excludes.
-    pub fn receive(&mut self, limits: &Limits, data_id: u16, data: &[u8; 8]) -> Result<(), Refusal> {
+    pub fn receive(&mut self, limits: &Limits, data_id: u16, data: &[u8; 8]) -> Result<(), Cause> {
         let [received, first, rest @ ..] = *data;
         let [b2, b3, b4, b5, b6, b7] = rest;
         let counter = counter_of(data);
         let intact = received == crc(data_id, [first, b2, b3, b4, b5, b6, b7]);
         if intact && counter > CEILING {
-            return Err(Refusal::CounterRange);
+            return Err(Cause::CounterRange);
         }
         self.check(limits, Some(if intact { Ok(counter) } else { Err(()) })).verdict()
     }
@@ -290,7 +290,7 @@ mod tests {
             for b in a..64 {
                 let flipped = (u64::from_le_bytes(good) ^ (1 << a) ^ (if a == b { 0 } else { 1 << b })).to_le_bytes();
                 let mut check = Check::new();
-                assert_eq!(check.receive(&LIMITS, 0x4812, &flipped), Err(Refusal::Checksum), "bits {a} and {b}");
+                assert_eq!(check.receive(&LIMITS, 0x4812, &flipped), Err(Cause::Checksum), "bits {a} and {b}");
             }
         }
     }
@@ -300,7 +300,7 @@ mod tests {
         let mut check = Check::new();
         let before = check;
         let frame = protect([0; 8], 0x4800, 15);
-        assert_eq!(check.receive(&LIMITS, 0x4800, &frame), Err(Refusal::CounterRange));
+        assert_eq!(check.receive(&LIMITS, 0x4800, &frame), Err(Cause::CounterRange));
         assert_eq!(check, before);
     }
 }

@@ -4,7 +4,7 @@ use super::bits::Payload;
 use super::field::{Field, TAG};
 use super::motion::{self, WirePosition, position_of};
 use crate::fixed::quotient;
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
 
@@ -79,12 +79,12 @@ impl TargetEstimate {
     ///
     /// # Errors
     /// `Range` if the bound has some ends but not all.
-    pub fn decode([a, b]: &[Payload; 2]) -> Result<Self, Refusal> {
+    pub fn decode([a, b]: &[Payload; 2]) -> Result<Self, Cause> {
         let told = (BEHIND.get_known(*b), AHEAD.get_known(*b), SLOWER.get_known(*b), FASTER.get_known(*a));
         let ends = match told {
             (Some(behind), Some(ahead), Some(slower), Some(faster)) => Some(Ends { behind, ahead, slower, faster }),
             (None, None, None, None) => None,
-            _ => return Err(Refusal::Range),
+            _ => return Err(Cause::Range),
         };
         Ok(Self {
             tag: TAG.byte(*a),

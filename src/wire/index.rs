@@ -6,7 +6,7 @@ use super::Slot;
 use super::bits::Payload;
 use super::catalogue::{ABOUTS, CATALOGUE, Content, LINES, Node, PEERS_OFFSET, SLOT_STRIDE, Speaker};
 use super::field::{Field, Place};
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::Duration;
 
 /// One line of the catalogue.
@@ -171,7 +171,7 @@ const fn number(content: Content) -> usize {
         Content::Sync => 0,
         Content::FollowUp => 1,
         Content::Command => 2,
-        Content::EgoIntent => 3,
+        Content::DriverRequest => 3,
         Content::Range => 4,
         Content::EstimateA => 5,
         Content::EstimateB => 6,
@@ -200,7 +200,7 @@ pub(super) fn find(offset: u16) -> Option<(usize, &'static Entry, Slot)> {
 }
 
 /// The entry of a content, and its place in the catalogue; some contents have none (the vehicle does not tell its unit its
-/// intent this way).
+/// driving parameters this way).
 pub(super) fn find_content(content: Content) -> Option<(usize, &'static Entry)> {
     let place = usize::from(*BY_CONTENT.get(number(content))?);
     Some((place, ENTRIES.get(place)?))
@@ -218,11 +218,11 @@ impl Entry {
     ///
     /// # Errors
     /// `Range` if one does not.
-    pub(super) fn check(&self, payload: Payload) -> Result<(), Refusal> {
+    pub(super) fn check(&self, payload: Payload) -> Result<(), Cause> {
         let part = self.part_of(payload);
         let (from, to) = self.rules;
         let rules = RULES.get(usize::from(from)..usize::from(to)).unwrap_or_default();
-        if rules.iter().all(|rule| rule.holds(payload, part)) { Ok(()) } else { Err(Refusal::Range) }
+        if rules.iter().all(|rule| rule.holds(payload, part)) { Ok(()) } else { Err(Cause::Range) }
     }
 
     /// Its offset for this slot (slot 0 where there are none).
@@ -255,7 +255,7 @@ mod tests {
             }
             if let Some(selector) = selector.filter(|selector| selector.max + 1 < 1 << selector.length) {
                 let beyond = Payload::EMPTY.with(selector.start, selector.length, selector.max as u64 + 1);
-                assert_eq!(entry.check(beyond), Err(Refusal::Range), "{}", line.name);
+                assert_eq!(entry.check(beyond), Err(Cause::Range), "{}", line.name);
             }
         }
     }
@@ -266,7 +266,7 @@ mod tests {
             assert_eq!(find(line.offset).map(|(place, entry, _)| (place, entry.offset)), Some((place, line.offset)));
             assert_eq!(find_content(line.content).map(|(place, _)| place), Some(place));
         }
-        assert!(find_content(Content::Said(Speaker::Ego, super::super::catalogue::About::Intent)).is_none());
+        assert!(find_content(Content::Said(Speaker::Ego, super::super::catalogue::About::DrivingParameters)).is_none());
         assert!((0x46..0x48).chain([0x03, 0x3F]).all(|offset| place_of(offset).is_none()));
     }
 }

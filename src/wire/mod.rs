@@ -1,7 +1,7 @@
 //! The unit's CAN messages: classic CAN frames enter and typed messages leave ([`Receiver`]), and the other way round
 //! ([`Sender`]).
 //!
-//! Contract of every decoder here: any 8 bytes in, a value or a named [`Refusal`](crate::health::Refusal) out; no panic, no allocation.
+//! Contract of every decoder here: any 8 bytes in, a value or a named [`Cause`](crate::health::Cause) out; no panic, no allocation.
 //! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
 
 mod assembly;
@@ -10,15 +10,15 @@ pub mod catalogue;
 pub mod command;
 pub mod curve;
 pub mod dbc;
+pub mod driver_request;
+pub mod driving_parameters;
 pub mod e2e;
-pub mod ego_intent;
 pub mod estimate;
 pub mod field;
 pub mod frame;
 pub mod geo;
 pub mod horizon;
 mod index;
-pub mod intent;
 pub mod load;
 pub mod motion;
 mod predecessor;
@@ -69,7 +69,7 @@ pub enum Said {
     /// Where it is and how it moves.
     Motion(motion::Motion),
     /// How it will drive: the parameters of its law.
-    Intent(intent::Intent),
+    DrivingParameters(driving_parameters::DrivingParameters),
     /// Its own horizon in a few knots.
     Horizon(horizon::Knots),
     /// Where it is on the globe.
@@ -90,7 +90,7 @@ pub enum Message {
     /// From the vehicle itself (only motion and position occur).
     Ego(Said),
     /// What the driver or the planner wants.
-    EgoIntent(ego_intent::EgoIntent),
+    DriverRequest(driver_request::DriverRequest),
     /// An on-board sensor's view of the vehicle ahead.
     Range(range_sensor::RangeSample),
     /// Whom the modem hears and has no slot for.

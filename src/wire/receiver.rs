@@ -1,5 +1,5 @@
 //! Frames in, whole messages out: identifier, length, E2E, ranges and the parts of a message are judged here, in this
-//! order, and each failure is a named [`Refusal`].
+//! order, and each failure is a named [`Cause`].
 //!
 //! A refused frame changes the E2E state of its identifier and, if it is `Torn`, begins a new message; nothing else. A
 //! frame of another identifier costs two comparisons.
@@ -10,13 +10,13 @@ use super::assembly::{Assembly, Piece};
 use super::bits::Payload;
 use super::catalogue::{self, ABOUTS, About, BaseId, Content, LIMITS, LINES, Node, PEERS_OFFSET, Speaker};
 use super::command::Command;
+use super::driver_request::DriverRequest;
+use super::driving_parameters::DrivingParameters;
 use super::e2e::{self, Check};
-use super::ego_intent::EgoIntent;
 use super::estimate::TargetEstimate;
 use super::geo::GeoPosition;
 use super::horizon::{KNOTS, Knots};
 use super::index::{self, Entry};
-use super::intent::Intent;
 use super::motion::Motion;
 use super::range_sensor::RangeSample;
 use super::route::Route;
@@ -24,7 +24,7 @@ use super::status::Status;
 use super::sync::{FollowUp, Sync};
 use super::unserved::Unserved;
 use super::{Message, Said, Slot};
-use crate::health::Refusal;
+use crate::health::Cause;
 use crate::time::Instant;
 
 /// On which side of the bus the receiver stands.
@@ -64,7 +64,7 @@ pub enum Received {
 struct Parts {
     motion: Assembly<2, 0>,
     horizon: Assembly<KNOTS, 1>,
-    intent: Assembly<3, 1>,
+    parameters: Assembly<3, 1>,
     geo: Assembly<2, 1>,
     route: Assembly<2, 1>,
 }
@@ -73,17 +73,19 @@ impl Parts {
     const NEW: Self = Self {
         motion: Assembly::NEW,
         horizon: Assembly::NEW,
-        intent: Assembly::NEW,
+        parameters: Assembly::NEW,
         geo: Assembly::NEW,
         route: Assembly::NEW,
     };
 
-    fn add(&mut self, about: About, piece: &Piece) -> Result<Option<Said>, Refusal> {
+    fn add(&mut self, about: About, piece: &Piece) -> Result<Option<Said>, Cause> {
         Ok(match about {
             About::MotionA => self.motion.add(&piece.of(0))?.map(|parts| Said::Motion(Motion::decode(&parts))),
             About::MotionB => self.motion.add(&piece.of(1))?.map(|parts| Said::Motion(Motion::decode(&parts))),
             About::Horizon => self.horizon.add(piece)?.map(|parts| Said::Horizon(Knots::decode(&parts))),
-            About::Intent => self.intent.add(piece)?.map(|parts| Said::Intent(Intent::decode(&parts))),
+            About::DrivingParameters => {
+                self.parameters.add(piece)?.map(|parts| Said::DrivingParameters(DrivingParameters::decode(&parts)))
+            }
             About::Geo => self.geo.add(piece)?.map(|parts| Said::Geo(GeoPosition::decode(&parts))),
             About::Route => self.route.add(piece)?.map(|parts| Said::Route(Route::decode(&parts))),
         })
@@ -133,7 +135,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
     /// # Errors
     /// `UnknownSlot`, `Length` (also for a remote frame), the E2E refusals (`Checksum`, `CounterRange`, `Repeated`,
     /// `CounterGap`, `NotYetTrusted`), `Range`, `Torn`, tested in this order.
-    pub fn receive(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Refusal> {
+    pub fn receive(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Cause> {
         match self.role {
             Role::Unit => self.receive_as::<true>(at, frame),
             Role::Modem => self.receive_as::<false>(at, frame),
@@ -142,12 +144,12 @@ impl<const PEERS: usize> Receiver<PEERS> {
 
     /// As [`receive`](Self::receive) of a unit's receiver, without what the other side's takes: an image for an ECU need not
     /// hold that.
-    pub(crate) fn receive_as_unit(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Refusal> {
+    pub(crate) fn receive_as_unit(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Cause> {
         self.receive_as::<true>(at, frame)
     }
 
     #[inline(always)]
-    fn receive_as<const UNIT: bool>(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Refusal> {
+    fn receive_as<const UNIT: bool>(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Cause> {
         let role = if UNIT { Role::Unit } else { Role::Modem };
         let Id::Standard(id) = frame.id() else { return Ok(Received::Foreign) };
         let Some(offset) = self.base.offset_of(id.as_raw()) else { return Ok(Received::Foreign) };
@@ -156,11 +158,11 @@ impl<const PEERS: usize> Receiver<PEERS> {
             return Ok(Received::Foreign);
         }
         if entry.content.is_per_slot() && usize::from(slot.0) >= PEERS {
-            return Err(Refusal::UnknownSlot);
+            return Err(Cause::UnknownSlot);
         }
         let data: &[u8; 8] = match (frame.is_remote_frame(), frame.data().try_into()) {
             (false, Ok(data)) => data,
-            _ => return Err(Refusal::Length),
+            _ => return Err(Cause::Length),
         };
         let data_id = catalogue::data_id(offset);
         self.check_of(place, entry, slot)?.receive(&LIMITS, data_id, data)?;
@@ -171,14 +173,14 @@ impl<const PEERS: usize> Receiver<PEERS> {
             .map_or(Received::Pending, Received::Whole))
     }
 
-    fn check_of(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut Check, Refusal> {
+    fn check_of(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut Check, Cause> {
         let check = if entry.content.is_per_slot() {
             let about = usize::from(entry.offset.saturating_sub(PEERS_OFFSET));
             self.peers.get_mut(usize::from(slot.0)).and_then(|peer| peer.checks.get_mut(about))
         } else {
             self.checks.get_mut(place)
         };
-        check.ok_or(Refusal::UnknownSlot)
+        check.ok_or(Cause::UnknownSlot)
     }
 
     /// What only the other side sends does not get here.
@@ -189,7 +191,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
         slot: Slot,
         counter: u8,
         payload: Payload,
-    ) -> Result<Option<Message>, Refusal> {
+    ) -> Result<Option<Message>, Cause> {
         let (part, tag) = (entry.part_of(payload), super::field::TAG.byte(payload));
         let piece = Piece { at, within: entry.within, part, tag, counter, payload };
         let whole = [payload];
@@ -199,7 +201,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
             Content::Command | Content::Status | Content::EstimateA | Content::EstimateB if UNIT => None,
             Content::Said(Speaker::Own, _) if UNIT => None,
             Content::Command => Some(Message::Command(Command::decode(&whole))),
-            Content::EgoIntent => Some(Message::EgoIntent(EgoIntent::decode(&whole))),
+            Content::DriverRequest => Some(Message::DriverRequest(DriverRequest::decode(&whole))),
             Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
             Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
             Content::Status => Some(Message::Status(Status::decode(&whole)?)),
@@ -208,13 +210,13 @@ impl<const PEERS: usize> Receiver<PEERS> {
             Content::Said(Speaker::Ego, about) => self.own.add(about, &piece)?.map(Message::Ego),
             Content::Said(Speaker::Own, about) => self.own.add(about, &piece)?.map(Message::Own),
             Content::Said(Speaker::Peer, about) => {
-                let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Refusal::UnknownSlot)?;
+                let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Cause::UnknownSlot)?;
                 peer.parts.add(about, &piece)?.map(|said| Message::Peer(slot, said))
             }
         })
     }
 
-    fn add_estimate(&mut self, piece: &Piece) -> Result<Option<Message>, Refusal> {
+    fn add_estimate(&mut self, piece: &Piece) -> Result<Option<Message>, Cause> {
         match self.estimate.add(piece)? {
             Some(parts) => Ok(Some(Message::Estimate(TargetEstimate::decode(&parts)?))),
             None => Ok(None),

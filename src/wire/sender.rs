@@ -1,10 +1,10 @@
 //! Messages in, protected frames out: the sending side of the bus, for the unit (`Own*`, command, estimate, status) as
 //! for the modem, the vehicle's sensors and the harness (the rest).
 //!
-//! A tag that stands in a message is its producer's: a horizon has to carry the tag of its motion. [`Intent`] has none,
+//! A tag that stands in a message is its producer's: a horizon has to carry the tag of its motion. [`DrivingParameters`] has none,
 //! so the sender counts one for it.
 //!
-//! [`Intent`]: super::intent::Intent
+//! [`DrivingParameters`]: super::driving_parameters::DrivingParameters
 
 use super::bits::Payload;
 use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, PEERS_OFFSET, Speaker};
@@ -21,31 +21,31 @@ pub enum Unsent {
     UnknownSlot,
 }
 
-/// The E2E counters of all identifiers, and the tags of intents; with so many slots (0 for the unit).
+/// The E2E counters of all identifiers, and the tags of driving parameters; with so many slots (0 for the unit).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sender<const PEERS: usize> {
     base: BaseId,
     /// By place in the catalogue; those of the peers' lines are not used.
     counters: [u8; LINES],
-    intent_tag: u8,
+    parameters_tag: u8,
     peers: [Peer; PEERS],
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Peer {
     counters: [u8; ABOUTS],
-    intent_tag: u8,
+    parameters_tag: u8,
 }
 
 impl Peer {
-    const NEW: Self = Self { counters: [0; ABOUTS], intent_tag: 0 };
+    const NEW: Self = Self { counters: [0; ABOUTS], parameters_tag: 0 };
 }
 
 impl<const PEERS: usize> Sender<PEERS> {
     /// Nothing sent yet: every counter starts at 0.
     #[must_use]
     pub const fn new(base: BaseId) -> Self {
-        Self { base, counters: [0; LINES], intent_tag: 0, peers: [const { Peer::NEW }; PEERS] }
+        Self { base, counters: [0; LINES], parameters_tag: 0, peers: [const { Peer::NEW }; PEERS] }
     }
 
     /// Emits the message's frames, in order.
@@ -57,7 +57,7 @@ impl<const PEERS: usize> Sender<PEERS> {
         match message {
             Message::Sync(sync) => self.emit(Content::Sync, none, &sync.encode(), emit),
             Message::FollowUp(follow_up) => self.emit(Content::FollowUp, none, &follow_up.encode(), emit),
-            Message::EgoIntent(intent) => self.emit(Content::EgoIntent, none, &intent.encode(), emit),
+            Message::DriverRequest(parameters) => self.emit(Content::DriverRequest, none, &parameters.encode(), emit),
             Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
             Message::Unserved(unserved) => self.emit(Content::Unserved, none, &unserved.encode(), emit),
             Message::Command(command) => self.emit(Content::Command, none, &command.encode(), emit),
@@ -83,17 +83,17 @@ impl<const PEERS: usize> Sender<PEERS> {
             Said::Horizon(knots) => self.emit(Content::Said(speaker, About::Horizon), slot, &knots.encode(), emit),
             Said::Geo(position) => self.emit(Content::Said(speaker, About::Geo), slot, &position.encode(), emit),
             Said::Route(route) => self.emit(Content::Said(speaker, About::Route), slot, &route.encode(), emit),
-            Said::Intent(intent) => {
-                let tag = self.intent_tag(speaker, slot)?;
-                self.emit(Content::Said(speaker, About::Intent), slot, &intent.encode(tag), emit)
+            Said::DrivingParameters(parameters) => {
+                let tag = self.parameters_tag(speaker, slot)?;
+                self.emit(Content::Said(speaker, About::DrivingParameters), slot, &parameters.encode(tag), emit)
             }
         }
     }
 
-    fn intent_tag(&mut self, speaker: Speaker, slot: Slot) -> Result<u8, Unsent> {
+    fn parameters_tag(&mut self, speaker: Speaker, slot: Slot) -> Result<u8, Unsent> {
         let tag = match speaker {
-            Speaker::Peer => &mut self.peers.get_mut(usize::from(slot.0)).ok_or(Unsent::UnknownSlot)?.intent_tag,
-            Speaker::Own | Speaker::Ego => &mut self.intent_tag,
+            Speaker::Peer => &mut self.peers.get_mut(usize::from(slot.0)).ok_or(Unsent::UnknownSlot)?.parameters_tag,
+            Speaker::Own | Speaker::Ego => &mut self.parameters_tag,
         };
         *tag = tag.wrapping_add(1) & 3;
         Ok(*tag)

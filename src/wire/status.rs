@@ -3,14 +3,14 @@
 use super::bits::Payload;
 use super::command::ModeCode;
 use super::field::Field;
-use crate::health::Refusal;
+use crate::health::Cause;
 
 /// One page of the unit's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
     /// The cause that this page counts.
-    pub cause: Refusal,
+    pub cause: Cause,
     /// How often it was met since start; 0 to 16,777,215, saturating.
     pub count: u32,
     /// The mode.
@@ -24,14 +24,14 @@ pub struct Status {
 }
 
 /// Every cause with its number.
-static CAUSES: [(i64, &str); Refusal::ALL.len()] = causes();
+static CAUSES: [(i64, &str); Cause::ALL.len()] = causes();
 
 #[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
-const fn causes() -> [(i64, &'static str); Refusal::ALL.len()] {
-    let mut causes = [(0, ""); Refusal::ALL.len()];
+const fn causes() -> [(i64, &'static str); Cause::ALL.len()] {
+    let mut causes = [(0, ""); Cause::ALL.len()];
     let mut number = 0;
     while number < causes.len() {
-        causes[number] = (number as i64, Refusal::ALL[number].name());
+        causes[number] = (number as i64, Cause::ALL[number].name());
         number += 1;
     }
     causes
@@ -64,9 +64,9 @@ impl Status {
     ///
     /// # Errors
     /// `Range` for the number of a cause that there is not.
-    pub fn decode([a]: &[Payload; 1]) -> Result<Self, Refusal> {
+    pub fn decode([a]: &[Payload; 1]) -> Result<Self, Cause> {
         Ok(Self {
-            cause: Refusal::ALL.get(usize::from(CAUSE.byte(*a))).copied().ok_or(Refusal::Range)?,
+            cause: Cause::ALL.get(usize::from(CAUSE.byte(*a))).copied().ok_or(Cause::Range)?,
             count: COUNT.word(*a),
             mode: ModeCode::from_raw(MODE.raw(*a)),
             detail: DETAIL.byte(*a),

@@ -1,15 +1,15 @@
 //! Random messages whose values all stand on the wire exactly; the ranges are written out here once more on purpose,
 //! apart from the catalogue.
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 use holdover::wire::command::{Command, Effort, ModeCode};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::estimate::{Ends, TargetEstimate};
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::horizon::{KNOTS, Knot, Knots};
-use holdover::wire::intent::{Intent, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::quantity::Quantity;
 use holdover::wire::range_sensor::RangeSample;
@@ -76,13 +76,13 @@ prop_compose! {
 }
 
 prop_compose! {
-    pub fn intent()(
+    pub fn parameters()(
         length in steps(0..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
         target_speed in speed(), time_gap in steps(0..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
         damping in steps(0..=3999, 1000), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
         horizon_tenths: u8,
-    ) -> Intent {
-        Intent {
+    ) -> DrivingParameters {
+        DrivingParameters {
             length, standstill, predecessor, target_speed, time_gap, gain, damping, lag, limits, horizon_tenths,
         }
     }
@@ -120,11 +120,11 @@ prop_compose! {
 }
 
 prop_compose! {
-    pub fn ego_intent()(
+    pub fn driver_request()(
         engaged: bool, predecessor in predecessor(), target_speed in speed(),
         time_gap in option::of(steps::<Seconds>(0..=799, 200)),
-    ) -> EgoIntent {
-        EgoIntent { engaged, predecessor, target_speed, time_gap }
+    ) -> DriverRequest {
+        DriverRequest { engaged, predecessor, target_speed, time_gap }
     }
 }
 
@@ -168,7 +168,7 @@ prop_compose! {
 
 prop_compose! {
     pub fn status()(
-        cause in proptest::sample::select(&Refusal::ALL[..]), count in 0u32..1 << 24, mode in mode(), detail in 0u8..32,
+        cause in proptest::sample::select(&Cause::ALL[..]), count in 0u32..1 << 24, mode in mode(), detail in 0u8..32,
         synchronised: bool, links_on: u8,
     ) -> Status {
         Status { cause, count, mode, detail, synchronised, links_on }
@@ -188,7 +188,7 @@ prop_compose! {
 pub fn said() -> impl Strategy<Value = Said> {
     prop_oneof![
         motion().prop_map(Said::Motion),
-        intent().prop_map(Said::Intent),
+        parameters().prop_map(Said::DrivingParameters),
         knots().prop_map(Said::Horizon),
         geo().prop_map(Said::Geo),
         route().prop_map(Said::Route),
@@ -202,7 +202,7 @@ pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
         1 => (0u8..16, any::<u32>()).prop_map(|(sequence, micros)| Message::FollowUp(FollowUp { sequence, micros })),
         1 => motion().prop_map(|motion| Message::Ego(Said::Motion(motion))),
         1 => geo().prop_map(|position| Message::Ego(Said::Geo(position))),
-        1 => ego_intent().prop_map(Message::EgoIntent),
+        1 => driver_request().prop_map(Message::DriverRequest),
         1 => range_sample().prop_map(Message::Range),
         1 => unserved().prop_map(Message::Unserved),
         5 => (0..slots, said()).prop_map(|(slot, said)| Message::Peer(Slot(slot), said)),

@@ -177,13 +177,13 @@ impl Junction {
             if now % 100_000 == 0 {
                 let geo = driver.geo(now);
                 let _ = driver.rig.put(now, &Message::Ego(Said::Geo(geo)));
-                let wish = EgoIntent {
+                let request = DriverRequest {
                     engaged: driver.engaged,
                     predecessor: Predecessor::Unknown,
                     target_speed: mps(driver.target_speed),
                     time_gap: None,
                 };
-                let _ = driver.rig.put(now, &Message::EgoIntent(wish));
+                let _ = driver.rig.put(now, &Message::DriverRequest(request));
             }
             if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);

@@ -9,13 +9,13 @@ pub mod plant;
 pub mod random;
 pub mod road;
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, Position, Speed};
 use holdover::wire::command::Command;
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::estimate::TargetEstimate;
-use holdover::wire::intent::{Intent, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::sync::{FollowUp, Sync};
@@ -88,7 +88,7 @@ impl Rig {
     }
 
     /// Gives the unit a message of the vehicle or of the modem; the verdict on its last frame.
-    pub fn put(&mut self, at: i64, message: &Message) -> Result<(), Refusal> {
+    pub fn put(&mut self, at: i64, message: &Message) -> Result<(), Cause> {
         let mut frames = Vec::new();
         let sent = match message {
             Message::Peer(..) => self.modem.send(message, &mut |frame| frames.push(frame)),
@@ -122,7 +122,7 @@ impl Rig {
     }
 
     /// The ego's own motion now, with the accuracies of a good sensor.
-    pub fn ego(&mut self, at: i64, position: f64, speed: f64, acceleration: f64, demand: f64) -> Result<(), Refusal> {
+    pub fn ego(&mut self, at: i64, position: f64, speed: f64, acceleration: f64, demand: f64) -> Result<(), Cause> {
         let motion = self.motion(EGO, at, position, speed, acceleration, demand, Some((0.05, 0.02)));
         self.put(at, &Message::Ego(Said::Motion(motion)))
     }
@@ -154,18 +154,18 @@ impl Rig {
     }
 
     /// A target's message in its slot.
-    pub fn target(&mut self, at: i64, said: Said) -> Result<(), Refusal> {
+    pub fn target(&mut self, at: i64, said: Said) -> Result<(), Cause> {
         self.put(at, &Message::Peer(SLOT, said))
     }
 
-    /// The driver's wish.
-    pub fn wish(&mut self, at: i64, engaged: bool, predecessor: Predecessor) -> Result<(), Refusal> {
+    /// The driver's request.
+    pub fn request(&mut self, at: i64, engaged: bool, predecessor: Predecessor) -> Result<(), Cause> {
         let target_speed = mps(self.wanted);
-        self.put(at, &Message::EgoIntent(EgoIntent { engaged, predecessor, target_speed, time_gap: None }))
+        self.put(at, &Message::DriverRequest(DriverRequest { engaged, predecessor, target_speed, time_gap: None }))
     }
 
     /// The range sensor's view.
-    pub fn range(&mut self, at: i64, distance: f64, difference: f64, age_ms: i64) -> Result<(), Refusal> {
+    pub fn range(&mut self, at: i64, distance: f64, difference: f64, age_ms: i64) -> Result<(), Cause> {
         let sample = RangeSample {
             distance: metres(distance),
             speed_difference: mps(difference),
@@ -192,9 +192,9 @@ impl Rig {
 }
 
 /// A target that follows nobody and may do what it likes within these limits.
-pub fn intent(acceleration: f64, emergency_braking: f64) -> Intent {
+pub fn parameters(acceleration: f64, emergency_braking: f64) -> DrivingParameters {
     let config = config();
-    Intent {
+    DrivingParameters {
         length: metres(LENGTH),
         standstill: config.law.standstill,
         predecessor: Predecessor::None,
@@ -213,7 +213,7 @@ pub fn intent(acceleration: f64, emergency_braking: f64) -> Intent {
     }
 }
 
-/// Of a target with [`intent`].
+/// Of a target with [`parameters`].
 pub const LENGTH: f64 = 4.8;
 
 pub fn metres(m: f64) -> Distance {

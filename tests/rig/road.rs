@@ -2,9 +2,9 @@
 //! Switches enter; the ego's motion, its commands and the gap leave.
 
 use super::plant::{Body, Plant};
-use super::{Heard, LENGTH, Rig, TARGET, intent, mps, mps2_of};
+use super::{Heard, LENGTH, Rig, TARGET, mps, mps2_of, parameters};
 use holdover::Config;
-use holdover::wire::intent::Intent;
+use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::{Predecessor, Said};
 
 /// What of the traffic gets through.
@@ -87,11 +87,11 @@ impl Road {
             let _ = self.rig.ego(now, ego.position, ego.speed, ego.acceleration + self.acceleration_off, self.command);
         }
         if now % 100_000 == 0 {
-            let _ = self.rig.wish(now, self.engaged, self.predecessor);
+            let _ = self.rig.request(now, self.engaged, self.predecessor);
         }
         if self.senses.v2x && now % 500_000 == 0 {
-            let intent = Intent { target_speed: mps(self.wants), ..intent(2.5, self.braking) };
-            let _ = self.rig.target(now, Said::Intent(intent));
+            let parameters = DrivingParameters { target_speed: mps(self.wants), ..parameters(2.5, self.braking) };
+            let _ = self.rig.target(now, Said::DrivingParameters(parameters));
         }
         if self.senses.v2x && now % 100_000 == 0 {
             let (position, speed) = (self.target.position + self.lie.0, self.target.speed + self.lie.1);

@@ -7,12 +7,12 @@
 #![allow(dead_code)] // every test file uses another part of it
 
 use embedded_can::{ExtendedId, Id, StandardId};
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 use holdover::wire::catalogue::{self, BaseId};
-use holdover::wire::ego_intent::EgoIntent;
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
@@ -38,7 +38,7 @@ pub struct Traffic {
     pub offset: Instant,
     /// Periods so far.
     pub period: i64,
-    pub wish: EgoIntent,
+    pub request: DriverRequest,
     /// Which parts of the traffic there are.
     pub sync: bool,
     pub ego: bool,
@@ -56,7 +56,7 @@ impl Traffic {
             sender: Sender::new(BaseId::DEFAULT),
             offset: Instant::from_micros(77_000_000),
             period: 0,
-            wish: wish(Predecessor::Station(TARGET)),
+            request: request(Predecessor::Station(TARGET)),
             sync: true,
             ego: true,
             target: true,
@@ -124,7 +124,7 @@ impl Traffic {
             frames.extend(self.frames(&Message::Ego(Said::Motion(motion))));
         }
         if n % 10 == 0 {
-            frames.extend(self.frames(&Message::EgoIntent(self.wish)));
+            frames.extend(self.frames(&Message::DriverRequest(self.request)));
         }
         let stamped = now.minus(self.delay);
         for (slot, station, start_mm, speaks) in [(0, TARGET, 17_000, self.target), (1, BEHIND, -500_000, self.behind)]
@@ -134,7 +134,7 @@ impl Traffic {
                 frames.extend(self.peer(slot, Said::Motion(motion)));
             }
             if speaks && n % 50 == i64::from(slot) {
-                frames.extend(self.peer(slot, Said::Intent(leads())));
+                frames.extend(self.peer(slot, Said::DrivingParameters(leads())));
             }
         }
         self.period += 1;
@@ -160,9 +160,9 @@ impl Traffic {
     }
 }
 
-pub fn drop_result(_: Result<Reception, Refusal>) {}
+pub fn drop_result(_: Result<Reception, Cause>) {}
 
-pub fn receive_all(unit: &mut Unit, at: Instant, frames: &[Frame]) -> Vec<Result<Reception, Refusal>> {
+pub fn receive_all(unit: &mut Unit, at: Instant, frames: &[Frame]) -> Vec<Result<Reception, Cause>> {
     frames.iter().map(|frame| unit.receive(at, frame)).collect()
 }
 
@@ -180,13 +180,13 @@ pub fn settled() -> (Unit, Traffic) {
     settled_with(&config)
 }
 
-pub fn wish(predecessor: Predecessor) -> EgoIntent {
-    EgoIntent { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(10_000), time_gap: None }
+pub fn request(predecessor: Predecessor) -> DriverRequest {
+    DriverRequest { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(10_000), time_gap: None }
 }
 
-/// The intent of a leader that wants the speed that everybody drives.
-pub fn leads() -> Intent {
-    Intent {
+/// The driving parameters of a leader that wants the speed that everybody drives.
+pub fn leads() -> DrivingParameters {
+    DrivingParameters {
         length: Distance::from_mm(4800),
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,

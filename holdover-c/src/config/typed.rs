@@ -6,8 +6,8 @@
 use holdover::config;
 use holdover::dynamics;
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Share, Speed};
-use holdover::wire::{BaseId, StationHash, intent};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use holdover::wire::{BaseId, StationHash, driving_parameters};
 
 use super::{Body, Config, Envelope, Law, Limits, Link, Model, Prediction};
 use crate::status::Status;
@@ -57,7 +57,7 @@ impl TryFrom<&Config> for config::Config {
     }
 }
 
-impl From<Limits> for intent::Limits {
+impl From<Limits> for driving_parameters::Limits {
     fn from(plain: Limits) -> Self {
         Self {
             acceleration: Acceleration::from_mm_per_s2(milli(plain.acceleration_mm_s2)),
@@ -137,7 +137,7 @@ impl From<Envelope> for config::Envelope {
             speed: Speed::from_mm_per_s(milli(plain.speed_mm_s)),
             margin: Distance::from_mm(milli(plain.margin_mm)),
             delay: micros(plain.delay_us),
-            lag_tolerance: Share::from_milli(milli(plain.lag_tolerance_milli)),
+            lag_tolerance: Fraction::from_milli(milli(plain.lag_tolerance_milli)),
         }
     }
 }
@@ -175,8 +175,8 @@ impl From<&config::Config> for Config {
     }
 }
 
-impl From<&intent::Limits> for Limits {
-    fn from(typed: &intent::Limits) -> Self {
+impl From<&driving_parameters::Limits> for Limits {
+    fn from(typed: &driving_parameters::Limits) -> Self {
         Self {
             acceleration_mm_s2: magnitude(typed.acceleration.to_mm_per_s2()),
             braking_mm_s2: magnitude(typed.braking.to_mm_per_s2()),

@@ -5,8 +5,8 @@
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::{GnssTime, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
-use holdover::wire::ego_intent::EgoIntent;
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -67,8 +67,8 @@ fn motion(station: StationHash, start_mm: i64, at_us: u64, tag: u8) -> Motion {
     }
 }
 
-fn intent() -> Intent {
-    Intent {
+fn parameters() -> DrivingParameters {
+    DrivingParameters {
         length: Distance::from_mm(4800),
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,
@@ -105,7 +105,7 @@ fn said(ms: u64) -> Vec<Message> {
         let engaged = ms < 6200;
         let target_speed = Speed::from_mm_per_s(11_000);
         let predecessor = Predecessor::Station(TARGET);
-        messages.push(Message::EgoIntent(EgoIntent { engaged, predecessor, target_speed, time_gap: None }));
+        messages.push(Message::DriverRequest(DriverRequest { engaged, predecessor, target_speed, time_gap: None }));
     }
     // The own motion begins late and fails once.
     if ms % 20 == 2 && ms >= 300 && !(5000..5200).contains(&ms) {
@@ -116,7 +116,7 @@ fn said(ms: u64) -> Vec<Message> {
         messages.push(Message::Peer(Slot(0), Said::Motion(motion(TARGET, 0, at_us - 40_000, (ms / 100 % 4) as u8))));
     }
     if ms % 500 == 45 && ms >= 500 && !(2000..4000).contains(&ms) {
-        messages.push(Message::Peer(Slot(0), Said::Intent(intent())));
+        messages.push(Message::Peer(Slot(0), Said::DrivingParameters(parameters())));
     }
     messages
 }

@@ -101,7 +101,7 @@ pub(crate) mod tests {
     pub(crate) fn state(stamp_s: f64, position_m: f64, speed_mps: f64, acceleration_mps2: f64) -> Heard {
         let at_s = stamp_s + 0.02;
         let demand_mps2 = acceleration_mps2;
-        Heard { at_s, stamp_s, vehicle: 0, position_m, speed_mps, acceleration_mps2, demand_mps2, intent: None }
+        Heard { at_s, stamp_s, vehicle: 0, position_m, speed_mps, acceleration_mps2, demand_mps2, parameters: None }
     }
 
     #[test]

@@ -14,13 +14,13 @@ use std::io;
 /// How often what goes wrong: shares of all frames, 0 to 1, independent of one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaultModel {
-    /// Share that never arrives.
+    /// Fraction that never arrives.
     pub drop: f64,
-    /// Share with one bit of the data flipped.
+    /// Fraction with one bit of the data flipped.
     pub corrupt: f64,
-    /// Share that arrives twice.
+    /// Fraction that arrives twice.
     pub duplicate: f64,
-    /// Share that arrives late, and so perhaps after younger frames.
+    /// Fraction that arrives late, and so perhaps after younger frames.
     pub delay: f64,
     /// The longest delay; delays are uniform up to it.
     pub longest_delay: Duration,

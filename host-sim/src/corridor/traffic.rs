@@ -10,7 +10,7 @@ use std::io;
 use std::rc::Rc;
 
 use holdover::coordination::Itinerary;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::StationHash;
 
@@ -110,8 +110,8 @@ pub struct Remains {
 impl Remains {
     fn add(&mut self, vehicle: &Vehicle) {
         let health = vehicle.unit.health();
-        self.refusals += Refusal::ALL.iter().map(|cause| u64::from(health.of(*cause))).sum::<u64>();
-        self.disagreements += u64::from(health.of(Refusal::Overlooked));
+        self.refusals += Cause::ALL.iter().map(|cause| u64::from(health.of(*cause))).sum::<u64>();
+        self.disagreements += u64::from(health.of(Cause::Overlooked));
         self.turned_away += vehicle.turned_away();
     }
 }

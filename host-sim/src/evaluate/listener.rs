@@ -8,7 +8,7 @@
 //! long ago. What was said then is too old to be used.
 
 use holdover::estimator::Reading;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Instant};
 use holdover::units::Position;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -22,7 +22,7 @@ use crate::bus::Frame;
 use crate::channel::OLDEST_S;
 use crate::modem::{Relay, V2xMessage};
 use crate::observer::Observer;
-use crate::vehicle::{Unit, duration, gnss, station, wish};
+use crate::vehicle::{Unit, duration, gnss, request, station};
 use crate::world::{HORIZON_S, horizon};
 
 /// The recorded vehicle.
@@ -53,7 +53,7 @@ pub struct Deaf {
 
 /// A unit and the baselines, with the bus that they listen on.
 pub struct Listener {
-    ears: Deaf,
+    deaf: Deaf,
     vehicle: Sender<0>,
     relay: Relay,
     observer: Observer,
@@ -75,9 +75,9 @@ impl Listener {
         config.period = duration(step_s.min(LONGEST_PERIOD_S));
         config.prediction.step = duration(step_s);
         config.prediction.horizon = horizon(HORIZON_S, step_s);
-        let ears = Deaf { unit: Unit::new(&config)?, baselines: baseline::all(TARGET, step_s) };
+        let deaf = Deaf { unit: Unit::new(&config)?, baselines: baseline::all(TARGET, step_s) };
         let mut listener = Self {
-            ears,
+            deaf,
             vehicle: Sender::new(config.base_id),
             relay: Relay::new(config.base_id),
             observer: Observer::new(BaseId::DEFAULT),
@@ -97,13 +97,13 @@ impl Listener {
     /// Every identifier once, the senders' states with stamps that are refused as stale.
     fn warm_up(&mut self, at_us: i64, senders: &[V2xMessage]) {
         self.synchronise(at_us);
-        self.say(at_us, &Message::EgoIntent(wish(Some(TARGET), false, 0.0, 1.0)));
+        self.say(at_us, &Message::DriverRequest(request(Some(TARGET), false, 0.0, 1.0)));
         self.drive(at_us, Position::ZERO);
         for sender in senders {
             let stamp = gnss(seconds(at_us) - OLDEST_S - 1.0).stamp();
             let stale = V2xMessage { motion: Motion { stamp, ..sender.motion }, ..*sender };
             for frame in self.relayed(at_us, &stale) {
-                let _ = self.ears.unit.receive(instant(at_us), &frame); // refused, as it is meant to be
+                let _ = self.deaf.unit.receive(instant(at_us), &frame); // refused, as it is meant to be
                 let _ = self.observer.observe(seconds(at_us), &frame, Position::ZERO);
             }
         }
@@ -116,38 +116,38 @@ impl Listener {
         }
         self.drive(at_us, near);
         for frame in self.relayed(at_us, message) {
-            let _ = self.ears.unit.receive(instant(at_us), &frame); // a refusal is the unit's to count
+            let _ = self.deaf.unit.receive(instant(at_us), &frame); // a refusal is the unit's to count
             if let Some(heard) = self.observer.observe(seconds(at_us), &frame, near) {
-                self.ears.baselines.iter_mut().for_each(|baseline| baseline.hear(&heard));
+                self.deaf.baselines.iter_mut().for_each(|baseline| baseline.hear(&heard));
             }
         }
     }
 
     /// One period of the unit.
     pub fn tick(&mut self, at_us: i64) {
-        self.ears.tick(at_us);
+        self.deaf.tick(at_us);
     }
 
     /// What unit and baselines believe at an instant, which is a tick of the unit; `near` as above.
     pub fn beliefs(&mut self, at_us: i64, near: Position) -> Beliefs {
-        self.ears.beliefs(at_us, near)
+        self.deaf.beliefs(at_us, near)
     }
 
-    /// What the unit refused, by cause, in the order of [`Refusal::ALL`].
+    /// What the unit refused, by cause, in the order of [`Cause::ALL`].
     #[must_use]
-    pub fn refusals(&self) -> Vec<(Refusal, u64)> {
+    pub fn refusals(&self) -> Vec<(Cause, u64)> {
         let since = self.counts().zip(&self.expected).map(|(count, expected)| count - expected);
-        Refusal::ALL.iter().copied().zip(since).collect()
+        Cause::ALL.iter().copied().zip(since).collect()
     }
 
     fn counts(&self) -> impl Iterator<Item = u64> + '_ {
-        Refusal::ALL.iter().map(|cause| u64::from(self.ears.unit.health().of(*cause)))
+        Cause::ALL.iter().map(|cause| u64::from(self.deaf.unit.health().of(*cause)))
     }
 
     /// The unit and the baselines as they are now, to go on without news.
     #[must_use]
     pub fn deafened(&self) -> Deaf {
-        self.ears.clone()
+        self.deaf.clone()
     }
 
     fn relayed(&mut self, at_us: i64, message: &V2xMessage) -> Vec<Frame> {
@@ -188,7 +188,7 @@ impl Listener {
     }
 
     fn say(&mut self, at_us: i64, message: &Message) {
-        let unit = &mut self.ears.unit;
+        let unit = &mut self.deaf.unit;
         let sent = self.vehicle.send(message, &mut |frame| {
             let _ = unit.receive(instant(at_us), &Frame::from(&frame)); // as above
         });

@@ -1,20 +1,20 @@
 //! A recorded vehicle as a sender: a send time enters, the V2X message that it broadcasts then leaves.
 //!
-//! A vehicle whose predecessor is recorded too publishes an intent. Like any vehicle it says whom it follows only while it
+//! A vehicle whose predecessor is recorded too publishes driving parameters. Like any vehicle it says whom it follows only while it
 //! drives by its law, and that is decided by what it did: while its acceleration is the law's demand, to within
 //! 0.5 m/s², it names its predecessor; otherwise it names nobody and promises no limits but those of physics. A receiver
 //! that believed in a law which nobody drives by would be metres off.
 
 use holdover::Config;
 use holdover::units::{Acceleration, Jerk, Seconds};
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion as MotionMessage, WirePosition};
 use holdover::wire::{Predecessor, StationHash};
 
 use super::listener::{PREDECESSOR, TARGET};
 use super::options::Recording;
 use super::timeline::{Timeline, seconds};
-use crate::heard::HeardIntent;
+use crate::heard::HeardParameters;
 use crate::modem::V2xMessage;
 use crate::recording::Motion;
 use crate::vehicle::{acceleration, gnss, metres, speed, station};
@@ -39,7 +39,7 @@ pub struct Publisher<'a> {
     motion: &'a Motion,
     timeline: Timeline,
     station: StationHash,
-    follows: Option<(&'a Motion, Intent)>,
+    follows: Option<(&'a Motion, DrivingParameters)>,
     tag: u8,
 }
 
@@ -85,7 +85,7 @@ impl<'a> Publisher<'a> {
     #[must_use]
     fn behind(self, ahead: &'a Motion, predecessor: StationHash) -> Self {
         let Config { length, lag, limits, law, .. } = Config::car(self.station);
-        let intent = Intent {
+        let parameters = DrivingParameters {
             length,
             standstill: law.standstill,
             predecessor: Predecessor::Station(predecessor),
@@ -97,7 +97,7 @@ impl<'a> Publisher<'a> {
             limits,
             horizon_tenths: 0,
         };
-        Self { follows: Some((ahead, intent)), ..self }
+        Self { follows: Some((ahead, parameters)), ..self }
     }
 
     /// What it broadcasts at that time: the last recorded sample at or before it; nothing before the first.
@@ -119,23 +119,27 @@ impl<'a> Publisher<'a> {
             speed_accuracy: None,
             station: self.station,
         };
-        let intent = self.follows.map(|(ahead, intent)| {
+        let parameters = self.follows.map(|(ahead, parameters)| {
             let is_by_law =
-                (demand(&intent, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
-            if is_by_law { intent } else { Intent { predecessor: Predecessor::Unknown, limits: PHYSICAL, ..intent } }
+                (demand(&parameters, self.motion, ahead, sample.t_s - LATE_S) - slope_mps2).abs() <= SAME_LAW_MPS2;
+            if is_by_law {
+                parameters
+            } else {
+                DrivingParameters { predecessor: Predecessor::Unknown, limits: PHYSICAL, ..parameters }
+            }
         });
-        Some(Published { sampled_us, message: V2xMessage { motion, intent, horizon: None, route: None } })
+        Some(Published { sampled_us, message: V2xMessage { motion, parameters, horizon: None, route: None } })
     }
 }
 
 /// What the law demands of a vehicle at a time, behind another one that is as long as itself.
-fn demand(intent: &Intent, motion: &Motion, ahead: &Motion, at_s: f64) -> f64 {
-    let intent = HeardIntent::from_intent(intent, None);
+fn demand(parameters: &DrivingParameters, motion: &Motion, ahead: &Motion, at_s: f64) -> f64 {
+    let parameters = HeardParameters::from_parameters(parameters, None);
     let (own, ahead) = (motion.at(at_s), ahead.at(at_s));
-    let gap_m = ahead.position_m - intent.length_m - own.position_m;
-    let wanted_m = intent.standstill_m + intent.time_gap_s * own.speed_mps;
-    let demand = intent.gain * (gap_m - wanted_m + intent.damping_s * (ahead.speed_mps - own.speed_mps));
-    demand.clamp(-intent.braking_mps2, intent.acceleration_mps2)
+    let gap_m = ahead.position_m - parameters.length_m - own.position_m;
+    let wanted_m = parameters.standstill_m + parameters.time_gap_s * own.speed_mps;
+    let demand = parameters.gain * (gap_m - wanted_m + parameters.damping_s * (ahead.speed_mps - own.speed_mps));
+    demand.clamp(-parameters.braking_mps2, parameters.acceleration_mps2)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What an evaluation collects: one recording's comparisons of beliefs with the truth.
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 
 use super::listener::{Beliefs, METHODS};
 use crate::baseline::Estimate;
@@ -52,7 +52,7 @@ pub struct Outcome {
     /// The last instant of the run.
     pub end_s: f64,
     /// What the unit refused, by cause.
-    pub refusals: Vec<(Refusal, u64)>,
+    pub refusals: Vec<(Cause, u64)>,
     /// Ticks that the unit took, for the figure of speed.
     pub unit_ticks: u64,
 }
@@ -60,9 +60,9 @@ pub struct Outcome {
 /// What the units refused in all outcomes together, by cause; causes that did not occur are left out.
 #[must_use]
 pub fn refusals(outcomes: &[Outcome]) -> Vec<(&'static str, u64)> {
-    let of = |cause: Refusal| {
+    let of = |cause: Cause| {
         let counts = outcomes.iter().flat_map(|outcome| &outcome.refusals).filter(|(other, _)| *other == cause);
         (cause.name(), counts.map(|(_, count)| count).sum())
     };
-    Refusal::ALL.iter().map(|cause| of(*cause)).filter(|(_, count)| *count > 0).collect()
+    Cause::ALL.iter().map(|cause| of(*cause)).filter(|(_, count)| *count > 0).collect()
 }

@@ -1,6 +1,6 @@
 //! What was certain of the targets: a trace enters, how often it was not so and how much it said leave.
 
-use holdover::estimator::bound::Reach;
+use holdover::estimator::bound::AccelerationRange;
 use holdover::parameters::RECOVERY_SAMPLES;
 use serde::Serialize;
 
@@ -61,7 +61,8 @@ fn impossible(scenario: &Scenario, trace: &Trace, outside: &[usize]) -> usize {
         return 0;
     }
     let leader = &trace.vehicles[0];
-    let (up, down): (f64, f64) = (Reach::WORST.acceleration.get().to_num(), Reach::WORST.braking.get().to_num());
+    let (up, down): (f64, f64) =
+        (AccelerationRange::WORST.acceleration.get().to_num(), AccelerationRange::WORST.braking.get().to_num());
     let is_possible = |tick: usize| {
         let slope = (leader[tick].speed_mps - leader[tick - 1].speed_mps) / scenario.period_s;
         (-down - 1e-6..=up + 1e-6).contains(&slope)

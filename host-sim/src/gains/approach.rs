@@ -70,11 +70,11 @@ impl Situation {
     /// The approach by braking that hard from the start, until the speeds are equal, beside the gap that this time gap wants.
     #[must_use]
     pub fn by_braking(&self, braking_mps2: f64, time_gap_s: f64) -> Approach {
-        let wish = |_, own_mps| if own_mps > self.target_mps { -braking_mps2 } else { 0.0 };
-        self.approach(self.wanted_gap_m(time_gap_s), wish)
+        let desired = |_, own_mps| if own_mps > self.target_mps { -braking_mps2 } else { 0.0 };
+        self.approach(self.wanted_gap_m(time_gap_s), desired)
     }
 
-    fn approach(&self, wanted_gap_m: f64, wish: impl Fn(f64, f64) -> f64) -> Approach {
+    fn approach(&self, wanted_gap_m: f64, desired: impl Fn(f64, f64) -> f64) -> Approach {
         let keep = (-STEP_S / LAG_S).exp();
         let (mut gap, mut own, mut a, mut demand) = (self.gap_m(), self.own_mps, 0.0f64, 0.0f64);
         let floor = self.gap_m().min(wanted_gap_m);
@@ -88,7 +88,7 @@ impl Situation {
         };
         for step in 1..=STEPS {
             let slew = JERK_MPS3 * STEP_S;
-            demand = wish(gap, own).clamp(demand - slew, demand + slew).clamp(-BRAKING_MPS2, ACCELERATION_MPS2);
+            demand = desired(gap, own).clamp(demand - slew, demand + slew).clamp(-BRAKING_MPS2, ACCELERATION_MPS2);
             let before = (a, own);
             a = demand + (a - demand) * keep;
             own = (own + 0.5 * (before.0 + a) * STEP_S).max(0.0);

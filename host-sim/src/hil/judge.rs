@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::lateness::{self, LATE_MAX_MS, LATE_P99_MS};
-use super::monitor::Beat;
+use super::monitor::CommandRecord;
 use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
 use super::session::Setup;
@@ -191,8 +191,8 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let Outcome { lateness, .. } = outcome;
     let is_of_device = |at_s: f64| at_s >= 0.0 && !setup.is_excused(at_s);
     let is_disturbed =
-        |beat: &&Beat| lateness.excuses(outcome.time_of(beat.at), beat.latency.unwrap_or(setup.config.period));
-    let (disturbed, judged): (Vec<&Beat>, Vec<&Beat>) =
+        |beat: &&CommandRecord| lateness.excuses(outcome.time_of(beat.at), beat.latency.unwrap_or(setup.config.period));
+    let (disturbed, judged): (Vec<&CommandRecord>, Vec<&CommandRecord>) =
         monitor.beats().iter().filter(|beat| is_of_device(outcome.time_of(beat.at))).partition(is_disturbed);
     let latencies: Vec<i64> = judged.iter().filter_map(|beat| Some(beat.latency?.as_micros())).collect();
     // Period by period: a lateness of the harness says nothing of those of the same silence that it is far from.

@@ -6,12 +6,13 @@
 //!   ^        `--------> twin            |
 //!   `--- seat <- session <- port <------+-> monitor, deviation -> judge -> table, JSON, report
 //! ```
-//! [`session`] is a run in real time and [`lock_step`] one step by step; [`villain`] presses the fault buttons; a
+//! [`session`] is a run in real time and [`lock_step`] one step by step; [`fault_injector`] presses the fault buttons; a
 //! [`virtual_bus`] tries all of it out without CAN.
 
 pub mod arguments;
 pub mod deviation;
 pub mod fault;
+pub mod fault_injector;
 pub mod judge;
 pub mod lateness;
 pub mod lock_step;
@@ -27,7 +28,6 @@ pub mod spread;
 pub mod table;
 pub mod talk;
 pub mod twin;
-pub mod villain;
 pub mod virtual_bus;
 
 use indicatif::ProgressBar;

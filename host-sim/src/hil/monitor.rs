@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Instant, Stamp};
 use holdover::wire::command::{Command, ModeCode};
 use holdover::wire::estimate::TargetEstimate;
@@ -19,7 +19,7 @@ const LAG_BEATS: usize = 25;
 
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beat {
+pub struct CommandRecord {
     /// When it was on the bus.
     pub at: Instant,
     /// The mode.
@@ -46,9 +46,9 @@ pub enum News {
 pub struct Monitor {
     period: Duration,
     receiver: Receiver<1>,
-    beats: Vec<Beat>,
+    beats: Vec<CommandRecord>,
     /// Faults of the protection, with the time.
-    e2e: Vec<(Instant, Refusal)>,
+    e2e: Vec<(Instant, Cause)>,
     /// What the device says that it refused.
     refusals: BTreeMap<&'static str, u32>,
     /// The vehicle's motions that were last on the bus.
@@ -130,7 +130,7 @@ impl Monitor {
             self.restarts.push(at);
         }
         let latency = self.asked.take().map(|asked| at.since(asked));
-        self.beats.push(Beat { at, mode: command.mode, tick: command.tick, latency });
+        self.beats.push(CommandRecord { at, mode: command.mode, tick: command.tick, latency });
         News::Command(command, is_new)
     }
 
@@ -139,7 +139,7 @@ impl Monitor {
     #[must_use]
     pub fn lag(&self) -> Duration {
         let Some(last) = self.beats.last() else { return Duration::ZERO };
-        let lag = |beat: &Beat| {
+        let lag = |beat: &CommandRecord| {
             let counted = i64::from(last.tick.wrapping_sub(beat.tick) & 63);
             last.at.since(beat.at).as_micros() - counted * self.period.as_micros()
         };
@@ -148,14 +148,14 @@ impl Monitor {
 
     /// Its commands.
     #[must_use]
-    pub fn beats(&self) -> &[Beat] {
+    pub fn beats(&self) -> &[CommandRecord] {
         &self.beats
     }
 
     /// Faults of its frames, with the time. The first frame of each identifier is none, nor that its message is then not
     /// whole: nobody trusts what is heard for the first time.
-    pub fn e2e(&self) -> impl Iterator<Item = (Instant, Refusal)> + '_ {
-        self.e2e.iter().copied().filter(|(_, cause)| !matches!(cause, Refusal::NotYetTrusted | Refusal::Torn))
+    pub fn e2e(&self) -> impl Iterator<Item = (Instant, Cause)> + '_ {
+        self.e2e.iter().copied().filter(|(_, cause)| !matches!(cause, Cause::NotYetTrusted | Cause::Torn))
     }
 
     /// What it says that it refused, by cause; causes that it met.
@@ -181,7 +181,7 @@ impl Monitor {
     #[must_use]
     pub fn missed(&self) -> Vec<(Instant, i64)> {
         let period = self.period.as_micros();
-        let gap = |(index, pair): (usize, &[Beat])| {
+        let gap = |(index, pair): (usize, &[CommandRecord])| {
             let late = pair[1].at.since(pair[0].at).as_micros();
             let next = self.beats.get(index + 2).map_or(late, |next| next.at.since(pair[0].at).as_micros() - period);
             (pair[1].at, (late.min(next) + period / 2).div_euclid(period) - 1)

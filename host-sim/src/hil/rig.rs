@@ -24,7 +24,7 @@ pub trait Rig {
     ///
     /// # Errors
     /// It cannot get onto the bus.
-    fn villain(&mut self) -> io::Result<&mut dyn Port>;
+    fn injector(&mut self) -> io::Result<&mut dyn Port>;
 
     /// How the device ended by itself, if it did.
     fn has_ended(&mut self) -> Option<String>;
@@ -41,14 +41,14 @@ pub struct MachineRig {
     device: Option<Child>,
     /// The command that switches the interface; how it ended shows when it is switched again.
     switching: Option<Child>,
-    villain: Option<Box<dyn Port>>,
+    injector: Option<Box<dyn Port>>,
 }
 
 impl MachineRig {
     /// On that interface; a device that is a command is not started yet.
     #[must_use]
     pub fn new(interface: &str, command: Option<String>) -> Self {
-        Self { interface: interface.into(), command, device: None, switching: None, villain: None }
+        Self { interface: interface.into(), command, device: None, switching: None, injector: None }
     }
 
     fn end(&mut self) -> io::Result<()> {
@@ -81,14 +81,14 @@ impl Rig for MachineRig {
         last
     }
 
-    fn villain(&mut self) -> io::Result<&mut dyn Port> {
-        if self.villain.is_none() {
+    fn injector(&mut self) -> io::Result<&mut dyn Port> {
+        if self.injector.is_none() {
             let port = crate::bus::open(&self.interface).map_err(|error| io::Error::other(error.to_string()))?;
             #[cfg(target_os = "linux")]
             port.hear_only([])?;
-            self.villain = Some(Box::new(port));
+            self.injector = Some(Box::new(port));
         }
-        match &mut self.villain {
+        match &mut self.injector {
             Some(port) => Ok(port.as_mut()),
             None => Err(io::ErrorKind::NotFound.into()),
         }

@@ -16,6 +16,7 @@ use holdover::{Config, ConfigError};
 
 use super::deviation::Deviation;
 use super::fault::Fault;
+use super::fault_injector::FaultInjector;
 use super::lateness::Lateness;
 use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
@@ -23,7 +24,6 @@ use super::rig::Rig;
 use super::said::Said;
 use super::talk::{Talk, line_of, payload};
 use super::twin::Twin;
-use super::villain::Villain;
 use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
@@ -71,7 +71,7 @@ impl Setup {
 }
 
 /// What listens to the bus.
-pub(super) struct Ears {
+pub(super) struct BusListener {
     base: BaseId,
     config: Config,
     seat: MemoryNode,
@@ -86,7 +86,7 @@ pub(super) struct Ears {
     first_half: Payload,
 }
 
-impl Ears {
+impl BusListener {
     pub fn new(config: &Config, seat: MemoryNode) -> Result<Self, ConfigError> {
         Ok(Self {
             base: config.base_id,
@@ -177,12 +177,12 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let seat = world.give_seat(scenario.ego, setup.alias());
-    let mut ears = Ears::new(config, seat).map_err(io::Error::other)?;
+    let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
     let mut talk = Talk::new(port, config.base_id);
     let mut trace = world.trace();
-    let mut villain = Villain::new(&setup.faults, config.base_id);
+    let mut injector = FaultInjector::new(&setup.faults, config.base_id);
     rig.power(true)?;
-    let mut cut = wait_for_device(setup, &mut talk, &mut ears, rig)?;
+    let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
     let period = config.period;
     let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
     talk.begin_at(talk.now().plus(period.times(warm_up + 2)));
@@ -196,16 +196,16 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         let time = |tick: i64| tick as f64 * scenario.period_s;
         let (at_s, due) = (time(tick), talk.instant(time(tick)));
         while talk.now() < due {
-            let pause = villain.act(talk.time_of(talk.now()), rig);
+            let pause = injector.act(talk.time_of(talk.now()), rig);
             let until = pause.map_or(due, |pause| due.min(talk.now().plus(pause)));
-            listen(&mut talk, &mut ears, &world, scenario.ego, until)?;
+            listen(&mut talk, &mut listener, &world, scenario.ego, until)?;
         }
         lateness.note(talk.now().since(due));
-        if villain.switch(at_s, rig) {
-            ears.restart();
+        if injector.switch(at_s, rig) {
+            listener.restart();
         }
-        talk.clock_error_us = villain.clock_error_us(at_s);
-        talk.spoiled = villain.spoils();
+        talk.clock_error_us = injector.clock_error_us(at_s);
+        talk.spoiled = injector.spoils();
         if tick > 0 {
             world.drive(time(tick - 1))?;
         } else if tick == 0 {
@@ -220,8 +220,8 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             world.speak(at_s)?
         }
         let own = world.vehicles()[scenario.ego].instant(at_s);
-        while let Some((_, frame)) = ears.seat.receive(own)? {
-            villain.overhear(&frame);
+        while let Some((_, frame)) = listener.seat.receive(own)? {
+            injector.overhear(&frame);
             talk.send(frame);
         }
         if tick < 0 {
@@ -229,7 +229,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         } else {
             world.act(at_s, &mut trace)?
         }
-        cut = gone(setup, &talk, &ears, rig, at_s);
+        cut = gone(setup, &talk, &listener, rig, at_s);
         if tick % 100 == 0 {
             progress(at_s);
         }
@@ -238,30 +238,30 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let end = talk.now().plus(ECHO_PATIENCE);
     while talk.now() < end && !talk.counts().is_complete() {
         let pause = talk.now().plus(Duration::from_millis(10));
-        listen(&mut talk, &mut ears, &world, scenario.ego, pause)?;
+        listen(&mut talk, &mut listener, &world, scenario.ego, pause)?;
     }
-    villain.stop(rig);
-    finished(world, trace, &talk, ears, lateness, villain.played(), cut)
+    injector.stop(rig);
+    finished(world, trace, &talk, listener, lateness, injector.played(), cut)
 }
 
 fn finished<P: Port>(
     world: World<'_>,
     trace: Trace,
     talk: &Talk<P>,
-    ears: Ears,
+    listener: BusListener,
     lateness: Lateness,
     faults: Vec<(Fault, Option<String>)>,
     cut: Option<Cut>,
 ) -> io::Result<Outcome> {
     Ok(Outcome {
         trace: world.finish(trace)?,
-        monitor: ears.monitor,
-        deviation: ears.deviation,
+        monitor: listener.monitor,
+        deviation: listener.deviation,
         steps: None,
         lateness,
         counts: talk.counts(),
-        foreign: ears.foreign,
-        bus_errors: ears.bus_errors,
+        foreign: listener.foreign,
+        bus_errors: listener.bus_errors,
         origin: talk.instant(0.0),
         faults,
         realtime_factor: 1.0,
@@ -271,7 +271,7 @@ fn finished<P: Port>(
 
 fn listen<P: Port>(
     talk: &mut Talk<P>,
-    ears: &mut Ears,
+    listener: &mut BusListener,
     world: &World<'_>,
     ego: usize,
     until: Instant,
@@ -285,7 +285,7 @@ fn listen<P: Port>(
     };
     talk.pump(until, |at, event| {
         if heard.is_ok() {
-            heard = ears.hear(at, event, local);
+            heard = listener.hear(at, event, local);
         }
     })?;
     heard
@@ -295,13 +295,13 @@ fn listen<P: Port>(
 fn wait_for_device<P: Port>(
     setup: &Setup,
     talk: &mut Talk<P>,
-    ears: &mut Ears,
+    listener: &mut BusListener,
     rig: &mut dyn Rig,
 ) -> io::Result<Option<Cut>> {
     let end = talk.now().plus(setup.wait);
     while talk.now() < end {
         let (mut heard, until) = (false, talk.now().plus(Duration::from_millis(20)).min(end));
-        let base = ears.base;
+        let base = listener.base;
         talk.pump(until, |_, event| {
             heard |= matches!(event, Event::Received(frame)
                 if line_of(base, &frame).is_some_and(|line| line.sender == Node::Unit));
@@ -317,8 +317,8 @@ fn wait_for_device<P: Port>(
 }
 
 /// Whether the device has fallen silent for good, for no fault of ours.
-fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, ears: &Ears, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
-    let last_s = talk.time_of(ears.monitor.beats().last()?.at);
+fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, listener: &BusListener, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
+    let last_s = talk.time_of(listener.monitor.beats().last()?.at);
     let is_gone = at_s - last_s > GONE_S && !setup.is_excused(at_s);
     is_gone.then(|| Cut::Gone { at_s: last_s, ended: rig.has_ended() })
 }

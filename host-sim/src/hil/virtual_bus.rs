@@ -77,7 +77,7 @@ pub struct VirtualPort {
 
 /// The hands that can pull the device's plug.
 pub struct VirtualRig {
-    villain: VirtualPort,
+    injector: VirtualPort,
 }
 
 /// A bus with that device, two ports of it: for the harness, and for its rig.
@@ -95,7 +95,7 @@ pub fn bench(behaviour: Behaviour) -> (VirtualPort, VirtualRig) {
     };
     let shared = Rc::new(RefCell::new(shared));
     let port = |index| VirtualPort { shared: Rc::clone(&shared), index };
-    (port(0), VirtualRig { villain: port(1) })
+    (port(0), VirtualRig { injector: port(1) })
 }
 
 impl Shared {
@@ -206,7 +206,7 @@ impl Port for VirtualPort {
 
 impl Rig for VirtualRig {
     fn power(&mut self, on: bool) -> io::Result<()> {
-        let mut shared = self.villain.shared.borrow_mut();
+        let mut shared = self.injector.shared.borrow_mut();
         let Behaviour { config, lock_step, .. } = shared.behaviour;
         shared.device = if on { Ecu::new(&config, lock_step).ok() } else { None };
         shared.answers.clear();
@@ -214,7 +214,7 @@ impl Rig for VirtualRig {
     }
 
     fn interface(&mut self, up: bool) -> io::Result<()> {
-        let mut shared = self.villain.shared.borrow_mut();
+        let mut shared = self.injector.shared.borrow_mut();
         shared.is_up = up;
         if !up {
             let at = shared.now;
@@ -223,9 +223,9 @@ impl Rig for VirtualRig {
         Ok(())
     }
 
-    fn villain(&mut self) -> io::Result<&mut dyn Port> {
-        self.villain.shared.borrow_mut().inboxes[1].clear();
-        Ok(&mut self.villain)
+    fn injector(&mut self) -> io::Result<&mut dyn Port> {
+        self.injector.shared.borrow_mut().inboxes[1].clear();
+        Ok(&mut self.injector)
     }
 
     fn has_ended(&mut self) -> Option<String> {

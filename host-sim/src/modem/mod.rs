@@ -10,11 +10,11 @@
 //! but one in a slot that ceases to matter is until the unit has heard that. So is one that was put out of its slot, while nobody
 //! else has spoken there: to the unit it is still where it was, and may be waited for.
 //!
-//! *Intents* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
+//! *ParameterParts* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
 //! every [`INTENT_EVERY_S`], so that all of them fit the bus.
 
+use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::horizon::Knots;
-use holdover::wire::intent::Intent;
 use holdover::wire::motion::Motion;
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -37,7 +37,7 @@ pub const SLOT_REUSE_S: f64 = 2.0;
 /// What a station that ceases to matter says is relayed so often still.
 const NEWS: u8 = 4;
 
-/// On a route a slot's first intents are relayed with each message, so many of them, because the unit trusts an identifier from its
+/// On a route a slot's first driving parameters are relayed with each message, so many of them, because the unit trusts an identifier from its
 /// second frame on, and a vehicle may fall silent before half a second has gone by.
 const FIRST_INTENTS: u8 = 3;
 
@@ -57,7 +57,7 @@ const HEARD_S: f64 = 1.0;
 /// to the wrong station rests for longer than that before it can be another one's. Everyone says where it is five times a second.
 const LISTENS_S: f64 = 0.6;
 
-/// Time between two relays of an intent that does not change.
+/// Time between two relays of driving parameters that does not change.
 pub const INTENT_EVERY_S: f64 = 0.5;
 
 /// What one vehicle broadcasts at once.
@@ -66,7 +66,7 @@ pub struct V2xMessage {
     /// Its state.
     pub motion: Motion,
     /// How it drives; `None` if it does not say.
-    pub intent: Option<Intent>,
+    pub parameters: Option<DrivingParameters>,
     /// Its horizon from that state, if it computed one.
     pub horizon: Option<Knots>,
     /// Where it is on its route, if it has one.
@@ -77,7 +77,7 @@ pub struct V2xMessage {
 #[derive(Clone, Debug, Default)]
 pub struct Transmitter {
     motion: Option<Motion>,
-    intent: Option<Intent>,
+    parameters: Option<DrivingParameters>,
     horizon: Option<Knots>,
     route: Option<Route>,
 }
@@ -87,19 +87,19 @@ impl Transmitter {
     pub fn take(&mut self, said: &Said) {
         match said {
             Said::Motion(motion) => self.motion = Some(*motion),
-            Said::Intent(intent) => self.intent = Some(*intent),
+            Said::DrivingParameters(parameters) => self.parameters = Some(*parameters),
             Said::Horizon(knots) => self.horizon = Some(*knots),
             Said::Route(route) => self.route = Some(*route),
             Said::Geo(_) => {}
         }
     }
 
-    /// What is to be broadcast now, if the unit has said where it is. An intent holds until the next one.
+    /// What is to be broadcast now, if the unit has said where it is. An driving parameters holds until the next one.
     pub fn broadcast(&mut self) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
         let route = self.route.take().filter(|route| route.tag == motion.tag);
-        Some(V2xMessage { motion, intent: self.intent, horizon, route })
+        Some(V2xMessage { motion, parameters: self.parameters, horizon, route })
     }
 }
 
@@ -113,11 +113,11 @@ struct Tenant {
     from_s: f64,
     /// Whether it has been relayed.
     relayed: bool,
-    /// How many of its intents have been relayed, up to [`FIRST_INTENTS`].
-    intents: u8,
+    /// How many of its driving parameters have been relayed, up to [`FIRST_INTENTS`].
+    parameter_messages: u8,
     /// How often it has been relayed since it ceased to matter.
     gone: u8,
-    intent: Option<(Intent, f64)>,
+    parameters: Option<(DrivingParameters, f64)>,
 }
 
 /// Where a station was when it said so.
@@ -207,8 +207,9 @@ impl Relay {
         // The unit puts positions on its own axis by the route, so that has to be there first.
         let mut said: Vec<Said> = message.route.map(Said::Route).into_iter().collect();
         said.push(Said::Motion(message.motion));
-        if let Some(intent) = message.intent.filter(|intent| self.is_intent_due(slot, intent, at_s)) {
-            said.push(Said::Intent(intent));
+        if let Some(parameters) = message.parameters.filter(|parameters| self.is_parameters_due(slot, parameters, at_s))
+        {
+            said.push(Said::DrivingParameters(parameters));
         }
         said.extend(message.horizon.map(Said::Horizon));
         self.dismiss(slot, at_s);
@@ -245,7 +246,7 @@ impl Relay {
         let is_known = |placed: &Placed| at_s - placed.at_s < FORGOTTEN_S || is_tenant(placed.station);
         self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
-        let length_m = message.intent.map_or(LONGEST_M, |intent| intent.length.get().to_num());
+        let length_m = message.parameters.map_or(LONGEST_M, |parameters| parameters.length.get().to_num());
         self.places.push(Placed { station, route, speed_mps, length_m, at_s });
     }
 
@@ -276,8 +277,15 @@ impl Relay {
             (None, _) => self.least_relevant(rank, at_s)?,
         };
         self.left[slot] = None;
-        self.slots[slot] =
-            Some(Tenant { station, relayed_s: at_s, from_s, relayed: false, intents: 0, gone: 0, intent: None });
+        self.slots[slot] = Some(Tenant {
+            station,
+            relayed_s: at_s,
+            from_s,
+            relayed: false,
+            parameter_messages: 0,
+            gone: 0,
+            parameters: None,
+        });
         Some(slot)
     }
 
@@ -370,21 +378,23 @@ impl Relay {
             if next == station {
                 return Some(steps);
             }
-            let (intent, _) = self.slots.iter().flatten().find(|tenant| tenant.station == next)?.intent?;
-            let Predecessor::Station(ahead) = intent.predecessor else { return None };
+            let (parameters, _) = self.slots.iter().flatten().find(|tenant| tenant.station == next)?.parameters?;
+            let Predecessor::Station(ahead) = parameters.predecessor else { return None };
             next = ahead;
         }
         None
     }
 
-    fn is_intent_due(&mut self, slot: usize, intent: &Intent, at_s: f64) -> bool {
+    fn is_parameters_due(&mut self, slot: usize, parameters: &DrivingParameters, at_s: f64) -> bool {
         let is_on_route = self.course.is_on_route();
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due = is_on_route && tenant.intents < FIRST_INTENTS
-            || tenant.intent.is_none_or(|(last, last_s)| last != *intent || at_s - last_s >= INTENT_EVERY_S - 1e-9);
+        let is_due = is_on_route && tenant.parameter_messages < FIRST_INTENTS
+            || tenant
+                .parameters
+                .is_none_or(|(last, last_s)| last != *parameters || at_s - last_s >= INTENT_EVERY_S - 1e-9);
         if is_due {
-            tenant.intent = Some((*intent, at_s));
-            tenant.intents = tenant.intents.saturating_add(1).min(FIRST_INTENTS);
+            tenant.parameters = Some((*parameters, at_s));
+            tenant.parameter_messages = tenant.parameter_messages.saturating_add(1).min(FIRST_INTENTS);
         }
         is_due
     }

@@ -168,8 +168,8 @@ impl Course {
     pub fn take(&mut self, said: &Said) {
         match said {
             Said::Route(route) => self.route = Some(*route),
-            Said::Intent(intent) => {
-                self.followed = match intent.predecessor {
+            Said::DrivingParameters(parameters) => {
+                self.followed = match parameters.predecessor {
                     Predecessor::Station(station) => Some(station),
                     // Who waits for a first message names nobody, and has to hear whom it waits for.
                     Predecessor::None | Predecessor::Unknown => self.told,

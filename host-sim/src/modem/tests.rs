@@ -3,11 +3,11 @@
 use super::*;
 use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
-use holdover::wire::intent::Limits;
+use holdover::wire::driving_parameters::Limits;
 use holdover::wire::motion::WirePosition;
 use holdover::wire::{Predecessor, Received, Receiver, Role};
 
-fn message(station: u8, intent: Option<Intent>) -> V2xMessage {
+fn message(station: u8, parameters: Option<DrivingParameters>) -> V2xMessage {
     let motion = Motion {
         tag: 1,
         position: WirePosition::from_mm(i64::from(station) * 1000),
@@ -19,11 +19,11 @@ fn message(station: u8, intent: Option<Intent>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, intent, horizon: None, route: None }
+    V2xMessage { motion, parameters, horizon: None, route: None }
 }
 
-fn intent(target_speed: i32) -> Intent {
-    Intent {
+fn parameters(target_speed: i32) -> DrivingParameters {
+    DrivingParameters {
         length: Distance::from_mm(4800),
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,
@@ -42,7 +42,7 @@ fn intent(target_speed: i32) -> Intent {
     }
 }
 
-/// The slots and stations of the motions, and how many intents, that a unit decodes from what is relayed.
+/// The slots and stations of the motions, and how many driving parameters, that a unit decodes from what is relayed.
 struct Unit {
     relay: Relay,
     receiver: Receiver<PEERS>,
@@ -54,8 +54,8 @@ impl Unit {
         let mut unit = Self { relay: Relay::new(base), receiver: Receiver::new(base, Role::Unit) };
         // The receiver trusts an identifier from its second frame on.
         for station in 1..=PEERS as u8 {
-            unit.hear(-10.0, &message(station, Some(intent(1))));
-            unit.hear(-10.0, &message(station, Some(intent(2))));
+            unit.hear(-10.0, &message(station, Some(parameters(1))));
+            unit.hear(-10.0, &message(station, Some(parameters(2))));
         }
         unit
     }
@@ -63,17 +63,17 @@ impl Unit {
     fn hear(&mut self, at_s: f64, message: &V2xMessage) -> (Vec<(u8, u8)>, usize) {
         let mut frames = Vec::new();
         self.relay.hear(at_s, message, &mut frames);
-        let (mut motions, mut intents) = (Vec::new(), 0);
+        let (mut motions, mut parameter_messages) = (Vec::new(), 0);
         for frame in &frames {
             match self.receiver.receive(Instant::ZERO, frame) {
                 Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
                     motions.push((slot.0, motion.station.0));
                 }
-                Ok(Received::Whole(Message::Peer(_, Said::Intent(_)))) => intents += 1,
+                Ok(Received::Whole(Message::Peer(_, Said::DrivingParameters(_)))) => parameter_messages += 1,
                 _ => {}
             }
         }
-        (motions, intents)
+        (motions, parameter_messages)
     }
 }
 
@@ -106,7 +106,7 @@ fn the_station_silent_for_longest_makes_room_when_it_has_been_for_two_seconds() 
 fn whom_the_driver_told_it_to_follow_has_a_slot_kept_while_the_unit_names_nobody() {
     let mut relay = Relay::new(BaseId::DEFAULT);
     relay.set_out(Course::behind(StationHash(99)));
-    relay.take(&Said::Intent(Intent { predecessor: Predecessor::Unknown, ..intent(1) }));
+    relay.take(&Said::DrivingParameters(DrivingParameters { predecessor: Predecessor::Unknown, ..parameters(1) }));
     for station in (1..=PEERS as u8).chain([99]) {
         let mut frames = Vec::new();
         relay.hear(0.0, &message(station, None), &mut frames);
@@ -117,12 +117,12 @@ fn whom_the_driver_told_it_to_follow_has_a_slot_kept_while_the_unit_names_nobody
 #[test]
 fn an_intent_is_relayed_when_it_changes_and_otherwise_twice_a_second() {
     let mut unit = Unit::new();
-    assert_eq!(unit.hear(0.0, &message(3, Some(intent(11_000)))).1, 1);
+    assert_eq!(unit.hear(0.0, &message(3, Some(parameters(11_000)))).1, 1);
     for tenth in 1..5 {
-        assert_eq!(unit.hear(f64::from(tenth) * 0.1, &message(3, Some(intent(11_000)))).1, 0);
+        assert_eq!(unit.hear(f64::from(tenth) * 0.1, &message(3, Some(parameters(11_000)))).1, 0);
     }
-    assert_eq!(unit.hear(0.5, &message(3, Some(intent(11_000)))).1, 1);
-    assert_eq!(unit.hear(0.6, &message(3, Some(intent(12_000)))).1, 1);
+    assert_eq!(unit.hear(0.5, &message(3, Some(parameters(11_000)))).1, 1);
+    assert_eq!(unit.hear(0.6, &message(3, Some(parameters(12_000)))).1, 1);
 }
 
 #[test]

@@ -15,7 +15,7 @@ const WHAT: &str = "A vehicle that has heard another one over the paper’s chan
                     will do nobody says, so with the other three the only question is whose guess happens to suit: where \
                     the braking begins inside the silence, all predict the same.";
 
-const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the wish of a driver who has published none. That is the very \
+const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the request of a driver who has published none. That is the very \
                          speed that these drivers start from, and about which the sine goes up and down: the luckiest case \
                          for the paper. The consensus law of platoon simulators moves the message that came last on by its \
                          age times its speed; that differs from a constant speed only where the last message was overtaken.";

@@ -53,12 +53,12 @@ pub fn run(motion: TargetMotion, phase: u32, seed: u64) -> Result<Vec<Errors>, E
 
 fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<Vec<Errors>> {
     let Measured { vehicle: target, by } = Measured::of(scenario);
-    let mut ears = Ears {
+    let mut listener = Listener {
         tap: world.vehicles()[by].listen(),
         observer: Observer::new(BaseId::DEFAULT),
         baselines: baseline::all(target, scenario.step_s),
     };
-    ears.baselines.push(Box::new(Consensus::new(target)));
+    listener.baselines.push(Box::new(Consensus::new(target)));
     for tick in (1..=world.warm_up_ticks(WARM_UP_S)).rev() {
         let at_s = -f64::from(tick) * scenario.period_s;
         world.approach(at_s)?;
@@ -71,11 +71,11 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
         #[allow(clippy::cast_precision_loss)] // a few thousand
         let at_s = tick as f64 * scenario.period_s;
         world.speak(at_s)?;
-        ears.hear(&world, Measured { vehicle: target, by }, at_s)?;
+        listener.hear(&world, Measured { vehicle: target, by }, at_s)?;
         world.act(at_s, &mut trace)?;
         let since_s = at_s - from_s;
         if since_s >= -1e-9 {
-            let beliefs = ears.beliefs(at_s, ours(&trace, by));
+            let beliefs = listener.beliefs(at_s, ours(&trace, by));
             errors.extend(against(&trace, target, &beliefs, since_s.max(0.0)));
         }
         world.drive(at_s)?;
@@ -84,13 +84,13 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
 }
 
 /// Who listens on the bus of the listener.
-struct Ears {
+struct Listener {
     tap: MemoryNode,
     observer: Observer,
     baselines: Vec<Box<dyn Baseline>>,
 }
 
-impl Ears {
+impl Listener {
     fn hear(&mut self, world: &World<'_>, measured: Measured, at_s: f64) -> io::Result<()> {
         let by = &world.vehicles()[measured.by];
         let near = metres(world.vehicles()[measured.vehicle].plant.position_m);
@@ -110,9 +110,12 @@ impl Ears {
 }
 
 /// A vehicle that a driver drives says of itself that it follows no law. The paper, which knows no such vehicles, would
-/// let it accelerate to the speed that its unit is set to; without an intent it takes 13.4 m/s, at which it cruises here.
+/// let it accelerate to the speed that its unit is set to; without driving parameters it takes 13.4 m/s, at which it cruises here.
 fn with_law_only(heard: Heard) -> Heard {
-    Heard { intent: heard.intent.filter(|intent| intent.leads || intent.predecessor.is_some()), ..heard }
+    Heard {
+        parameters: heard.parameters.filter(|parameters| parameters.leads || parameters.predecessor.is_some()),
+        ..heard
+    }
 }
 
 fn ours(trace: &Trace, by: usize) -> Option<Estimate> {

@@ -9,7 +9,7 @@ use holdover::Config;
 use holdover::dynamics::Body;
 use holdover::units::{Acceleration, Jerk};
 use holdover::wire::StationHash;
-use holdover::wire::intent::Limits;
+use holdover::wire::driving_parameters::Limits;
 
 /// A kind of vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

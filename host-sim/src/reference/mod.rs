@@ -10,7 +10,7 @@
 
 pub mod horizon;
 
-use crate::heard::{Heard, HeardIntent};
+use crate::heard::{Heard, HeardParameters};
 
 /// `a_max` of Algorithm 2, m/s².
 pub const LEADER_ACCELERATION_MPS2: f64 = 0.73;
@@ -94,20 +94,20 @@ impl From<&Heard> for State {
     }
 }
 
-impl From<&HeardIntent> for Parameters {
-    fn from(intent: &HeardIntent) -> Self {
+impl From<&HeardParameters> for Parameters {
+    fn from(parameters: &HeardParameters) -> Self {
         Self {
-            length_m: intent.length_m,
-            standstill_m: intent.standstill_m,
-            target_speed_mps: intent.target_speed_mps,
-            catch_up_mps: CATCH_UP * intent.target_speed_mps,
-            time_gap_s: intent.time_gap_s,
-            gain: intent.gain,
-            damping_s: intent.damping_s,
-            lag_s: intent.lag_s,
-            acceleration_mps2: intent.acceleration_mps2,
-            braking_mps2: intent.braking_mps2,
-            jerk_mps3: intent.jerk_mps3,
+            length_m: parameters.length_m,
+            standstill_m: parameters.standstill_m,
+            target_speed_mps: parameters.target_speed_mps,
+            catch_up_mps: CATCH_UP * parameters.target_speed_mps,
+            time_gap_s: parameters.time_gap_s,
+            gain: parameters.gain,
+            damping_s: parameters.damping_s,
+            lag_s: parameters.lag_s,
+            acceleration_mps2: parameters.acceleration_mps2,
+            braking_mps2: parameters.braking_mps2,
+            jerk_mps3: parameters.jerk_mps3,
         }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use embedded_can::{Frame as _, Id};
 use holdover::Reception;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::wire::BaseId;
 use holdover::wire::catalogue;
 
@@ -15,7 +15,7 @@ use crate::bus::Frame;
 pub struct Tally {
     base: BaseId,
     recognised: BTreeMap<u16, u64>,
-    refused: [u64; Refusal::ALL.len()],
+    refused: [u64; Cause::ALL.len()],
     ignored: u64,
     ticks: u64,
 }
@@ -24,11 +24,11 @@ impl Tally {
     /// Nothing yet, on a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { base, recognised: BTreeMap::new(), refused: [0; Refusal::ALL.len()], ignored: 0, ticks: 0 }
+        Self { base, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
     }
 
     /// Counts a frame that the unit was given.
-    pub fn count(&mut self, frame: &Frame, reception: Result<Reception, Refusal>) {
+    pub fn count(&mut self, frame: &Frame, reception: Result<Reception, Cause>) {
         match (reception, frame.id()) {
             (Ok(Reception::Pending | Reception::Taken), Id::Standard(id)) => {
                 *self.recognised.entry(id.as_raw()).or_default() += 1;
@@ -63,7 +63,7 @@ impl Tally {
     /// Refused frames by cause, those that occurred.
     #[must_use]
     pub fn refused(&self) -> Vec<(&'static str, u64)> {
-        let counts = Refusal::ALL.iter().zip(self.refused);
+        let counts = Cause::ALL.iter().zip(self.refused);
         counts.filter(|(_, count)| *count > 0).map(|(cause, count)| (cause.name(), count)).collect()
     }
 

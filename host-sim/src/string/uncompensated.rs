@@ -96,7 +96,7 @@ impl Follower {
         let described = &scenario.vehicles[index];
         let spacing = scenario.vehicles[index - 1].length_m + described.standstill_m;
         let Plant { position_m, speed_mps, .. } = self.plant;
-        let wish = self.newest.map_or(0.0, |sample| {
+        let desired = self.newest.map_or(0.0, |sample| {
             let moved = match reading {
                 Reading::AsItStands => 0.0,
                 Reading::AgeTimesSpeed => sample.speed_mps * (at_s - sample.at_s),
@@ -107,7 +107,7 @@ impl Follower {
         let limits = config.limits;
         let slew = number(limits.jerk.to_mm_per_s3()) * scenario.period_s;
         let (lowest, highest) = (-number(limits.braking.to_mm_per_s2()), number(limits.acceleration.to_mm_per_s2()));
-        self.demand_mps2 = wish.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
+        self.demand_mps2 = desired.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
         #[allow(clippy::cast_possible_truncation)] // within the limits
         let demand = Acceleration::from_bits((self.demand_mps2 * f64::from(1 << 25)).round() as i32);
         let body: Body = config.body;

@@ -4,7 +4,7 @@
 use holdover::wire::{Predecessor, StationHash};
 
 use super::{index_of, station};
-use crate::heard::{Heard, HeardIntent};
+use crate::heard::{Heard, HeardParameters};
 use crate::modem::V2xMessage;
 
 /// The two that trade names; by default nobody does.
@@ -42,8 +42,8 @@ impl Alias {
     pub fn of_message(self, message: &V2xMessage) -> V2xMessage {
         let mut renamed = *message;
         renamed.motion.station = self.of(message.motion.station);
-        if let Some(intent) = &mut renamed.intent {
-            intent.predecessor = self.of_predecessor(intent.predecessor);
+        if let Some(parameters) = &mut renamed.parameters {
+            parameters.predecessor = self.of_predecessor(parameters.predecessor);
         }
         renamed
     }
@@ -52,8 +52,11 @@ impl Alias {
     #[must_use]
     pub fn of_heard(self, heard: Heard) -> Heard {
         let vehicle = |index| index_of(self.of(station(index))).unwrap_or(index);
-        let of_intent = |intent: HeardIntent| HeardIntent { predecessor: intent.predecessor.map(vehicle), ..intent };
-        Heard { vehicle: vehicle(heard.vehicle), intent: heard.intent.map(of_intent), ..heard }
+        let of_parameters = |parameters: HeardParameters| HeardParameters {
+            predecessor: parameters.predecessor.map(vehicle),
+            ..parameters
+        };
+        Heard { vehicle: vehicle(heard.vehicle), parameters: heard.parameters.map(of_parameters), ..heard }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Who is who: the index of a vehicle enters; the station that it says it is, and what its driver wants, leave.
 
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Predecessor, StationHash};
 
 use super::{seconds, speed};
@@ -20,8 +20,8 @@ pub const fn index_of(station: StationHash) -> Option<usize> {
 
 /// What the driver of a follower, or of a leader, wants.
 #[must_use]
-pub fn wish(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap_s: f64) -> EgoIntent {
-    EgoIntent {
+pub fn request(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap_s: f64) -> DriverRequest {
+    DriverRequest {
         engaged,
         predecessor: ahead.map_or(Predecessor::None, |ahead| Predecessor::Station(station(ahead))),
         target_speed: speed(target_speed_mps),

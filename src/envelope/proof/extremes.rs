@@ -5,7 +5,7 @@ use super::lattice::{Case, World, pick, stands};
 use crate::config::Envelope;
 use crate::envelope::*;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Share, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Speed};
 
 fn extreme(index: u64) -> Case {
     let mut number = index.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 1;
@@ -19,7 +19,7 @@ fn extreme(index: u64) -> Case {
         speed: Speed::MAX,
         margin: Distance::from_bits(pick(&[0, 1, 1 << 19, i32::MAX])),
         delay: Duration::from_micros(pick(&[30_000, 0, 1, 500_000]).into()),
-        lag_tolerance: Share::from_bits(pick(&[0, 1, 1 << 28, 1 << 30])),
+        lag_tolerance: Fraction::from_bits(pick(&[0, 1, 1 << 28, 1 << 30])),
     };
     let half = FineSeconds::from_millis(999).to_bits();
     let ego = Ego {

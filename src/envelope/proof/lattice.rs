@@ -5,7 +5,7 @@ use super::interval::Interval;
 use crate::config::Envelope;
 use crate::envelope::*;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Share, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Speed};
 use std::ops::Range;
 
 /// One of the values, picked by the lowest digit of a number, which loses it.
@@ -43,7 +43,7 @@ impl Case {
             speed: Speed::from_mm_per_s(65_534),
             margin: Distance::from_mm(pick(&[0, 500])),
             delay: Duration::from_millis(pick(&[30, 0, 100, 500]).into()),
-            lag_tolerance: Share::from_milli(pick(&[0, 200, 1_000])),
+            lag_tolerance: Fraction::from_milli(pick(&[0, 200, 1_000])),
         };
         // What the command can say, in steps of 2 mm/s².
         let braking = configured.min(16_382) / 2 * 2;
@@ -304,7 +304,7 @@ fn check_code_alone(of: Range<u64>) {
     let up = |x: Interval, fraction: i32| (x.high * 2f64.powi(fraction)).ceil() as i64;
     let down = |x: Interval, fraction: i32| (x.low * 2f64.powi(fraction)).floor() as i64;
     let mut judged = 0;
-    for case in cases(of).filter(|case| case.limits.lag_tolerance == Share::ZERO && case.is_safe()) {
+    for case in cases(of).filter(|case| case.limits.lag_tolerance == Fraction::ZERO && case.is_safe()) {
         let (told, _) = case.command();
         let world = World::new(&case, case.ego.lag);
         let then = world.after(&case.real(), told, world.period);

@@ -38,7 +38,7 @@ mod motions;
 use super::*;
 use crate::polynomial::{Certificate, Polynomial, Ring};
 
-/// Fastest near end: the largest word. The far end may have the largest doubt added.
+/// Fastest near end: the largest word. The far end may have the largest uncertainty added.
 const NEAR_SPEED: i64 = 256_000_000;
 const FAR_SPEED: i64 = 2 * NEAR_SPEED;
 const HARDEST: i64 = 64_000_000;
@@ -68,7 +68,7 @@ fn braked<R: Ring>([slower, lost, b, t, way, then, r1, r2, r3, r4]: [R; 10]) -> 
     let loses = m() * lost.clone() - b.clone() * t.clone() - r3.clone();
     let both = v.clone() + slower.clone();
     let goes = both.clone() * t.clone() - m() * (twice(way.clone()) + r1.clone()) - r2.clone();
-    let rests = slower.clone() * slower.clone() - twice(b.clone() * then.clone()) - r4.clone();
+    let remainders = slower.clone() * slower.clone() - twice(b.clone() * then.clone()) - r4.clone();
     let rounded = m() * r1 + r2;
     let truth = (twice(m() * v.clone()) - b.clone() * t.clone()) * t.clone();
     Braked {
@@ -84,7 +84,7 @@ fn braked<R: Ring>([slower, lost, b, t, way, then, r1, r2, r3, r4]: [R; 10]) -> 
         },
         rest: Certificate {
             claim: m() * m() * (v.clone() * v - twice(b.clone() * (way + then))),
-            premises: vec![(m() * m(), rests), (b.clone() * m(), goes), (m() * both.clone(), loses)],
+            premises: vec![(m() * m(), remainders), (b.clone() * m(), goes), (m() * both.clone(), loses)],
             rest: m() * both * r3 + b * m() * rounded + m() * m() * r4,
         },
     }

@@ -4,17 +4,19 @@
 use super::*;
 
 const AT: Instant = Instant::from_micros(1_000_000_000);
-const REACH: Reach =
-    Reach { acceleration: Acceleration::from_mm_per_s2(2_500), braking: Acceleration::from_mm_per_s2(8_000) };
-const EXACT: Doubt =
-    Doubt { position: Distance::ZERO, speed: Speed::ZERO, earlier: Duration::ZERO, later: Duration::ZERO };
+const REACH: AccelerationRange = AccelerationRange {
+    acceleration: Acceleration::from_mm_per_s2(2_500),
+    braking: Acceleration::from_mm_per_s2(8_000),
+};
+const EXACT: Uncertainty =
+    Uncertainty { position: Distance::ZERO, speed: Speed::ZERO, earlier: Duration::ZERO, later: Duration::ZERO };
 
 fn later(micros: i64) -> Instant {
     AT.plus(Duration::from_micros(micros))
 }
 
-fn around(mm: i64, mm_per_s: i32, doubt: &Doubt) -> Bound {
-    Bound::around(AT, Position::from_mm(mm), Speed::from_mm_per_s(mm_per_s), doubt, &REACH)
+fn around(mm: i64, mm_per_s: i32, uncertainty: &Uncertainty) -> Bound {
+    Bound::around(AT, Position::from_mm(mm), Speed::from_mm_per_s(mm_per_s), uncertainty, &REACH)
 }
 
 /// Metres and metres per second of the four ends.
@@ -116,9 +118,10 @@ fn the_nearest_stop_is_v_squared_over_2_b_ahead_and_stays_there() {
 #[test]
 fn accuracies_widen_to_both_sides_and_a_speed_is_never_below_zero() {
     for (position, speed) in [(0, 0), (1, 1), (50, 20), (6_300, 1_240)] {
-        let doubt = Doubt { position: Distance::from_mm(position), speed: Speed::from_mm_per_s(speed), ..EXACT };
+        let uncertainty =
+            Uncertainty { position: Distance::from_mm(position), speed: Speed::from_mm_per_s(speed), ..EXACT };
         for mm_per_s in [0, 1, 20, 1_239, 1_240, 1_241, 30_000] {
-            let [low, high, slow, fast] = ends(&around(10_000, mm_per_s, &doubt));
+            let [low, high, slow, fast] = ends(&around(10_000, mm_per_s, &uncertainty));
             let (off, faster, v) = (f64::from(position) / 1e3, f64::from(speed) / 1e3, f64::from(mm_per_s) / 1e3);
             for (found, exact) in
                 [(low, 10.0 - off), (high, 10.0 + off), (slow, (v - faster).max(0.0)), (fast, v + faster)]
@@ -133,7 +136,7 @@ fn accuracies_widen_to_both_sides_and_a_speed_is_never_below_zero() {
 fn a_doubtful_instant_lets_the_far_end_run_ahead_and_both_speeds_apart() {
     for (earlier, after) in [(0, 0), (500, 500), (1_960_000, 40_000), (500, -200), (500, -500), (500, -900)] {
         let (earlier, later) = (Duration::from_micros(earlier), Duration::from_micros(after));
-        let bound = around(10_000, 20_000, &Doubt { earlier, later, ..EXACT });
+        let bound = around(10_000, 20_000, &Uncertainty { earlier, later, ..EXACT });
         assert_eq!(bound.at(), AT.plus(later));
         let t = (earlier.plus(later).as_micros().max(0)) as f64 * 1e-6;
         let [low, high, slow, fast] = ends(&bound);
@@ -146,11 +149,11 @@ fn a_doubtful_instant_lets_the_far_end_run_ahead_and_both_speeds_apart() {
 
 #[test]
 fn two_bounds_agree_as_long_as_they_touch() {
-    let doubt = Doubt { position: Distance::from_mm(1_000), speed: Speed::from_mm_per_s(1_000), ..EXACT };
-    let one = around(0, 10_000, &doubt);
+    let uncertainty = Uncertainty { position: Distance::from_mm(1_000), speed: Speed::from_mm_per_s(1_000), ..EXACT };
+    let one = around(0, 10_000, &uncertainty);
     for mm in [-2_001, -2_000, -1_999, -1, 0, 1, 1_999, 2_000, 2_001] {
         for mm_per_s in [7_999, 8_000, 8_001, 10_000, 11_999, 12_000, 12_001] {
-            let other = around(mm, mm_per_s, &doubt);
+            let other = around(mm, mm_per_s, &uncertainty);
             let agree = mm.abs() <= 2_000 && (mm_per_s - 10_000i32).abs() <= 2_000;
             for both in [one.and(&other, &REACH), other.and(&one, &REACH)] {
                 assert_eq!(both.is_some(), agree, "{mm} {mm_per_s}");
@@ -180,11 +183,11 @@ fn what_is_published_is_taken_but_a_rest_takes_finite_time() {
         emergency_braking: Acceleration::from_mm_per_s2(emergency),
     };
     for value in [0, 99, 100, 101, 8_000, 20_460] {
-        let reach = Reach::published(&limits(value, value));
+        let reach = AccelerationRange::published(&limits(value, value));
         assert_eq!((reach.acceleration.to_mm_per_s2(), reach.braking.to_mm_per_s2()), (value.max(100), value.max(100)));
     }
-    assert_eq!(Reach::published(&limits(300, 7_000)).braking.to_mm_per_s2(), 7_000);
-    assert_eq!(Reach::published(&limits(300, 7_000)).acceleration.to_mm_per_s2(), 300);
+    assert_eq!(AccelerationRange::published(&limits(300, 7_000)).braking.to_mm_per_s2(), 7_000);
+    assert_eq!(AccelerationRange::published(&limits(300, 7_000)).acceleration.to_mm_per_s2(), 300);
 }
 
 #[test]
@@ -209,9 +212,9 @@ fn quotients_are_rounded_to_the_side_they_say() {
 
 #[test]
 fn a_bound_that_is_moved_contains_what_it_contained_there() {
-    let reach = Reach::WORST;
+    let reach = AccelerationRange::WORST;
     let speed = Speed::from_mm_per_s(10_000);
-    let bound = Bound::around(Instant::ZERO, Position::from_mm(5_000), speed, &Doubt::default(), &reach);
+    let bound = Bound::around(Instant::ZERO, Position::from_mm(5_000), speed, &Uncertainty::default(), &reach);
     for bits in [-1_048_577, -1_048_576, -2, -1, 0, 1, 2, 1_048_576, 1_048_577, i32::MAX, i32::MIN] {
         let moved = bound.shifted(Distance::from_bits(bits));
         let exact = |position: Position| position.to_bits() + i64::from(bits);
@@ -228,7 +231,7 @@ fn a_bound_that_is_moved_contains_what_it_contained_there() {
 fn a_position_stays_inside_its_bound_however_far_the_unit_has_driven() {
     for km in [16, 8_796, 8_797, 40_075, 500_000, -8_797, -500_000] {
         let position = Position::from_mm(km * 1_000_000 + 1);
-        let bound = Bound::around(AT, position, Speed::ZERO, &Doubt::default(), &REACH);
+        let bound = Bound::around(AT, position, Speed::ZERO, &Uncertainty::default(), &REACH);
         let (low, high) = (bound.lowest_position(), bound.highest_position());
         assert!(low <= position && position <= high, "{km} km: {low:?} {high:?}");
         let [behind, ahead] = [position.ahead_of(low), high.ahead_of(position)];

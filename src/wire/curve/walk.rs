@@ -76,7 +76,7 @@ impl Iterator for Pieces {
     }
 }
 
-/// The readings that lie in one piece: each is one addition and [`Piece::at_share`].
+/// The readings that lie in one piece: each is one addition and [`Piece::at_fraction`].
 pub(crate) struct Run {
     piece: Piece,
     left: usize,
@@ -97,7 +97,7 @@ impl Iterator for Run {
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
         self.left = self.left.checked_sub(1)?;
-        let reading = self.piece.at_share(self.share);
+        let reading = self.piece.at_fraction(self.share);
         self.share = self.share.wrapping_add(self.share_step); // beyond 1 it is not read any more
         Some(reading)
     }

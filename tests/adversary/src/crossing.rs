@@ -221,7 +221,7 @@ impl Driver {
         vehicle.sense(sensed, &body, 1.0);
         if step % 10 == 3 {
             let wanted = if rests { 0.0 } else { comer.speed.max(8.0) };
-            vehicle.wish(now + 0.006, true, None, wanted, scenario.ego.gap.max(1.6));
+            vehicle.request(now + 0.006, true, None, wanted, scenario.ego.gap.max(1.6));
         }
         if step % 10 == 5 {
             let along = ((body.position - self.axis) * 100.0).round() as i64;

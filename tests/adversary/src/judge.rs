@@ -15,7 +15,7 @@ pub const REFUSED: f64 = 1.0;
 const REACH: f64 = 1_400.0;
 /// How much faster than wanted it may get, as a factor and m/s: who follows catches up by up to a fifth.
 pub const HURRY: (f64, f64) = (1.2, 1.0);
-/// How long a wish of before counts, s.
+/// How long a request of before counts, s.
 const WISHED: f64 = 15.0;
 
 /// After every tick.

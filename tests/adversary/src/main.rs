@@ -31,7 +31,7 @@ usage: holdover-adversary [--drives N] [--first N] [--seed N] [--threads N] [--f
   --help          this
 
 Violations of kept assumptions are printed one on a line: family, drive, seed, time, what at
-first, and in brackets how much at most (m/s of impact or beyond the wish, m outside, s). Progress goes to stderr.
+first, and in brackets how much at most (m/s of impact or beyond the request, m outside, s). Progress goes to stderr.
 exit code: 0 everything held; 1 an assumption was kept and something was violated; 2 bad arguments
 ";
 

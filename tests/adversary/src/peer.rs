@@ -32,7 +32,7 @@ pub enum Message {
     /// Tag, and values as measured.
     Motion(Motion),
     /// What it publishes of itself.
-    Intent {
+    DrivingParameters {
         /// Of the message.
         tag: u8,
         /// How hard it brakes and pulls.
@@ -78,7 +78,7 @@ impl Motion {
 }
 
 /// As three frames in a slot.
-pub fn intent_frames(slot: u8, counters: &mut Counters, tag: u8, limits: &Limits, length: f64) -> [Can; 3] {
+pub fn parameter_frames(slot: u8, counters: &mut Counters, tag: u8, limits: &Limits, length: f64) -> [Can; 3] {
     let layout = &BOOK.peers[usize::from(slot)].1;
     let tag = f64::from(tag);
     [
@@ -125,11 +125,11 @@ pub struct Other {
     #[allow(missing_docs)]
     pub refused: Option<(f64, u32)>,
     tag: u8,
-    intent_tag: u8,
+    parameters_tag: u8,
     next_motion: f64,
-    next_intent: f64,
+    next_parameters: f64,
     losing: u32,
-    last_intent: f64,
+    last_parameters: f64,
     random: Random,
 }
 
@@ -167,11 +167,11 @@ impl Other {
             newest: i64::MIN,
             refused: None,
             tag: random.below(4) as u8,
-            intent_tag: random.below(4) as u8,
+            parameters_tag: random.below(4) as u8,
             next_motion: set_up.phase,
-            next_intent: set_up.phase + 0.02,
+            next_parameters: set_up.phase + 0.02,
             losing: 0,
-            last_intent: 0.0,
+            last_parameters: 0.0,
             random,
         }
     }
@@ -203,7 +203,7 @@ impl Other {
     pub fn limit(&mut self, times: f64) {
         let mut least = self.limits;
         let in_air = self.air.iter().filter_map(|(_, message)| match message {
-            Message::Intent { limits, .. } => Some(*limits),
+            Message::DrivingParameters { limits, .. } => Some(*limits),
             Message::Motion(_) => None,
         });
         // Harder ones it uses only when they have been known for a while: the last that are older count still.
@@ -242,18 +242,19 @@ impl Other {
                 self.air.push((arrives, Message::Motion(motion)));
             }
         }
-        while self.next_intent <= until && self.station != 0 {
-            let at = self.next_intent;
-            self.next_intent += 0.5;
-            self.intent_tag = (self.intent_tag + 1) % 4;
+        while self.next_parameters <= until && self.station != 0 {
+            let at = self.next_parameters;
+            self.next_parameters += 0.5;
+            self.parameters_tag = (self.parameters_tag + 1) % 4;
             if !self.set_up.intends {
                 continue;
             }
             if let Some(arrives) = self.carry(at, radio, is_well) {
-                // Intents have no stamp: the modem hands them on in the order in which they were sent.
-                self.last_intent = self.last_intent.max(arrives) + 1e-4;
-                let intent = Message::Intent { tag: self.intent_tag, limits: self.limits, length: self.length };
-                self.air.push((self.last_intent, intent));
+                // ParameterParts have no stamp: the modem hands them on in the order in which they were sent.
+                self.last_parameters = self.last_parameters.max(arrives) + 1e-4;
+                let parameters =
+                    Message::DrivingParameters { tag: self.parameters_tag, limits: self.limits, length: self.length };
+                self.air.push((self.last_parameters, parameters));
             }
         }
     }

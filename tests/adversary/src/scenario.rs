@@ -127,7 +127,7 @@ pub struct Radio {
     pub tails: f64,
     #[allow(missing_docs)]
     pub tail: f64,
-    /// Share that is lost, and mean number that is lost in a row.
+    /// Fraction that is lost, and mean number that is lost in a row.
     pub loss: f64,
     #[allow(missing_docs)]
     pub burst: f64,

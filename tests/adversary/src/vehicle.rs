@@ -232,15 +232,15 @@ impl Vehicle {
         self.put(at + 0.0009, &b);
     }
 
-    /// The driver's wish; whether the unit took it.
-    pub fn wish(&mut self, at: f64, engaged: bool, follow: Option<u8>, wanted: f64, gap: f64) -> bool {
+    /// The driver's request; whether the unit took it.
+    pub fn request(&mut self, at: f64, engaged: bool, follow: Option<u8>, wanted: f64, gap: f64) -> bool {
         let kind = match follow {
             None => 0.0,
             Some(0) => 1.0,
             Some(_) => 2.0,
         };
         let values = [f64::from(u8::from(engaged)), kind, f64::from(follow.unwrap_or(0)), wanted, gap];
-        let frame = BOOK.wish.seal(&mut self.sensors, &values);
+        let frame = BOOK.request.seal(&mut self.sensors, &values);
         self.put(at, &frame) == Verdict::Taken
     }
 

@@ -130,9 +130,9 @@ pub struct Motion {
     pub b: Layout<6>,
 }
 
-/// `Intent` of a sender: Tag, Part, and what stands in each part.
+/// `DrivingParameters` of a sender: Tag, Part, and what stands in each part.
 #[derive(Clone, Debug)]
-pub struct Intent {
+pub struct DrivingParameters {
     /// Length, Standstill, PredecessorKind, PredecessorStation, TargetSpeed.
     pub who: Layout<7>,
     /// TimeGap, Gain, Damping, Lag.
@@ -151,7 +151,7 @@ pub struct Book {
     /// Acceleration, Mode, Limited.
     pub command: Layout<3>,
     /// Engaged, PredecessorKind, PredecessorStation, TargetSpeed, TimeGap.
-    pub wish: Layout<5>,
+    pub request: Layout<5>,
     /// Distance, SpeedDifference, DistanceAccuracy, SpeedAccuracy, Age.
     pub range: Layout<5>,
     /// The vehicle's own.
@@ -167,7 +167,7 @@ pub struct Book {
     /// Cause, Count, Mode.
     pub health: Layout<3>,
     /// In each slot.
-    pub peers: Vec<(Motion, Intent)>,
+    pub peers: Vec<(Motion, DrivingParameters)>,
     /// What the unit says for others, by its place in the block of a slot, and the same in each slot.
     pub own: Vec<(Layout<0>, Vec<Layout<0>>)>,
     all: Vec<Layout<0>>,
@@ -185,9 +185,9 @@ impl Book {
     fn new(dbc: &Dbc) -> Self {
         let peers = (0..SLOTS).map(|slot| {
             let name = format!("Peer{slot}");
-            (motion(dbc, &name), intent(dbc, &name))
+            (motion(dbc, &name), parameters(dbc, &name))
         });
-        let own = ["MotionA", "MotionB", "Horizon", "Intent", "Position", "Route"].map(|what| {
+        let own = ["MotionA", "MotionB", "Horizon", "DrivingParameters", "Position", "Route"].map(|what| {
             let bare = |name: String| Layout::new(dbc.message(&name), []);
             (bare(format!("Own{what}")), (0..SLOTS).map(|slot| bare(format!("Peer{slot}{what}"))).collect())
         });
@@ -195,8 +195,8 @@ impl Book {
             sync: Layout::new(dbc.message("TimeSync"), ["Sequence", "Seconds"]),
             follow_up: Layout::new(dbc.message("TimeFollowUp"), ["Sequence", "Micros"]),
             command: Layout::new(dbc.message("MotionCommand"), ["Acceleration", "Mode", "Limited"]),
-            wish: Layout::new(
-                dbc.message("EgoIntent"),
+            request: Layout::new(
+                dbc.message("DriverRequest"),
                 ["Engaged", "PredecessorKind", "PredecessorStation", "TargetSpeed", "TimeGap"],
             ),
             range: Layout::new(
@@ -224,11 +224,11 @@ fn motion(dbc: &Dbc, who: &str) -> Motion {
     }
 }
 
-fn intent(dbc: &Dbc, who: &str) -> Intent {
-    let message = dbc.message(&format!("{who}Intent"));
+fn parameters(dbc: &Dbc, who: &str) -> DrivingParameters {
+    let message = dbc.message(&format!("{who}DrivingParameters"));
     let who = ["Tag", "Part", "Length", "Standstill", "PredecessorKind", "PredecessorStation", "TargetSpeed"];
     let limits = ["Tag", "Part", "AccelerationLimit", "BrakingLimit", "JerkLimit", "EmergencyBraking", "HorizonLength"];
-    Intent {
+    DrivingParameters {
         who: Layout::new(message, who),
         law: Layout::new(message, ["Tag", "Part", "TimeGap", "Gain", "Damping", "Lag"]),
         limits: Layout::new(message, limits),

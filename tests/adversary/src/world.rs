@@ -6,7 +6,7 @@ mod happen;
 use crate::body::safe_gap;
 use crate::broken::Assumption;
 use crate::judge;
-use crate::peer::{Message, Motion, Other, intent_frames};
+use crate::peer::{Message, Motion, Other, parameter_frames};
 use crate::random::Random;
 use crate::scenario::{Family, Scenario, Sensor};
 use crate::vehicle::{Vehicle, Verdict, error};
@@ -61,7 +61,7 @@ pub struct World<'a> {
     names: u8,
     next_event: usize,
     cutting_in: Vec<usize>,
-    slot_wishes: Vec<(usize, u8)>,
+    slot_requests: Vec<(usize, u8)>,
     /// When the modem used a slot last, and for whom.
     slot_used: [(f64, u8); SLOTS],
     deaf_until: f64,
@@ -98,7 +98,7 @@ impl<'a> World<'a> {
             names: scenario.follow,
             next_event: 0,
             cutting_in: Vec::new(),
-            slot_wishes: Vec::new(),
+            slot_requests: Vec::new(),
             slot_used: [(f64::NEG_INFINITY, 0); SLOTS],
             deaf_until: 0.0,
             timeless_until: 0.0,
@@ -202,7 +202,7 @@ impl<'a> World<'a> {
             if is_known {
                 self.names = self.follow;
             }
-            if self.ego.wish(now + 0.0085, self.engaged, Some(self.names), self.wanted, self.scenario.ego.gap) {
+            if self.ego.request(now + 0.0085, self.engaged, Some(self.names), self.wanted, self.scenario.ego.gap) {
                 self.followed = self.names;
             }
         }
@@ -255,7 +255,7 @@ impl<'a> World<'a> {
         }
         let station = match message {
             Message::Motion(motion) => motion.station,
-            Message::Intent { .. } => self.others[number].station,
+            Message::DrivingParameters { .. } => self.others[number].station,
         };
         // The modem gives a slot to another station when that has been free for so long.
         let (used, by) = self.slot_used[usize::from(slot)];
@@ -266,8 +266,8 @@ impl<'a> World<'a> {
         self.slot_used[usize::from(slot)] = (at, station);
         match message {
             Message::Motion(motion) => self.deliver_motion(at, number, slot, motion),
-            Message::Intent { tag, limits, length } => {
-                let frames = intent_frames(slot, &mut self.ego.modem, tag, &limits, length);
+            Message::DrivingParameters { tag, limits, length } => {
+                let frames = parameter_frames(slot, &mut self.ego.modem, tag, &limits, length);
                 let mut verdict = Verdict::Lost;
                 for (part, frame) in frames.iter().enumerate() {
                     verdict = self.ego.put(at + 0.0003 * part as f64, frame);
@@ -348,13 +348,13 @@ impl<'a> World<'a> {
 
     /// The modem keeps its rules: a station that has been silent in its slot for two seconds, and a slot that has been free as long.
     fn change_slots(&mut self, now: f64) {
-        for place in (0..self.slot_wishes.len()).rev() {
-            let (number, slot) = self.slot_wishes[place];
+        for place in (0..self.slot_requests.len()).rev() {
+            let (number, slot) = self.slot_requests[place];
             let is_silent = now - self.others[number].delivered > SLOT_REUSE;
             let is_free = now - self.slot_used[usize::from(slot)].0 > SLOT_REUSE;
             let is_taken = self.others.iter().enumerate().any(|(other, peer)| other != number && peer.slot == slot);
             if is_silent && is_free && !is_taken {
-                self.slot_wishes.swap_remove(place);
+                self.slot_requests.swap_remove(place);
                 self.others[number].slot = slot;
             }
         }

@@ -8,7 +8,7 @@
 //! with `δt` = 1 s would otherwise reverse and run away), and `v_∞` is not below 0.1 m/s.
 
 use super::super::Estimate;
-use crate::heard::{Heard, HeardIntent};
+use crate::heard::{Heard, HeardParameters};
 
 /// `a_max` of Algorithm 2, m/s².
 pub const LEADER_ACCELERATION_MPS2: f64 = 0.73;
@@ -49,7 +49,13 @@ impl Horizon {
 
     /// Algorithms 4 and 3: eqs 10 to 12 for the predecessor, eq. 13 for the speed, positions by eq. 9.
     #[must_use]
-    pub fn of_follower(sample: &Heard, ahead: &Preceding<'_>, law: &HeardIntent, step_s: f64, steps: usize) -> Self {
+    pub fn of_follower(
+        sample: &Heard,
+        ahead: &Preceding<'_>,
+        law: &HeardParameters,
+        step_s: f64,
+        steps: usize,
+    ) -> Self {
         let kappa = law.gain * step_s;
         Self::by(sample, step_s, steps, |at_s, speed_mps, position_m| {
             let predecessor = ahead.at(at_s);
@@ -120,12 +126,12 @@ mod tests {
             speed_mps,
             acceleration_mps2,
             demand_mps2,
-            intent: None,
+            parameters: None,
         }
     }
 
-    fn law() -> HeardIntent {
-        HeardIntent {
+    fn law() -> HeardParameters {
+        HeardParameters {
             length_m: 4.8,
             standstill_m: 2.0,
             leads: false,

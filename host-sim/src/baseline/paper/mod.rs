@@ -14,15 +14,15 @@
 //!   anchor the first.
 //! - **Delay.** `τ` of a vehicle is arrival minus stamp of its last counted message, not below 0, one value for a whole
 //!   horizon.
-//! - **Chain.** Who follows whom is what the intents say. Whoever leads, names nobody, names a vehicle not heard yet, or
-//!   would close the chain to a ring, is index 0: Algorithm 2 with `v_∞` from its own intent, 13.4 m/s without one.
-//! - **Parameters** are those of the vehicle's own intent; what it said last holds until it says something else. The
+//! - **Chain.** Who follows whom is what the driving parameters say. Whoever leads, names nobody, names a vehicle not heard yet, or
+//!   would close the chain to a ring, is index 0: Algorithm 2 with `v_∞` from its own driving parameters, 13.4 m/s without one.
+//! - **Parameters** are those of the vehicle's own driving parameters; what it said last holds until it says something else. The
 //!   length of a predecessor that has said nothing is 4.8 m. `α` = 1; there is no standstill distance.
 
 pub mod horizon;
 
 use super::{Baseline, Estimate};
-use crate::heard::{Heard, HeardIntent};
+use crate::heard::{Heard, HeardParameters};
 use horizon::{Horizon, Preceding};
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ const SAME_STEP: f64 = 1e-7;
 #[derive(Clone, Debug)]
 struct Track {
     sample: Heard,
-    intent: Option<HeardIntent>,
+    parameters: Option<HeardParameters>,
     horizon: Option<Horizon>,
     /// The sample has not entered the horizon yet.
     connected: bool,
@@ -103,22 +103,24 @@ impl Paper {
         while let Some(vehicle) = next.filter(|vehicle| !chain.contains(vehicle)) {
             let Some(track) = self.tracks.get(&vehicle) else { break };
             chain.push(vehicle);
-            next = track.intent.filter(|intent| !intent.leads).and_then(|intent| intent.predecessor);
+            next =
+                track.parameters.filter(|parameters| !parameters.leads).and_then(|parameters| parameters.predecessor);
         }
         chain.reverse();
         chain
     }
 
     fn horizon_of(&self, track: &Track, ahead: Option<&Track>) -> Horizon {
-        match (track.intent, ahead.and_then(|ahead| ahead.horizon.as_ref().map(|horizon| (ahead, horizon)))) {
-            (Some(intent), Some((ahead, horizon))) => {
-                let length_m = ahead.intent.map_or(UNPUBLISHED_LENGTH_M, |intent| intent.length_m);
+        match (track.parameters, ahead.and_then(|ahead| ahead.horizon.as_ref().map(|horizon| (ahead, horizon)))) {
+            (Some(parameters), Some((ahead, horizon))) => {
+                let length_m = ahead.parameters.map_or(UNPUBLISHED_LENGTH_M, |parameters| parameters.length_m);
                 let delay_s = (ahead.sample.at_s - ahead.sample.stamp_s).max(0.0);
                 let preceding = Preceding { horizon, delay_s, length_m };
-                Horizon::of_follower(&track.sample, &preceding, &intent, self.step_s, self.steps)
+                Horizon::of_follower(&track.sample, &preceding, &parameters, self.step_s, self.steps)
             }
-            (intent, _) => {
-                let target_speed_mps = intent.map_or(UNPUBLISHED_TARGET_SPEED_MPS, |intent| intent.target_speed_mps);
+            (parameters, _) => {
+                let target_speed_mps =
+                    parameters.map_or(UNPUBLISHED_TARGET_SPEED_MPS, |parameters| parameters.target_speed_mps);
                 Horizon::of_leader(&track.sample, target_speed_mps, self.step_s, self.steps)
             }
         }
@@ -127,13 +129,13 @@ impl Paper {
 
 impl Track {
     fn starting_at(heard: &Heard) -> Self {
-        Self { sample: *heard, intent: heard.intent, horizon: None, connected: true }
+        Self { sample: *heard, parameters: heard.parameters, horizon: None, connected: true }
     }
 
     fn take(&mut self, heard: &Heard) {
         if heard.stamp_s > self.sample.stamp_s {
             self.sample = *heard;
-            self.intent = heard.intent.or(self.intent);
+            self.parameters = heard.parameters.or(self.parameters);
             self.connected = true;
         }
     }

@@ -4,8 +4,8 @@ use super::*;
 
 const STEP_S: f64 = 0.1;
 
-fn intent(predecessor: Option<usize>, target_speed_mps: f64) -> HeardIntent {
-    HeardIntent {
+fn parameters(predecessor: Option<usize>, target_speed_mps: f64) -> HeardParameters {
+    HeardParameters {
         length_m: 5.0,
         standstill_m: 2.0,
         leads: predecessor.is_none(),
@@ -23,7 +23,7 @@ fn intent(predecessor: Option<usize>, target_speed_mps: f64) -> HeardIntent {
 
 fn message(at_s: f64, stamp_s: f64, vehicle: usize, position_m: f64, speed_mps: f64) -> Heard {
     let (acceleration_mps2, demand_mps2) = (0.0, 0.0);
-    Heard { at_s, stamp_s, vehicle, position_m, speed_mps, acceleration_mps2, demand_mps2, intent: None }
+    Heard { at_s, stamp_s, vehicle, position_m, speed_mps, acceleration_mps2, demand_mps2, parameters: None }
 }
 
 #[test]
@@ -50,15 +50,15 @@ fn without_intent_the_target_speed_is_13_4() {
 #[test]
 fn a_follower_whose_predecessor_is_unheard_goes_for_its_own_target_speed() {
     let mut paper = Paper::new(1, STEP_S);
-    paper.hear(&message(0.0, 0.0, 1, 0.0, 9.0).with_intent(intent(Some(0), 9.0)));
+    paper.hear(&message(0.0, 0.0, 1, 0.0, 9.0).with_parameters(parameters(Some(0), 9.0)));
     assert!((paper.estimate(2.0).unwrap().position_m - 18.0).abs() < 1e-9);
 }
 
 #[test]
 fn a_horizon_held_keeps_its_anchor_while_its_predecessor_has_news() {
     let mut paper = Paper::new(1, STEP_S);
-    paper.hear(&message(0.0, 0.0, 0, 30.0, 10.0).with_intent(intent(None, 10.0)));
-    paper.hear(&message(0.0, 0.0, 1, 0.0, 10.0).with_intent(intent(Some(0), 10.0)));
+    paper.hear(&message(0.0, 0.0, 0, 30.0, 10.0).with_parameters(parameters(None, 10.0)));
+    paper.hear(&message(0.0, 0.0, 1, 0.0, 10.0).with_parameters(parameters(Some(0), 10.0)));
     let mut silent = paper.clone();
     paper.estimate(0.0);
     paper.hear(&message(1.0, 1.0, 0, 32.0, 0.0));
@@ -79,7 +79,7 @@ fn reading_late_is_reading_every_step() {
             let position_m = 60.0 - 20.0 * vehicle as f64 + 9.0 * stamp_s;
             let ahead = vehicle.checked_sub(1);
             message(stamp_s + 0.03 * f64::from(n % 4), stamp_s, vehicle, position_m, 9.0)
-                .with_intent(intent(ahead, 11.0))
+                .with_parameters(parameters(ahead, 11.0))
         })
         .collect();
     let (mut every, mut late) = (Paper::new(2, STEP_S), Paper::new(2, STEP_S));
@@ -98,8 +98,8 @@ fn reading_late_is_reading_every_step() {
 #[test]
 fn a_ring_of_vehicles_that_follow_one_another_is_broken_not_followed_forever() {
     let mut paper = Paper::new(0, STEP_S);
-    paper.hear(&message(0.0, 0.0, 0, 0.0, 10.0).with_intent(intent(Some(1), 10.0)));
-    paper.hear(&message(0.0, 0.0, 1, 15.0, 10.0).with_intent(intent(Some(0), 10.0)));
+    paper.hear(&message(0.0, 0.0, 0, 0.0, 10.0).with_parameters(parameters(Some(1), 10.0)));
+    paper.hear(&message(0.0, 0.0, 1, 15.0, 10.0).with_parameters(parameters(Some(0), 10.0)));
     let at = paper.estimate(1.0).unwrap();
     assert!((at.position_m - 10.0).abs() < 0.1, "{at:?}");
 }
@@ -107,9 +107,9 @@ fn a_ring_of_vehicles_that_follow_one_another_is_broken_not_followed_forever() {
 #[test]
 fn a_predecessor_that_enters_the_chain_late_brings_its_last_sample() {
     let mut paper = Paper::new(1, STEP_S);
-    paper.hear(&message(0.0, 0.0, 0, 30.0, 10.0).with_intent(intent(None, 10.0)));
-    paper.hear(&message(0.0, 0.0, 1, 0.0, 10.0).with_intent(intent(None, 10.0)));
+    paper.hear(&message(0.0, 0.0, 0, 30.0, 10.0).with_parameters(parameters(None, 10.0)));
+    paper.hear(&message(0.0, 0.0, 1, 0.0, 10.0).with_parameters(parameters(None, 10.0)));
     assert!((paper.estimate(0.5).unwrap().position_m - 5.0).abs() < 1e-9);
-    paper.hear(&message(0.6, 0.6, 1, 6.0, 10.0).with_intent(intent(Some(0), 10.0)));
+    paper.hear(&message(0.6, 0.6, 1, 6.0, 10.0).with_parameters(parameters(Some(0), 10.0)));
     assert!(paper.estimate(3.0).unwrap().speed_mps > 10.5);
 }

@@ -5,7 +5,7 @@ use std::io;
 
 use holdover::ConfigError;
 use holdover::wire::Predecessor;
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 
 use super::{Traffic, Traveller};
 use crate::corridor::conditions::config;
@@ -93,7 +93,7 @@ impl Traffic<'_> {
         let machine = Machine::new(trip.kind, trip.kind.lag_s() * wrong.lag_scale, &difference);
         let odometer_m = trip.odometer_m - lane.entry_m;
         let plant = Plant::cruising(machine, trip.odometer_m, trip.speed_mps);
-        let wish = EgoIntent {
+        let request = DriverRequest {
             engaged: true,
             predecessor: Predecessor::Unknown,
             target_speed: speed(self.corridor.traffic.target_speed_mps),
@@ -103,7 +103,7 @@ impl Traffic<'_> {
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let sensors = Sensors::blind(ACCURACY);
         let mut vehicle = Box::new(
-            Vehicle::new(called, &config, plant, length_m, wish, offset_us, sensors)
+            Vehicle::new(called, &config, plant, length_m, request, offset_us, sensors)
                 .map_err(|cause| refused(&cause))?,
         );
         vehicle.limit_slots(self.conditions.slots);

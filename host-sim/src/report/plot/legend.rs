@@ -98,8 +98,8 @@ pub(super) fn label_margin<'a>(names: impl IntoIterator<Item = &'a str>) -> f64 
 /// Labels lines at their ends, right of `area`: each as near to its line as the others allow.
 pub(super) fn label_ends(svg: &mut Svg, area: Area, mut ends: Vec<(Point, Entry)>) {
     ends.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
-    let wished: Vec<f64> = ends.iter().map(|end| end.0.1.clamp(area.top + 4.0, area.bottom - 2.0)).collect();
-    for (((x, y), entry), placed) in ends.into_iter().zip(spread(&wished, area.top + 4.0, area.bottom - 2.0)) {
+    let desired: Vec<f64> = ends.iter().map(|end| end.0.1.clamp(area.top + 4.0, area.bottom - 2.0)).collect();
+    for (((x, y), entry), placed) in ends.into_iter().zip(spread(&desired, area.top + 4.0, area.bottom - 2.0)) {
         let tone = entry.tone.class();
         let y = y.clamp(area.top, area.bottom);
         let turn = area.right + LABEL_OFFSET - 3.0;
@@ -113,11 +113,11 @@ pub(super) fn label_ends(svg: &mut Svg, area: Area, mut ends: Vec<(Point, Entry)
 }
 
 /// Moves ascending positions apart until they are a label's height from each other, within `[top, bottom]` if they fit.
-fn spread(wished: &[f64], top: f64, bottom: f64) -> Vec<f64> {
-    let mut placed: Vec<f64> = Vec::with_capacity(wished.len());
-    for &wish in wished {
+fn spread(desired: &[f64], top: f64, bottom: f64) -> Vec<f64> {
+    let mut placed: Vec<f64> = Vec::with_capacity(desired.len());
+    for &desired in desired {
         let least = placed.last().map_or(top, |above| above + LABEL_PITCH);
-        placed.push(wish.max(least));
+        placed.push(desired.max(least));
     }
     let mut most = bottom;
     for place in placed.iter_mut().rev() {

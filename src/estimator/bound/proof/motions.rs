@@ -1,5 +1,5 @@
 //! Random motions within random limits, in exact rational arithmetic, and what the bound's public functions say of them: a
-//! sample anywhere in its doubt, any number of steps, two bounds joined. Every truth is inside.
+//! sample anywhere in its uncertainty, any number of steps, two bounds joined. Every truth is inside.
 
 use super::super::*;
 use super::{down, up};
@@ -104,29 +104,29 @@ impl Motion {
         }
     }
 
-    /// A sample that may be anywhere in its doubt, taken within the doubt of its instant.
-    fn sample(&mut self, random: &mut Random, reach: &Reach) -> Bound {
+    /// A sample that may be anywhere in its uncertainty, taken within the uncertainty of its instant.
+    fn sample(&mut self, random: &mut Random, reach: &AccelerationRange) -> Bound {
         let [earlier, later] = [random.scaled(2_000_000), random.scaled(2_000_000)];
         let at = self.now + random.within(-later, earlier);
         let (off, faster) = (random.scaled(13 << 20), random.scaled(3 << 23));
-        // The word of the truth, and a word more of doubt for what is lost in it.
+        // The word of the truth, and a word more of uncertainty for what is lost in it.
         let position = down(self.body.position.0, PER_POSITION_WORD).0 as i64 + random.within(-off, off);
         let speed = down(self.body.speed, PER_SPEED_WORD).0 as i64;
         let speed = (speed + random.within(-faster, faster)).max(0);
-        let doubt = Doubt {
+        let uncertainty = Uncertainty {
             position: Distance::from_bits(off as i32 + 1),
             speed: Speed::from_bits(faster as i32 + 1),
             earlier: Duration::from_micros(earlier),
             later: Duration::from_micros(later),
         };
         let at = Instant::from_micros(at.cast_unsigned());
-        Bound::around(at, Position::from_bits(position), Speed::from_bits(speed as i32), &doubt, reach)
+        Bound::around(at, Position::from_bits(position), Speed::from_bits(speed as i32), &uncertainty, reach)
     }
 }
 
 fn drive(seed: u64) {
     let mut random = Random(seed);
-    let reach = Reach {
+    let reach = AccelerationRange {
         acceleration: Acceleration::from_bits(random.within(LEAST, i32::MAX.into()) as i32),
         braking: Acceleration::from_bits(random.within(LEAST, i32::MAX.into()) as i32),
     };
@@ -147,8 +147,8 @@ fn drive(seed: u64) {
             assert!(truth.body.is_inside(&of), "seed {seed}, step {step}: {of:?}");
             let stop = of.nearest_stop(&reach);
             let ahead = Body::from_words(stop.to_bits(), 0).position.0;
-            let rests = truth.body.after(-truth.limits.0, 3_600_000_000);
-            assert!(ahead <= rests.position.1, "seed {seed}, step {step}: {stop:?}");
+            let remainders = truth.body.after(-truth.limits.0, 3_600_000_000);
+            assert!(ahead <= remainders.position.1, "seed {seed}, step {step}: {stop:?}");
         }
         if step % 3 == 2 {
             let news = truth.sample(&mut random, &reach);

@@ -21,7 +21,7 @@ impl World<'_> {
             What::NoTime { seconds } => self.timeless_until = self.timeless_until.max(now + seconds),
             What::Torn { peer, half, messages } => self.torn = Some((peer, half, messages)),
             What::Overtaken { peer, half } => self.overtaken = Some((peer, half, None)),
-            What::Slot { peer, slot } => self.slot_wishes.push((peer, slot)),
+            What::Slot { peer, slot } => self.slot_requests.push((peer, slot)),
             What::Station { peer, station } => self.others[peer].rename(station),
             What::Follow { station } => self.follow = station,
             What::Wanted { speed } => {

@@ -53,10 +53,10 @@ macro_rules! follower {
                 let (mut acceleration, mut demand): ($float, $float) = (0.0, 0.0);
                 for (out, ahead) in out.iter_mut().zip(ahead) {
                     let behind = position - ahead.position + law.spacing + law.damping * (speed - ahead.speed);
-                    let wish = -law.gain * (larger(behind, law.farthest) + law.gap * speed);
+                    let request = -law.gain * (larger(behind, law.farthest) + law.gap * speed);
                     let low = larger(demand - law.slew, law.floor);
                     let high = smaller(demand + law.slew, law.ceiling);
-                    demand = larger(smaller(wish, high), low);
+                    demand = larger(smaller(request, high), low);
                     let behind = acceleration - demand;
                     acceleration = demand + law.keep * behind;
                     let mut after = speed + demand * law.step + behind * law.slip;

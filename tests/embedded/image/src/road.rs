@@ -4,9 +4,9 @@
 use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
-use holdover::wire::ego_intent::EgoIntent;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
-use holdover::wire::intent::{Intent, Limits};
+use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -45,11 +45,11 @@ impl Road {
         self.say(&Message::FollowUp(FollowUp { sequence, micros: (time % 1_000_000) as u32 }), hear);
     }
 
-    /// The ego's own motion and the driver's wish.
+    /// The ego's own motion and the driver's request.
     pub fn ego(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
         let predecessor = Predecessor::Station(StationHash(self.peers - 1));
-        let wish = EgoIntent { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
-        self.say(&Message::EgoIntent(wish), hear);
+        let request = DriverRequest { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
+        self.say(&Message::DriverRequest(request), hear);
         let motion = self.motion(at, self.peers, EGO);
         self.say(&Message::Ego(Said::Motion(motion)), hear);
     }
@@ -61,8 +61,8 @@ impl Road {
     }
 
     /// How a peer drives; with another time gap if `other`.
-    pub fn intent_of(&mut self, peer: u8, other: bool, hear: &mut impl FnMut(&Frame)) {
-        let intent = Intent {
+    pub fn parameters_of(&mut self, peer: u8, other: bool, hear: &mut impl FnMut(&Frame)) {
+        let parameters = DrivingParameters {
             length: Distance::from_mm(4_800),
             standstill: Distance::from_mm(2_000),
             predecessor: peer
@@ -81,7 +81,7 @@ impl Road {
             },
             horizon_tenths: 39,
         };
-        self.say(&Message::Peer(Slot(peer), Said::Intent(intent)), hear);
+        self.say(&Message::Peer(Slot(peer), Said::DrivingParameters(parameters)), hear);
     }
 
     /// The horizon that a peer computed from the motion that it sent last: on at its speed.

@@ -90,7 +90,7 @@ fn is_for_the_unit(id: &Id) -> bool {
     line(id).is_none_or(|line| line.sender != Node::Unit)
 }
 
-/// For a while the ego's own motion is missing, and at the end the driver's wish.
+/// For a while the ego's own motion is missing, and at the end the driver's request.
 fn is_silenced(at_s: f64, id: &Id) -> bool {
     let is_own = line(id).is_some_and(|line| matches!(line.content, Content::Said(Speaker::Ego, _)));
     is_own && (50.0..50.4).contains(&at_s)

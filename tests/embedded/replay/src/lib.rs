@@ -4,7 +4,7 @@
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::config::Envelope;
-use holdover::health::Refusal;
+use holdover::health::Cause;
 use holdover::time::{Duration, Instant};
 use holdover::wire::StationHash;
 use holdover::{Config, OnboardUnit};
@@ -137,7 +137,7 @@ pub fn live<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 pub fn refusals<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     unit: &OnboardUnit<PEERS, SAMPLES, STEPS>,
 ) -> impl Iterator<Item = [u8; RECORD]> {
-    Refusal::ALL.into_iter().map(|cause| {
+    Cause::ALL.into_iter().map(|cause| {
         let count = u64::from(unit.health().of(cause)).to_le_bytes();
         let id = Id::Standard(StandardId::new(cause as u16).unwrap_or(StandardId::ZERO));
         encode(Instant::ZERO, &Event::Frame(Frame { id, length: 8, data: count }))

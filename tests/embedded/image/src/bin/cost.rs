@@ -95,7 +95,7 @@ impl<const PEERS: usize> Bench<'_, PEERS> {
                     continue;
                 }
                 if second != Second::One {
-                    road.intent_of(peer, second != Second::Usual && tick % 20 == 0, &mut hear);
+                    road.parameters_of(peer, second != Second::Usual && tick % 20 == 0, &mut hear);
                 }
                 road.motion_of(peer, at, age, &mut hear);
                 if second == Second::Horizons {

@@ -1,4 +1,4 @@
-//! `PeerIntent`, `OwnIntent`: the parameters of the law that a vehicle drives by, in three multiplexed frames.
+//! `PeerDrivingParameters`, `OwnDrivingParameters`: the parameters of the law that a vehicle drives by, in three multiplexed frames.
 
 use super::Predecessor;
 use super::bits::Payload;
@@ -24,7 +24,7 @@ pub struct Limits {
 /// How a vehicle will drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Intent {
+pub struct DrivingParameters {
     /// Bumper to bumper, `l`; 0 to 40.95 m by 1 cm.
     pub length: Distance,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m by 1 cm.
@@ -62,7 +62,7 @@ const JERK: Field = Field::unsigned("JerkLimit", 36, 10).steps(20, "m/s3").part(
 const EMERGENCY: Field = Field::unsigned("EmergencyBraking", 46, 10).steps(50, "m/s2").part(2);
 const HORIZON: Field = Field::unsigned("HorizonLength", 56, 8).steps(10, "s").part(2);
 
-/// Desired time gap, shared with `EgoIntent`; 800 and above are reserved.
+/// Desired time gap, shared with `DriverRequest`; 800 and above are reserved.
 pub(super) const fn time_gap(start: u32) -> Field {
     Field::unsigned("TimeGap", start, 10).limits(0, 799).steps(200, "s")
 }
@@ -87,7 +87,7 @@ pub const FIELDS: &[Field] = &[
     HORIZON,
 ];
 
-impl Intent {
+impl DrivingParameters {
     /// The three parts' payloads under this tag (modulo 4); what does not fit is limited to its field's range.
     #[must_use]
     pub fn encode(&self, tag: u8) -> [Payload; 3] {
@@ -108,7 +108,7 @@ impl Intent {
         [a, b, c]
     }
 
-    /// From the three parts' payloads; every payload within the fields' limits is an intent.
+    /// From the three parts' payloads; every payload within the fields' limits is driving parameters.
     #[must_use]
     pub fn decode([a, b, c]: &[Payload; 3]) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! `EgoIntent`: what the driver or the planner wants of the unit, in one frame.
+//! `DriverRequest`: what the driver or the planner wants of the unit, in one frame.
 
 use super::Predecessor;
 use super::bits::Payload;
@@ -7,10 +7,10 @@ use super::motion::speed;
 use super::predecessor;
 use crate::units::{Seconds, Speed};
 
-/// The vehicle's wish.
+/// The vehicle's desired.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct EgoIntent {
+pub struct DriverRequest {
     /// Whether the unit shall drive.
     pub engaged: bool,
     /// Whom it shall follow.
@@ -25,14 +25,14 @@ const ENGAGED: Field = Field::unsigned("Engaged", 12, 1).named(&[(0, "off"), (1,
 const PREDECESSOR: predecessor::Fields = predecessor::fields(13);
 const TARGET_SPEED: Field = speed("TargetSpeed", 23);
 const TIME_GAP: Field = {
-    let field = super::intent::time_gap(38);
+    let field = super::driving_parameters::time_gap(38);
     Field { none: Some(1023), values: &[(1023, "as configured")], ..field }
 };
 
 /// The frame.
 pub const FIELDS: &[Field] = &[ENGAGED, PREDECESSOR.kind(), PREDECESSOR.station(), TARGET_SPEED, TIME_GAP];
 
-impl EgoIntent {
+impl DriverRequest {
     /// The frame's payload; what does not fit is limited to its field's range.
     #[must_use]
     pub fn encode(&self) -> [Payload; 1] {
@@ -42,7 +42,7 @@ impl EgoIntent {
         [TIME_GAP.with_known(a, self.time_gap)]
     }
 
-    /// From the frame's payload; every payload within the fields' limits is a wish.
+    /// From the frame's payload; every payload within the fields' limits is a desired.
     #[must_use]
     pub fn decode([a]: &[Payload; 1]) -> Self {
         Self {

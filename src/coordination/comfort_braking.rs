@@ -17,9 +17,9 @@ const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
 /// lets its controller. So the harder is the smaller one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Gentleness(u8);
+pub struct ComfortBraking(u8);
 
-impl Gentleness {
+impl ComfortBraking {
     /// As the configuration says.
     pub(crate) const NONE: Self = Self(0);
 
@@ -48,7 +48,7 @@ mod tests {
     #[test]
     fn it_is_the_gentlest_braking_that_stands_within_the_way_and_not_a_millimetre_more() {
         let allowed = |mm, mm_per_s| {
-            let gentle = Gentleness::within(Distance::from_mm(mm), Speed::from_mm_per_s(mm_per_s));
+            let gentle = ComfortBraking::within(Distance::from_mm(mm), Speed::from_mm_per_s(mm_per_s));
             gentle.limit(Acceleration::from_mm_per_s2(4_000)).to_mm_per_s2()
         };
         // 12 m/s for 1 s, then v²/2b.
@@ -63,16 +63,16 @@ mod tests {
 
     #[test]
     fn it_never_makes_a_vehicle_brake_harder_than_it_would() {
-        let gentle = Gentleness::within(Distance::from_mm(60_001), Speed::from_mm_per_s(12_000));
+        let gentle = ComfortBraking::within(Distance::from_mm(60_001), Speed::from_mm_per_s(12_000));
         assert_eq!(gentle.limit(Acceleration::from_mm_per_s2(1_200)).to_mm_per_s2(), 1_200);
-        assert_eq!(Gentleness::NONE.limit(Acceleration::from_mm_per_s2(4_000)).to_mm_per_s2(), 4_000);
+        assert_eq!(ComfortBraking::NONE.limit(Acceleration::from_mm_per_s2(4_000)).to_mm_per_s2(), 4_000);
     }
 
     #[test]
     fn of_two_the_harder_is_the_smaller() {
-        assert!(Gentleness::NONE < Gentleness::within(Distance::from_mm(61_000), Speed::from_mm_per_s(12_000)));
+        assert!(ComfortBraking::NONE < ComfortBraking::within(Distance::from_mm(61_000), Speed::from_mm_per_s(12_000)));
         let (near, far) = (Distance::from_mm(61_000), Distance::from_mm(200_000));
         let speed = Speed::from_mm_per_s(12_000);
-        assert!(Gentleness::within(near, speed) < Gentleness::within(far, speed));
+        assert!(ComfortBraking::within(near, speed) < ComfortBraking::within(far, speed));
     }
 }

@@ -16,14 +16,14 @@ pub(crate) const UNCLEAR: Duration = Duration::from_millis(6_000);
 /// With one station.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub(crate) struct Patience {
+pub(crate) struct YieldTimer {
     /// Since when it has not heeded the ego, in one way or the other.
     unheeded: Held<Instant>,
     /// Since when it has overlooked the ego.
     overlooked: Held<Instant>,
 }
 
-impl Patience {
+impl YieldTimer {
     /// Nothing to bear with.
     pub(crate) const FULL: Self = Self { unheeded: Held::Nothing, overlooked: Held::Nothing };
 
@@ -52,8 +52,8 @@ mod tests {
 
     /// When patience is over with a station that is heard every 100 ms, in tenths of a second.
     fn over_at(mut regard: impl FnMut(u64) -> Regard) -> Option<u64> {
-        let mut patience = Patience::FULL;
-        (0..200).find(|tick| patience.is_over(Instant::from_micros(tick * 100_000), regard(*tick)))
+        let mut yield_timer = YieldTimer::FULL;
+        (0..200).find(|tick| yield_timer.is_over(Instant::from_micros(tick * 100_000), regard(*tick)))
     }
 
     #[test]

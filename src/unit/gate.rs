@@ -5,7 +5,7 @@ use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::controller::Facts;
 use crate::envelope::{self, Obstacle, Reckoning, Spare};
-use crate::estimator::bound::{Bound, Reach};
+use crate::estimator::bound::{AccelerationRange, Bound};
 use crate::estimator::{Reading, State};
 use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
@@ -19,7 +19,7 @@ use crate::wire::Predecessor;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Displaced {
     bound: Bound,
-    reach: Reach,
+    reach: AccelerationRange,
     length: Distance,
 }
 
@@ -45,7 +45,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if seen.is_some() && target == self.visible() {
             return seen;
         }
-        let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &Reach::WORST));
+        let stood = self.ranging.standing(now).map(|sight| sight.bound().after(now, &AccelerationRange::WORST));
         let stood = stood.and_then(|bound| self.near(bound.lowest_position(), bound.lowest_speed()));
         let target = target.filter(|index| !self.is_seen_past(*index, now));
         let certain = target.and_then(|index| self.certain_rear(now, index));
@@ -199,6 +199,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let target = self.visible().and_then(|index| self.peers.get(index)?.station());
         let is_passed = move |rear: &Bound| rearmost.ahead_of(rear.lowest_position()) > DEFAULT_LENGTH;
         let ahead = self.ranging.strangers(now, target).filter(move |rear| !is_passed(rear));
-        ahead.map(move |rear| Obstacle::rear(&rear.after(now, &Reach::WORST), Distance::ZERO, &Reach::WORST))
+        ahead.map(move |rear| {
+            Obstacle::rear(&rear.after(now, &AccelerationRange::WORST), Distance::ZERO, &AccelerationRange::WORST)
+        })
     }
 }

@@ -8,7 +8,7 @@
 
 use super::OnboardUnit;
 use crate::controller::Gains;
-use crate::coordination::{Entry, REVIEW, Slots, Standing};
+use crate::coordination::{Entry, PeerApproach, REVIEW, Slots};
 use crate::estimator::Reading;
 use crate::peers::{Sample, Track};
 use crate::time::Instant;
@@ -21,7 +21,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
         self.estimator.foresee_own(now, review, sample, &manner);
         let Some(mut review) = review.map(|review| review.max(now)) else { return };
-        let (mut crossing, mut gentleness) = (self.coordination.next(), self.coordination.choice().gentleness);
+        let (mut crossing, mut comfort) = (self.coordination.next(), self.coordination.choice().comfort);
         let mut gains = self.association.map(|(_, gains)| gains);
         let minded = self.minded(now, crossing);
         while self.estimator.is_own_short(now) {
@@ -29,14 +29,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             crossing = self.coordination.next_of(crossing, own.position, self.config.length);
             let target = self.outlook(review, &own, crossing, minded, manner.target);
             let is_new = target != manner.target;
-            let may = self.gentleness(target, crossing, own.position, own.speed);
-            if is_new || may < gentleness {
-                gentleness = may;
+            let may = self.comfort(target, crossing, own.position, own.speed);
+            if is_new || may < comfort {
+                comfort = may;
                 if is_new {
                     gains = target.and_then(|index| self.gains_behind(index, &own, review));
                 }
                 let association = gains.zip(target).map(|(gains, index)| (gains, self.standstill_at(crossing, index)));
-                manner = self.estimator.manner(self.driver_with(association, gentleness), target, &self.peers);
+                manner = self.estimator.manner(self.driver_with(association, comfort), target, &self.peers);
             }
             review = review.plus(REVIEW);
             self.estimator.carry_own_on(now, review, &manner);
@@ -114,7 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// A peer in the order.
-    pub(super) fn entry(&self, index: usize, standing: &Standing) -> Option<Entry> {
+    pub(super) fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
         Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
     }

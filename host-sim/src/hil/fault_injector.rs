@@ -21,7 +21,7 @@ const BABBLE: usize = 4;
 const OFF_M: i64 = 50;
 
 /// The presser.
-pub struct Villain {
+pub struct FaultInjector {
     faults: Vec<Played>,
     base: BaseId,
     sender: Sender<0>,
@@ -36,7 +36,7 @@ struct Played {
     failed: Option<String>,
 }
 
-impl Villain {
+impl FaultInjector {
     /// With these faults in mind.
     #[must_use]
     pub fn new(faults: &[Fault], base: BaseId) -> Self {
@@ -122,7 +122,7 @@ impl Villain {
             self.next_s = at_s + 0.01;
         }
         if (errors || !frames.is_empty())
-            && let Ok(port) = rig.villain()
+            && let Ok(port) = rig.injector()
         {
             frames.into_iter().for_each(|frame| drop(port.send(frame)));
             if errors {

@@ -1,4 +1,4 @@
-//! How a vehicle drives, as far as it is known: its published intent (or the lack of it) enters, the constants of its
+//! How a vehicle drives, as far as it is known: its published driving parameters (or the lack of it) enters, the constants of its
 //! prediction step leave.
 
 use super::actuator::{Actuator, State};
@@ -10,7 +10,7 @@ use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, RingPosition, Seconds, Speed};
 use crate::wire::Predecessor;
-use crate::wire::intent::{Intent, Limits};
+use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
 /// What a vehicle is after.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ pub enum Aim {
 /// A vehicle's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Driver {
+pub struct VehicleModel {
     /// What it is after.
     pub aim: Aim,
     /// `T`.
@@ -52,7 +52,7 @@ pub struct Driver {
     pub limits: Limits,
 }
 
-impl Driver {
+impl VehicleModel {
     /// Of a vehicle of which nothing is known: its acceleration fades out.
     pub const UNKNOWN: Self = Self {
         aim: Aim::Fade,
@@ -67,19 +67,19 @@ impl Driver {
 
     /// Of a peer, from what it published.
     #[must_use]
-    pub fn of_intent(intent: &Intent, model: &Model) -> Self {
-        let aim = match intent.predecessor {
+    pub fn of_parameters(parameters: &DrivingParameters, model: &Model) -> Self {
+        let aim = match parameters.predecessor {
             Predecessor::Unknown => Aim::Fade,
-            Predecessor::None => Aim::Lead { largest: FREE_ROAD_ACCELERATION, target_speed: intent.target_speed },
+            Predecessor::None => Aim::Lead { largest: FREE_ROAD_ACCELERATION, target_speed: parameters.target_speed },
             Predecessor::Station(_) => Aim::Follow {
-                gain: intent.gain,
-                damping: intent.damping,
-                time_gap: intent.time_gap,
-                standstill: if model.standstill { intent.standstill } else { Distance::ZERO },
-                target_speed: intent.target_speed,
+                gain: parameters.gain,
+                damping: parameters.damping,
+                time_gap: parameters.time_gap,
+                standstill: if model.standstill { parameters.standstill } else { Distance::ZERO },
+                target_speed: parameters.target_speed,
             },
         };
-        Self { aim, lag: micros(intent.lag), limits: intent.limits }
+        Self { aim, lag: micros(parameters.lag), limits: parameters.limits }
     }
 
     /// Of the ego, from its configuration and what it is after.
@@ -139,17 +139,17 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The demand of this step: the wish, but no more than the cap, within the vehicle's limits. A follower without a
+    /// The demand of this step: the desired, but no more than the cap, within the vehicle's limits. A follower without a
     /// predecessor fades.
     #[inline(always)]
     #[must_use]
     pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>, cap: Acceleration) -> Acceleration {
-        let wish = match (&self.course, ahead) {
-            (Course::Lead(leader), _) => leader.wish(state.speed),
-            (Course::Follow(follower), Some((position, speed))) => follower.wish(state, position, speed),
+        let desired = match (&self.course, ahead) {
+            (Course::Lead(leader), _) => leader.desired(state.speed),
+            (Course::Follow(follower), Some((position, speed))) => follower.desired(state, position, speed),
             (Course::Follow(_), None) | (Course::Fade, _) => return Acceleration::ZERO,
         };
-        self.actuator.limit(wish.min(cap), state.demand)
+        self.actuator.limit(desired.min(cap), state.demand)
     }
 
     /// As many steps as there is room for, behind a predecessor at these of its own steps; the state at the last of them, and
@@ -165,8 +165,8 @@ impl Stride {
             Course::Follow(follower) => {
                 let steps = out.iter_mut().zip(ahead);
                 let done = steps.len();
-                let wish = |state: &State, ahead: &Step| follower.wish(state, ahead.position, ahead.speed);
-                (self.actuator.run(state, steps, wish), done)
+                let desired = |state: &State, ahead: &Step| follower.desired(state, ahead.position, ahead.speed);
+                (self.actuator.run(state, steps, desired), done)
             }
             Course::Lead(_) | Course::Fade => {
                 let done = out.len().min(ahead.len());
@@ -183,7 +183,7 @@ impl Stride {
         let done = out.len();
         let steps = out.iter_mut().map(|out| (out, ()));
         let state = match &self.course {
-            Course::Lead(leader) => self.actuator.run(state, steps, |state, ()| leader.wish(state.speed)),
+            Course::Lead(leader) => self.actuator.run(state, steps, |state, ()| leader.desired(state.speed)),
             Course::Follow(_) | Course::Fade => self.actuator.coast(state, steps.map(|(out, ())| out)),
         };
         (state, done)
