@@ -36,6 +36,7 @@ pub mod fixed;
 pub mod health;
 mod held;
 pub mod lockstep;
+pub mod model;
 pub mod parameters;
 pub mod peers;
 #[cfg(test)]

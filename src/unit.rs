@@ -9,9 +9,10 @@ use crate::config::{Config, ConfigError};
 use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
 use crate::coordination::{ComfortBraking, Coordination};
 use crate::envelope::Reckoning;
-use crate::estimator::{Aim, Estimator, Reading, Remainders, State, VehicleModel};
+use crate::estimator::Estimator;
 use crate::health::{Cause, Health, Incident};
 use crate::held::Held;
+use crate::model::{Aim, Reading, Remainders, State, VehicleModel};
 use crate::peers::{Peers, Sample};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
@@ -302,7 +303,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if age <= Duration::ZERO {
             return Some(state);
         }
-        let driver = VehicleModel::of_config(&self.config, Aim::Fade);
+        let driver = self.config.vehicle_model(Aim::Fade);
         Some(driver.coast(state, age.min(self.config.link.ego_timeout), &self.config.prediction.model))
     }
 
@@ -325,7 +326,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             },
             None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
         };
-        let VehicleModel { aim, lag, mut limits } = VehicleModel::of_config(&self.config, aim);
+        let VehicleModel { aim, lag, mut limits } = self.config.vehicle_model(aim);
         limits.braking = comfort.limit(limits.braking);
         VehicleModel { aim, lag, limits }
     }

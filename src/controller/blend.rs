@@ -1,7 +1,7 @@
 //! Smooth re-association: the jump of an estimate when news ends a silence enters, and fades out of what the controller
 //! sees, so that the command does not jump.
 
-use crate::estimator::Reading;
+use crate::model::Reading;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Fraction, Speed};
 
@@ -59,7 +59,7 @@ impl Blend {
 /// The share that is left after one period.
 #[must_use]
 pub fn keep_over(period: Duration) -> Fraction {
-    crate::estimator::Decay::over(period, BLEND).keep
+    crate::model::Decay::over(period, BLEND).keep
 }
 
 #[cfg(test)]

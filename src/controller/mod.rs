@@ -1,7 +1,7 @@
 //! The controller: the ego's state and the estimate of its target at now enter, the demanded acceleration leaves.
 //!
 //! Eqs 5 and 7 with the *estimate at now*, never the stale sample. The law is taken over the unit's own period as the same
-//! semi-implicit step that the prediction takes over `δt` (see [`crate::estimator::Follower`]): at 10 ms it differs from
+//! semi-implicit step that the prediction takes over `δt` (see [`crate::model::Follower`]): at 10 ms it differs from
 //! eq. 7 by less than 1 % in gain, and the model that others predict this vehicle with is the controller it drives by.
 
 mod blend;
@@ -14,8 +14,8 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Follower, Leader, Reading, State, Stride, VehicleModel};
 use crate::held::Held;
+use crate::model::{Follower, Leader, Reading, State, Stride, VehicleModel};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 

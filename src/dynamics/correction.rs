@@ -16,10 +16,10 @@
 //! brakes hold whatever there is, and `d` is kept. What the model misses stays stable where it is less than
 //! `(1 + s/ω)²` of what was asked at every frequency: so with a lag of a third to any multiple of the published one.
 
-use crate::config::{Config, Model};
-use crate::estimator::{Actuator, Decay, State};
+use crate::config::Config;
 use crate::fixed::{quotient, saturate_i32};
 use crate::held::Held;
+use crate::model::{Actuator, Decay, Model, State};
 use crate::time::Duration;
 use crate::units::{Acceleration, Fraction, Speed};
 
@@ -73,7 +73,7 @@ impl Correction {
 
 impl Memory {
     fn starting(config: &Config, ego: &State) -> Self {
-        let lag = Duration::from_micros(config.lag.to_multiple_of(1_000_000));
+        let lag = Duration::of_fine_seconds(config.lag);
         let unlimited = Model { limits: false, ..Model::HOLDOVER };
         let time_constant = TIME_CONSTANT.max(config.period.times(PERIODS));
         let kept = Decay::over(config.period, time_constant).keep;

@@ -1,11 +1,9 @@
 //! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
 //! horizon brought up to now leaves.
 
-use super::actuator::{Remainders, State};
 use super::delay::adjusted;
-use super::horizon::{Anchor, Grid, Horizon, Step};
-use super::vehicle_model::{Stride, VehicleModel};
-use crate::config::Model;
+use super::horizon::{Anchor, Grid, Horizon};
+use crate::model::{Model, Remainders, State, Step, Stride, VehicleModel};
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};

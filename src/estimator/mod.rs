@@ -13,33 +13,21 @@
 //!
 //! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
 
-mod actuator;
-pub mod bound;
 pub mod certain;
 mod chain;
 mod delay;
-mod exponential;
-pub mod follower;
 mod forecast;
 mod horizon;
 mod interpolation;
-mod leader;
-mod position;
-mod vehicle_model;
 
-pub use actuator::{Actuator, Remainders, State};
-pub use exponential::Decay;
-pub use follower::Follower;
-pub use horizon::{Anchor, Grid, Horizon, Reading, Step};
-pub use leader::Leader;
-pub use position::Path;
-pub use vehicle_model::{Aim, Stride, VehicleModel};
+pub use horizon::{Anchor, Grid, Horizon};
 
 use chain::Chain;
 use forecast::{Ahead, Forecast, News, steps};
 
-use crate::config::{Model, Prediction};
+use crate::config::Prediction;
 use crate::held::Held;
+use crate::model::{Model, Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;

@@ -6,8 +6,8 @@
 
 use super::OnboardUnit;
 use crate::coordination::Axis;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::health::Cause;
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use crate::peers::{Admission, Off, Sample, Track, timely};

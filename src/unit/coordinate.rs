@@ -7,9 +7,9 @@ use super::OnboardUnit;
 use crate::coordination::{
     Arrival, Axis, ComfortBraking, Crossing, Itinerary, MapError, PeerApproach, Present, Side, Slots, standstill_behind,
 };
-use crate::estimator::Reading;
 use crate::fixed::{quotient, saturate_i32};
 use crate::health::Cause;
+use crate::model::Reading;
 use crate::parameters::{DEFAULT_LENGTH, REACH};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Gain, Position, Seconds, Speed};

@@ -9,7 +9,7 @@
 use super::OnboardUnit;
 use crate::controller::Gains;
 use crate::coordination::{Entry, PeerApproach, REVIEW, Slots};
-use crate::estimator::Reading;
+use crate::model::Reading;
 use crate::peers::{Sample, Track};
 use crate::time::Instant;
 use crate::units::Position;

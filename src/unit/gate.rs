@@ -5,8 +5,8 @@ use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::controller::Facts;
 use crate::envelope::{self, Obstacle, Reckoning, Spare};
-use crate::estimator::bound::{AccelerationRange, Bound};
-use crate::estimator::{Reading, State};
+use crate::model::bound::{AccelerationRange, Bound};
+use crate::model::{Reading, State};
 use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };

@@ -12,8 +12,8 @@
 
 use super::OnboardUnit;
 use super::sight::{Sight, Verdict};
-use crate::estimator::bound::{Bound, Uncertainty};
 use crate::health::Cause;
+use crate::model::bound::{Bound, Uncertainty};
 use crate::parameters::{
     LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
     UNPUBLISHED_SPEED_ACCURACY,

@@ -8,8 +8,8 @@
 use super::OnboardUnit;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle};
-use crate::estimator::State;
 use crate::fixed::{quotient, saturate_i32};
+use crate::model::State;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
 

@@ -12,9 +12,9 @@
 //! none has contradicted it for [`SETTLED`]. If they saw past all that is certain of the target, nobody is where that is
 //! held to be, and the contradiction lasts until the target is heard again, however long it is silent.
 
-use crate::estimator::Reading;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::held::Held;
+use crate::model::Reading;
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
 use crate::units::{Position, Speed};
 use crate::wire::StationHash;

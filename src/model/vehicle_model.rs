@@ -1,14 +1,14 @@
 //! How a vehicle drives, as far as it is known: its published driving parameters (or the lack of it) enters, the constants of its
 //! prediction step leave.
 
-use super::actuator::{Actuator, State};
+use super::actuator::Actuator;
 use super::follower::Follower;
-use super::horizon::Step;
 use super::leader::Leader;
-use crate::config::{Config, Model};
+use super::state::{State, Step};
+use super::switches::Model;
 use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, RingPosition, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Gain, Jerk, RingPosition, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
@@ -79,13 +79,7 @@ impl VehicleModel {
                 target_speed: parameters.target_speed,
             },
         };
-        Self { aim, lag: micros(parameters.lag), limits: parameters.limits }
-    }
-
-    /// Of the ego, from its configuration and what it is after.
-    #[must_use]
-    pub fn of_config(config: &Config, aim: Aim) -> Self {
-        Self { aim, lag: micros(config.lag), limits: config.limits }
+        Self { aim, lag: Duration::of_fine_seconds(parameters.lag), limits: parameters.limits }
     }
 
     /// The state after some time under the demand in force.
@@ -116,10 +110,6 @@ impl VehicleModel {
 /// The speed with which a follower catches up: a fifth more than it wants on a free road.
 fn catch_up(target_speed: Speed) -> Speed {
     target_speed.plus(Speed::from_bits(target_speed.to_bits() / 5))
-}
-
-const fn micros(lag: FineSeconds) -> Duration {
-    Duration::from_micros(lag.to_multiple_of(1_000_000))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

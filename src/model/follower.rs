@@ -23,7 +23,7 @@
 //!
 //! Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
 
-use super::actuator::State;
+use super::state::State;
 use crate::fixed::saturate_i32;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
