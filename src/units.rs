@@ -5,7 +5,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, Rest, SecondsFormat,
-    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, ratio, saturate_i32, sum_around, unratio,
+    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, quotient, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -155,6 +155,15 @@ impl Speed {
 }
 
 impl Acceleration {
+    /// A change of speed over so many microseconds, saturating; zero over none.
+    #[must_use]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+    pub const fn of_change(change: Speed, micros: i64) -> Self {
+        // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
+        let change = (change.to_bits() as i64).saturating_mul(4_000_000);
+        Self::from_bits(saturate_i32(quotient(change, micros)))
+    }
+
     /// The gain in speed at this acceleration for that time.
     #[inline(always)]
     #[must_use]

@@ -27,7 +27,7 @@ pub enum Course {
         /// How the ego drives.
         driver: VehicleModel,
         /// The target's reading and length.
-        target: Option<(Reading, Option<Distance>)>,
+        target: Option<(Reading, Distance)>,
         /// No more acceleration than this, whatever the law asks for.
         cap: Acceleration,
     },
@@ -61,7 +61,7 @@ pub struct Controller {
     /// Since when the course is caution.
     caution: Option<Instant>,
     /// The step of the law that was driven by last, which is made of a driver and a length.
-    stride: Held<(VehicleModel, Option<Distance>, Stride)>,
+    stride: Held<(VehicleModel, Distance, Stride)>,
 }
 
 /// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
@@ -148,10 +148,10 @@ impl Controller {
         config: &Config,
         driver: &VehicleModel,
         ego: &State,
-        target: Option<(Reading, Option<Distance>)>,
+        target: Option<(Reading, Distance)>,
         cap: Acceleration,
     ) -> Acceleration {
-        let length = target.and_then(|(_, length)| length);
+        let length = target.map_or(Distance::ZERO, |(_, length)| length);
         let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
         if !self.stride.as_ref().is_some_and(is_same) {
             self.stride.set((*driver, length, driver.over(config.period, length, &config.prediction.model)));

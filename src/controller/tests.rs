@@ -44,7 +44,7 @@ fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law {
         driver: config.vehicle_model(aim),
-        target: Some((reading, Some(Distance::from_mm(4_800)))),
+        target: Some((reading, Distance::from_mm(4_800))),
         cap: Acceleration::MAX,
     }
 }
@@ -193,7 +193,7 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
         let reading = Reading { position: Position::from_mm(ahead), speed: Speed::from_mm_per_s(9_000) };
         Course::Law {
             driver: config.vehicle_model(aim(gain, damping)),
-            target: Some((reading, None)),
+            target: Some((reading, crate::parameters::DEFAULT_LENGTH)),
             cap: Acceleration::MAX,
         }
     });

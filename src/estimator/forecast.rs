@@ -44,8 +44,8 @@ pub struct News<'a> {
     pub received: Option<(&'a Knots, &'a DrivingParameters)>,
     /// How the vehicle drives.
     pub driver: VehicleModel,
-    /// Length of its predecessor.
-    pub length_ahead: Option<Distance>,
+    /// Length of its predecessor; of no account without one.
+    pub length_ahead: Distance,
 }
 
 impl<const STEPS: usize> Forecast<'_, STEPS> {

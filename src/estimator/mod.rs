@@ -49,7 +49,7 @@ pub struct Manner {
     /// The slot of whom it follows.
     pub target: Option<usize>,
     driver: VehicleModel,
-    length_ahead: Option<Distance>,
+    length_ahead: Distance,
     stride: Stride,
 }
 
@@ -193,11 +193,9 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         // How it drives is asked only when its step has to be made, or its horizon starts anew.
         let course = || {
             let length_ahead = match ahead {
-                Some(Ahead::Peer(other)) => {
-                    peers.get(other).and_then(|other| other.parameters()).map(|parameters| parameters.length)
-                }
-                Some(Ahead::Own) => Some(*own_length),
-                None => None,
+                Some(Ahead::Peer(other)) => peers.length_of(other),
+                Some(Ahead::Own) => *own_length,
+                None => Distance::ZERO,
             };
             let driver = match track.parameters() {
                 Some(parameters) if ahead.is_some() || parameters.predecessor == Predecessor::None => {
@@ -250,7 +248,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         target: Option<usize>,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Manner {
-        let length_ahead = target.and_then(|index| peers.get(index)?.parameters().map(|parameters| parameters.length));
+        let length_ahead = target.map_or(Distance::ZERO, |index| peers.length_of(index));
         Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
     }
 

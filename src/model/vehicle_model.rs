@@ -6,7 +6,7 @@ use super::follower::Follower;
 use super::leader::Leader;
 use super::state::{State, Step};
 use super::switches::Model;
-use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
+use crate::parameters::{FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Gain, Jerk, RingPosition, Seconds, Speed};
 use crate::wire::Predecessor;
@@ -88,14 +88,14 @@ impl VehicleModel {
         Actuator::over(time, self.lag, &self.limits, model).drive(state, state.demand)
     }
 
-    /// The constants of a step of this length behind a predecessor of this length.
+    /// The constants of a step of this length behind a predecessor of this length, which is of no account without one.
     #[must_use]
-    pub fn over(&self, step: Duration, length_ahead: Option<Distance>, model: &Model) -> Stride {
+    pub fn over(&self, step: Duration, length_ahead: Distance, model: &Model) -> Stride {
         let course = match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
             Aim::Follow { gain, damping, time_gap, standstill, target_speed } => {
-                let spacing = length_ahead.unwrap_or(DEFAULT_LENGTH).plus(standstill);
+                let spacing = length_ahead.plus(standstill);
                 let catch_up = model.limits.then(|| catch_up(target_speed));
                 Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
             }

@@ -11,6 +11,7 @@ use crate::config::Link as Settings;
 use crate::health::Cause;
 use crate::held::Held;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
+use crate::parameters::DEFAULT_LENGTH;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
@@ -135,6 +136,18 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub const fn parameters(&self) -> Option<&DrivingParameters> {
         self.parameters.as_ref()
+    }
+
+    /// How long it says that it is.
+    #[must_use]
+    pub fn published_length(&self) -> Option<Distance> {
+        self.parameters().map(|parameters| parameters.length)
+    }
+
+    /// How long it is: as it says, or else as long as a car.
+    #[must_use]
+    pub fn length(&self) -> Distance {
+        self.published_length().unwrap_or(DEFAULT_LENGTH)
     }
 
     /// The horizon that it computed from its newest sample, if that came.

@@ -4,14 +4,13 @@
 
 use heapless::Vec;
 
-use super::{Estimate, MAX_FRAMES, OnboardUnit};
-use crate::config::Config;
-use crate::controller::Mode;
-use crate::dynamics::Inversion;
-use crate::health::Cause;
+use super::scene::Scene;
+use super::{Estimate, MAX_FRAMES};
+use crate::controller::{Gains, Mode};
+use crate::health::{Cause, Health};
 use crate::held::Held;
 use crate::model::bound::Bound;
-use crate::model::{Aim, Reading, State, VehicleModel};
+use crate::model::{Aim, Reading, VehicleModel};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
@@ -23,7 +22,7 @@ use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
 use crate::wire::status::Status;
-use crate::wire::{Frame, Message, Predecessor, Said};
+use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
 
 /// How many own motions go by from one driving parameters to the next.
 const INTENT_EVERY: u8 = 5;
@@ -33,10 +32,20 @@ const INTENT_AT_ONCE: u8 = 2;
 /// How many own motions go by from one route to the next; tags count modulo 4.
 const ROUTE_EVERY: u8 = 2;
 
-/// When what is due.
+/// The own messages of a tick.
+pub(super) struct Report<'a> {
+    pub mode: Mode,
+    pub gains: Option<Gains>,
+    /// The ego's motion with the demand in force up to its stamp: from it a receiver's model repeats the demand of this tick. `None`
+    /// if it is too old.
+    pub ego: Option<&'a Sample>,
+    pub health: &'a Health,
+}
+
+/// When what is due, and the end-to-end state of what is sent.
 #[derive(Clone, Debug)]
 pub(super) struct Outbox {
-    inversion: Inversion,
+    sender: Sender<0>,
     tick: u8,
     tag: u8,
     page: u8,
@@ -48,9 +57,9 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    pub(super) const fn new() -> Self {
+    pub(super) const fn new(base_id: BaseId) -> Self {
         Self {
-            inversion: Inversion::new(),
+            sender: Sender::new(base_id),
             tick: 0,
             tag: 0,
             page: 0,
@@ -61,22 +70,14 @@ impl Outbox {
         }
     }
 
-    /// The command of this tick.
-    pub(super) fn command(
-        &mut self,
-        config: &Config,
-        acceleration: Acceleration,
-        ego: Option<&State>,
-        mode: Mode,
-        limited: bool,
-    ) -> Command {
+    /// The number of this tick's command.
+    pub(super) fn next_tick(&mut self) -> u8 {
         self.tick = self.tick.wrapping_add(1) % 64;
-        let effort = self.inversion.effort(config, ego, mode != Mode::Standby, acceleration);
-        Command { acceleration, effort, mode: mode.code(), limited, tick: self.tick }
+        self.tick
     }
 
     /// Whether the own messages are due; a schedule that was missed starts anew.
-    fn is_due(&mut self, now: Instant, period: Duration) -> bool {
+    pub(super) fn is_due(&mut self, now: Instant, period: Duration) -> bool {
         let due = self.due.unwrap_or(now);
         if now < due {
             self.due = Some(due);
@@ -108,101 +109,78 @@ impl Outbox {
     }
 }
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// Everything that this tick sends.
-    pub(super) fn send(
+impl Outbox {
+    /// Command and estimate, which every tick sends.
+    pub(super) fn send_answer(
         &mut self,
-        now: Instant,
         command: &Command,
         estimate: Option<&Estimate>,
-        last_demand: Acceleration,
-        target: Option<usize>,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
-        if !self.is_started() {
-            return;
-        }
         self.emit(&Message::Command(*command), frames);
         if let Some(estimate) = estimate {
-            self.emit(&Message::Estimate(self.target_estimate(estimate)), frames);
+            let estimate = self.target_estimate(estimate);
+            self.emit(&Message::Estimate(estimate), frames);
         }
-        if !self.outbox.is_due(now, self.config.link.period) {
-            return;
+    }
+
+    /// The own messages, when they are due.
+    pub(super) fn send_own<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &mut self,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        now: Instant,
+        report: &Report<'_>,
+        frames: &mut Vec<Frame, MAX_FRAMES>,
+    ) {
+        if let Some(ego) = report.ego {
+            self.send_motion(scene, ego, report, frames);
         }
-        if let Some(ego) = self.ego.get().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout) {
-            self.send_own(now, &ego, last_demand, target, frames);
-        }
-        let cause = self.outbox.next_page();
+        let cause = self.next_page();
         let status = Status {
             cause,
-            count: self.health.of(cause),
-            mode: self.mode.code(),
-            detail: self.mode.detail(),
-            synchronised: self.is_synchronised(now),
-            links_on: self.links_on(now),
+            count: report.health.of(cause),
+            mode: report.mode.code(),
+            detail: report.mode.detail(),
+            synchronised: scene.is_synchronised(now),
+            links_on: links_on(scene, now),
         };
         self.emit(&Message::Status(status), frames);
     }
 
-    fn send_own(
+    fn send_motion<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         &mut self,
-        now: Instant,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
         ego: &Sample,
-        last_demand: Acceleration,
-        target: Option<usize>,
+        report: &Report<'_>,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
-        self.outbox.tag = self.outbox.tag.wrapping_add(1) % 4;
-        let tag = self.outbox.tag;
-        // The demand in force up to the stamp: from it the receiver's model repeats the one of this tick.
-        let demand = if self.mode == Mode::Standby { ego.demand } else { last_demand };
+        self.tag = self.tag.wrapping_add(1) % 4;
+        let tag = self.tag;
         let motion = Motion {
             tag,
             position: WirePosition::from_position(ego.position),
             speed: ego.speed,
             acceleration: ego.acceleration,
-            demand,
+            demand: ego.demand,
             stamp: ego.stamp,
             position_accuracy: ego.position_accuracy,
             speed_accuracy: ego.speed_accuracy,
-            station: self.config.station,
+            station: scene.config.station,
         };
         self.emit(&Message::Own(Said::Motion(motion)), frames);
-        self.send_route(tag, ego, frames);
-        let is_by_law = matches!(self.mode, Mode::Cooperative | Mode::Holdover { .. });
-        if self.mode != Mode::Standby {
-            let parameters = self.parameters(is_by_law);
-            if self.outbox.is_parameters_due(parameters) {
+        if let Some(route) = route(scene, tag, ego) {
+            self.emit(&Message::Own(Said::Route(route)), frames);
+        }
+        if report.mode != Mode::Standby {
+            let parameters = parameters(scene, report);
+            if self.is_parameters_due(parameters) {
                 self.emit(&Message::Own(Said::DrivingParameters(parameters)), frames);
             }
         }
-        if is_by_law {
-            let sample = Sample { demand, ..*ego };
-            self.foresee(now, &sample, target);
-            let knots = self.own_knots(tag, ego);
+        if report.mode.is_by_law() {
+            let knots = own_knots(scene, tag, ego);
             self.emit(&Message::Own(Said::Horizon(knots)), frames);
         }
-    }
-
-    /// Every other time, the way to the next crossing point, from where the ego was at the motion's stamp.
-    fn send_route(&mut self, tag: u8, ego: &Sample, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        let (Some(crossing), Some(registration)) = (self.coordination.named(), self.coordination.registration()) else {
-            return;
-        };
-        let Some(point) = self.coordination.crossing_point(crossing) else { return };
-        if !tag.is_multiple_of(ROUTE_EVERY) {
-            return;
-        }
-        let route = Route {
-            tag,
-            intersection: crossing.intersection.id,
-            leg: crossing.leg,
-            distance: point.ahead_of(WirePosition::from_position(ego.position).nearest_to(ego.position)),
-            stamp: ego.stamp,
-            arrival: registration.arrival.0,
-            predecessor: self.coordination.claim(),
-        };
-        self.emit(&Message::Own(Said::Route(route)), frames);
     }
 
     fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
@@ -224,69 +202,99 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         // The ends are told from what the receiver will read, not from what it was rounded from.
         let told = Reading { position: wire.nearest_to(position), speed: rounded(speed) };
         TargetEstimate {
-            tag: self.outbox.tick % 4,
+            tag: self.tick % 4,
             position: wire,
             speed: told.speed,
             age: estimate.age,
             ends: estimate.bound.as_ref().map(|bound| ends(&told, bound)),
         }
     }
+}
 
-    /// How the ego says that it drives. When it does not drive by its law it says so by naming no predecessor.
-    fn parameters(&self, is_by_law: bool) -> DrivingParameters {
-        let config = &self.config;
-        let VehicleModel { aim, limits, .. } = self.driver();
-        let law = &config.law;
-        let (gain, damping, time_gap) = match aim {
-            Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
-            Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
-        };
-        DrivingParameters {
-            length: config.length,
-            standstill: self.standstill(),
-            predecessor: match self.desired.as_ref() {
-                Some(_) if is_by_law => self.predecessor(),
-                _ => Predecessor::Unknown,
-            },
-            target_speed: self.target_speed(),
-            time_gap,
-            gain,
-            damping,
-            lag: config.lag,
-            limits,
-            horizon_tenths: self.horizon_tenths(),
+/// Every other time, the way to the next crossing point, from where the ego was at the motion's stamp.
+fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    tag: u8,
+    ego: &Sample,
+) -> Option<Route> {
+    let (crossing, registration) = (scene.coordination.named()?, scene.coordination.registration()?);
+    let point = scene.coordination.crossing_point(crossing)?;
+    tag.is_multiple_of(ROUTE_EVERY).then(|| Route {
+        tag,
+        intersection: crossing.intersection.id,
+        leg: crossing.leg,
+        distance: point.ahead_of(WirePosition::from_position(ego.position).nearest_to(ego.position)),
+        stamp: ego.stamp,
+        arrival: registration.arrival.0,
+        predecessor: scene.coordination.claim(),
+    })
+}
+
+/// How the ego says that it drives. When it does not drive by its law it says so by naming no predecessor.
+fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    report: &Report<'_>,
+) -> DrivingParameters {
+    let (config, law) = (&scene.config, &scene.config.law);
+    let VehicleModel { aim, limits, .. } = scene.ego_model_now(report.gains);
+    let (gain, damping, time_gap) = match aim {
+        Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
+        Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
+    };
+    DrivingParameters {
+        length: config.length,
+        standstill: scene.standstill(),
+        predecessor: match scene.request.as_ref() {
+            Some(_) if report.mode.is_by_law() => scene.predecessor(),
+            _ => Predecessor::Unknown,
+        },
+        target_speed: scene.target_speed(),
+        time_gap,
+        gain,
+        damping,
+        lag: config.lag,
+        limits,
+        horizon_tenths: horizon_tenths(scene),
+    }
+}
+
+/// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
+fn own_knots<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    tag: u8,
+    ego: &Sample,
+) -> Knots {
+    let start = Knot::start(ego.speed, ego.acceleration);
+    let whole = Duration::from_millis(100).times(i64::from(horizon_tenths(scene)));
+    let half = scene.estimator.grid().step.min(Duration::from_millis(50));
+    let read = |at| scene.estimator.read_own(at).unwrap_or(Reading { position: ego.position, speed: ego.speed });
+    Knots::through(tag, start.rounded(), whole, |after| {
+        let at = ego.at.plus(after);
+        let reading = read(at);
+        let change = read(at.plus(half)).speed.minus(read(at.minus(half)).speed);
+        Knot {
+            displacement: reading.position.ahead_of(ego.position),
+            speed: reading.speed,
+            acceleration: Acceleration::of_change(change, half.times(2).as_micros()),
+            bow: Distance::ZERO,
         }
-    }
+    })
+}
 
-    /// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
-    fn own_knots(&self, tag: u8, ego: &Sample) -> Knots {
-        let start = Knot::start(ego.speed, ego.acceleration);
-        let whole = Duration::from_millis(100).times(i64::from(self.horizon_tenths()));
-        let half = self.estimator.grid().step.min(Duration::from_millis(50));
-        let read = |at| self.estimator.read_own(at).unwrap_or(Reading { position: ego.position, speed: ego.speed });
-        Knots::through(tag, start.rounded(), whole, |after| {
-            let at = ego.at.plus(after);
-            let reading = read(at);
-            let change = read(at.plus(half)).speed.minus(read(at.minus(half)).speed);
-            Knot {
-                displacement: reading.position.ahead_of(ego.position),
-                speed: reading.speed,
-                acceleration: slope(change, half.times(2)),
-                bow: Distance::ZERO,
-            }
-        })
-    }
+/// How far the own horizon reaches, in tenths of a second.
+fn horizon_tenths<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+) -> u8 {
+    let reach = scene.estimator.reach().min(scene.config.prediction.horizon);
+    u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX)
+}
 
-    /// How far the own horizon reaches, in tenths of a second.
-    fn horizon_tenths(&self) -> u8 {
-        let reach = self.estimator.reach().min(self.config.prediction.horizon);
-        u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX)
-    }
-
-    fn links_on(&self, now: Instant) -> u8 {
-        let on = self.peers.iter().filter(|track| track.link().is_on(now, &self.config.link)).count();
-        u8::try_from(on).unwrap_or(u8::MAX)
-    }
+fn links_on<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+) -> u8 {
+    let on = scene.peers.iter().filter(|track| track.link().is_on(now, &scene.config.link)).count();
+    u8::try_from(on).unwrap_or(u8::MAX)
 }
 
 /// The bound as distances from the estimate. An estimate outside its bound widens it. Decimals are words only to the
@@ -304,13 +312,4 @@ fn ends(told: &Reading, bound: &Bound) -> Ends {
 /// A speed as the wire can say it.
 fn rounded(speed: Speed) -> Speed {
     Speed::from_steps(speed.to_steps(500).clamp(0, 32_767), 500)
-}
-
-/// A change of speed over a time, saturating.
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
-pub(super) fn slope(change: Speed, time: Duration) -> Acceleration {
-    // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
-    let change = i64::from(change.to_bits()).saturating_mul(4_000_000);
-    let slope = crate::fixed::quotient(change, time.as_micros());
-    Acceleration::from_bits(crate::fixed::saturate_i32(slope))
 }

@@ -181,7 +181,7 @@ fn compare(counter: &Counter) {
         standstill: law.standstill,
         target_speed: law.target_speed,
     };
-    let stride = config.vehicle_model(aim).over(Duration::from_millis(10), None, &config.prediction.model);
+    let stride = config.vehicle_model(aim).over(Duration::from_millis(10), config.length, &config.prediction.model);
     let speed = Speed::from_mm_per_s(11_000);
     let start = State { position: Position::ZERO.ring(), speed, ..State::default() };
     // SAFETY: this function is called once, and nothing else names the static.
