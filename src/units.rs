@@ -108,6 +108,13 @@ macro_rules! quantity {
                 let bits = if self.0.to_bits() > high.0.to_bits() { high } else { self };
                 if bits.0.to_bits() < low.0.to_bits() { low } else { bits }
             }
+
+            /// That fraction of it.
+            #[inline(always)]
+            #[must_use]
+            pub const fn share(self, share: Fraction) -> Self {
+                Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
+            }
         }
     };
 }
@@ -164,26 +171,18 @@ impl Acceleration {
         Self::from_bits(saturate_i32(quotient(change, micros)))
     }
 
+    /// The acceleration that changes the speed by this much in a second, saturating.
+    #[must_use]
+    pub const fn in_a_second(change: Speed) -> Self {
+        // 23 to 25 fraction bits is a factor of 4.
+        Self::from_bits(saturate_i32((change.to_bits() as i64).saturating_mul(4)))
+    }
+
     /// The gain in speed at this acceleration for that time.
     #[inline(always)]
     #[must_use]
     pub const fn over(self, time: FineSeconds) -> Speed {
         Speed::from_bits(mul_hi(self.to_bits(), time.to_bits()))
-    }
-
-    /// That share of it.
-    #[inline(always)]
-    #[must_use]
-    pub const fn share(self, share: Fraction) -> Self {
-        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
-    }
-}
-
-impl FineSeconds {
-    /// That share of it.
-    #[must_use]
-    pub const fn share(self, share: Fraction) -> Self {
-        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::model::Reading;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Fraction, Speed};
+use crate::units::{Distance, Fraction, Speed};
 
 /// What is still between the estimate and what the controller sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,12 +47,7 @@ impl Blend {
     /// One period later, `keep` being the share that is left after it.
     #[must_use]
     pub fn faded(&self, keep: Fraction) -> Self {
-        // Distances and speeds have fewer fraction bits than accelerations, but the same word times a share.
-        let word = |bits: i32| Acceleration::from_bits(bits).share(keep).to_bits();
-        Self {
-            position: Distance::from_bits(word(self.position.to_bits())),
-            speed: Speed::from_bits(word(self.speed.to_bits())),
-        }
+        Self { position: self.position.share(keep), speed: self.speed.share(keep) }
     }
 }
 

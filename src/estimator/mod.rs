@@ -2,7 +2,7 @@
 //!
 //! Theory of operation, once a tick:
 //!
-//! * *News* of a peer (a newer sample, its own horizon, another driving parameters) re-anchors its horizon: from (a) the horizon that
+//! * *News* of a peer (a newer sample, its own horizon, other driving parameters) re-anchors its horizon: from (a) the horizon that
 //!   it computed itself and sent, resampled onto the unit's grid, and from its end on, or else from its state at the
 //!   stamp, by (b) the unit's own model of it: Algorithm 2 for a leader, Algorithm 4 for a follower whose predecessor is
 //!   known, the fading acceleration for anyone else.

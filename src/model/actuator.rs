@@ -1,4 +1,4 @@
-//! What a vehicle's controller and actuators make of a desired: the desired acceleration enters, limited in size and jerk
+//! What a vehicle's controller and actuators make of a desired acceleration: it enters, limited in size and jerk
 //! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
 //! because the model must be the controller.
 
@@ -43,7 +43,7 @@ impl Actuator {
         }
     }
 
-    /// The demand that comes of a desired: at most the jerk limit away from the last one, and within the limits on
+    /// The demand that comes of a desired acceleration: at most the jerk limit away from the last one, and within the limits on
     /// acceleration as far as the jerk limit lets it get there.
     #[inline(always)]
     #[must_use]

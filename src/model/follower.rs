@@ -8,7 +8,7 @@
 //! v* = [ v - κ ( r + v δt - r_p + l + s_0 - γ v_p ) ] / [ 1 + κ (t_g + γ) ],   κ = α k δt,  α = 1
 //! ```
 //!
-//! and the desired is `(v* - v)/δt`, which is
+//! and the desired acceleration is `(v* - v)/δt`, which is
 //!
 //! ```text
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]

@@ -129,7 +129,7 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The demand of this step: the desired, but no more than the cap, within the vehicle's limits. A follower without a
+    /// The demand of this step: the desired acceleration, but no more than the cap, within the vehicle's limits. A follower without a
     /// predecessor fades.
     #[inline(always)]
     #[must_use]

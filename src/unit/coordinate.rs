@@ -1,10 +1,10 @@
 //! The review of the order at the intersections, ten times a second: the scene as it is known now enters; whom the ego follows, for
 //! whom it waits and who is ahead of it for certain are known from then on. The rules are those of [`crate::coordination`].
 //!
-//! It comes before the estimator in a tick. The target that it names is the one whose horizon is read in that tick, and the gains
-//! of an association are looked up with it. So it reads the horizons as the last tick left them; they reach ahead of now, and what a
-//! message has changed since then counts from the next review on. The other way around, a target would be named by newer horizons and
-//! driven behind one tick late.
+//! It comes before the estimator in a tick, because the target has to be known before the horizons change: where news ends a silence,
+//! the target is read by the old horizon and by the new one, and the controller is led from the one to the other. So the review reads
+//! horizons as the last tick left them. They reach beyond now, so nothing is missing from them but the messages since the last tick,
+//! and those count from the next review on.
 
 use heapless::Vec;
 

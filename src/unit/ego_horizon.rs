@@ -1,10 +1,9 @@
-//! The ego's own horizon: its state and whom it follows enter; where it will be leaves, past the changes of whom it follows
+//! The ego's own horizon: its state and the vehicle that it follows enter; where it will be leaves, past the changes of target
 //! that it can foresee.
 //!
-//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When the one that it follows leaves the
-//! conflict area, or it comes to the next intersection itself, it follows somebody else from then on: by the order that it
-//! knows already and by horizons that it holds already. So its own horizon says so, and with it everyone who hears it knows,
-//! and whoever is behind those.
+//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When its target leaves the conflict area, or
+//! when it comes to the next intersection itself, it follows another vehicle from then on. It knows that order already, and it holds
+//! those horizons already. So its own horizon says so, and every vehicle that hears it knows, and those behind them too.
 
 use super::scene::Scene;
 use super::vantage::Vantage;

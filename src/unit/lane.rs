@@ -1,8 +1,8 @@
 //! Who is ahead on the ego's own leg, by what is certain: bounds enter at every review; what is to spare behind them leaves.
 //!
-//! Nobody passes there. So whoever was ahead for certain stays ahead, however long it is silent and wherever it is estimated to
-//! be: it may have braked to a stand at once, and the gate keeps behind that. What ends this is certain too: it is heard
-//! farther on, or on another way; or somebody who was behind it for certain is heard farther on, and then so is it.
+//! No vehicle passes another there. So a vehicle that was ahead for certain stays ahead, however long it is silent and wherever it is
+//! estimated to be: it may have braked to a stand at once, and the gate keeps behind that. What ends this is certain too: the vehicle
+//! is heard farther on, or on another way; or one that was behind it for certain is heard farther on, and then so is it.
 
 use heapless::Vec;
 
@@ -21,8 +21,8 @@ struct Certain {
     rear: Position,
 }
 
-/// Whoever would stand farther ahead than this when it was heard last is out of the radio's reach, and not minded until it is heard
-/// again: no more is known there of anybody else either. An assumption of use: whoever comes nearer than this is heard.
+/// A vehicle that would stand farther ahead than this by when it was heard last is out of the radio's reach, and not minded until it
+/// is heard again: no more is known there of any other vehicle either. An assumption of use: a vehicle that comes nearer is heard.
 const RADIO_REACH: Distance = Distance::from_mm(300_000);
 
 /// Takes note of who is ahead of the ego's front bumper on its own leg for certain, who of them is behind whom, and how far they have

@@ -25,10 +25,10 @@ use crate::wire::status::Status;
 use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
 
 /// How many own motions go by from one driving parameters to the next.
-const INTENT_EVERY: u8 = 5;
-/// How often driving parameters is sent at once when it changes: whoever hears the first message of an identifier trusts it from the second
-/// one on.
-const INTENT_AT_ONCE: u8 = 2;
+const PARAMETERS_EVERY: u8 = 5;
+/// How often the driving parameters are sent at once when they change: a receiver that hears the first message of an identifier trusts it
+/// from the second one on.
+const PARAMETERS_AT_ONCE: u8 = 2;
 /// How many own motions go by from one route to the next; tags count modulo 4.
 const ROUTE_EVERY: u8 = 2;
 
@@ -51,7 +51,7 @@ pub(super) struct Outbox {
     page: u8,
     due: Option<Instant>,
     until_parameters: u8,
-    /// How often the driving parameters is still to be sent at once.
+    /// How often the driving parameters are still to be sent at once.
     at_once: u8,
     parameters: Held<DrivingParameters>,
 }
@@ -88,14 +88,14 @@ impl Outbox {
         true
     }
 
-    /// Whether driving parameters is due: it is another one, or its turn has come.
+    /// Whether the driving parameters are due: they have changed, or their turn has come.
     fn is_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
         if self.parameters != Held::Value(parameters) {
-            self.at_once = INTENT_AT_ONCE;
+            self.at_once = PARAMETERS_AT_ONCE;
         }
         let is_due = self.at_once > 0 || self.until_parameters == 0;
         self.at_once = self.at_once.saturating_sub(1);
-        self.until_parameters = if is_due { INTENT_EVERY } else { self.until_parameters }.saturating_sub(1);
+        self.until_parameters = if is_due { PARAMETERS_EVERY } else { self.until_parameters }.saturating_sub(1);
         self.parameters.set(parameters);
         is_due
     }

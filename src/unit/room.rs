@@ -1,9 +1,9 @@
-//! Where the ego has to be able to stop by what is estimated: where it is, and how the one ahead on its leg gets on, enter; whether it
+//! Where the ego has to be able to stop by what is estimated: its own state and the vehicle ahead on its leg enter; whether the ego
 //! is held before the next conflict area, and how much it may accelerate, leave.
 //!
-//! Whoever stands in a conflict area blocks those who cross. So nobody enters who could not leave it again, because the one ahead
-//! has come to a stand beyond it, or is about to. And while it waits for that it lets everyone else go first: they may be those for
-//! whom the one ahead waits, round a whole block.
+//! A vehicle that stands in a conflict area blocks those that cross. So no vehicle enters that could not leave it again, because the
+//! vehicle ahead has come to a stand beyond the area, or is about to. While it waits for that, it lets everyone else go first: the
+//! vehicle ahead may wait for just those, round a whole block.
 
 use super::scene::Scene;
 use super::vantage::Vantage;
@@ -23,7 +23,7 @@ const WAITING: Speed = Speed::from_mm_per_s(500);
 /// Slower than this a vehicle is in a queue.
 const SLOW: Speed = Speed::from_mm_per_s(3_000);
 
-/// How far before the conflict area the ego stops, and at least behind the one ahead.
+/// How far before the conflict area the ego stops, and at least behind the vehicle ahead.
 const LINE: Distance = Distance::from_mm(1_000);
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {

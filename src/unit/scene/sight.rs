@@ -1,7 +1,7 @@
 //! What the range sensor has seen: views enter; what the unit remembers of them, and whether they contradict what is heard,
 //! leave.
 //!
-//! A view shows the nearest vehicle on the ego's path: nobody is between the ego and what it sees. That is an assumption of
+//! A view shows the nearest vehicle on the ego's path: nothing is between the ego and what it sees. That is an assumption of
 //! use; all that is concluded here rests on it.
 //!
 //! *Memory.* What was seen does not vanish with the view. Its near end is carried on, as a stranger's that may brake as hard
@@ -22,15 +22,15 @@ use crate::wire::StationHash;
 /// A view older than this is not driven by, and shows no longer that nobody is nearer.
 const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// Who was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does not
-/// act within this time, so that one who turns off costs nothing.
+/// A vehicle that was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does
+/// not act within this time, so a vehicle that turns off costs nothing.
 const MOVING: Duration = Duration::from_millis(1_000);
 
-/// Who stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a sensor
-/// that sees nobody says nothing: without an end, who leaves while nobody looks would hold the ego for ever.
+/// A vehicle that stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a
+/// sensor that sees nothing says nothing: without an end, a vehicle that leaves unseen would hold the ego for ever.
 const STANDING: Duration = Duration::from_millis(10_000);
 
-/// Whoever may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
+/// A vehicle that may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
 /// So many views in a row that contradict what is certain of the target are a disagreement.
