@@ -67,7 +67,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             coordination: Coordination::idle(),
             ranging: Ranging::new(),
             unknown: Unknown::NONE,
-            named: Named::NOBODY,
+            named: Named::Nobody,
         }
     }
 
@@ -82,7 +82,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.coordination.reset();
         self.ranging = Ranging::new();
         self.unknown = Unknown::NONE;
-        self.named = Named::NOBODY;
+        self.named = Named::Nobody;
     }
 
     /// Whether GNSS time is known.
