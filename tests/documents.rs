@@ -48,7 +48,8 @@ fn every_link_between_the_documents_leads_to_a_file_and_a_heading() {
     let mut broken = Vec::new();
     for (page, text) in &texts {
         for target in prose(text).flat_map(targets).filter(|target| !target.contains("://")) {
-            let (file, heading) = target.split_once('#').map_or((target, None), |(file, heading)| (file, Some(heading)));
+            let (file, heading) =
+                target.split_once('#').map_or((target, None), |(file, heading)| (file, Some(heading)));
             let file = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
             let is_heading = |heading: &str| {
                 let text = texts.get(&file.canonicalize().unwrap_or_default());
