@@ -49,3 +49,8 @@ pub use config::{Config, ConfigError};
 pub use coordination::MapError;
 pub use lockstep::LockStep;
 pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};
+
+/// The Rust of the README, which the tests of the documentation compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -1,4 +1,4 @@
-//! `--json` of every command: its keys are those that README tells, no more and no less, and outside `timing` the same input is
+//! `--json` of every command: its keys are those that `docs/JSON.md` tells, no more and no less, and outside `timing` the same input is
 //! the same bytes on any number of threads.
 
 mod documented;
@@ -99,7 +99,7 @@ fn of_sweep_and_price() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 5").unwrap();
     holds("sweep", folder.path(), &["sweep short.toml --seeds 2 --steps 0.1,1 --no-report"]);
-    holds("price", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
+    holds("envelope-cost", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
 }
 
 #[test]
