@@ -180,7 +180,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
+        let before = self.last_tick;
         let now = self.monotonic(now);
+        let since = before.map_or(Duration::ZERO, |before| now.since(before));
         self.coordinate(now);
         let target = self.target();
         self.note_named(target);
@@ -206,7 +208,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let course = self.course(now, target, ego.as_ref());
         let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
         let (acceleration, limited) = match self.config.envelope {
-            Some(limits) if self.mode != Mode::Standby => self.gate(&limits, now, demand, last, ego.as_ref(), &facts),
+            Some(limits) if self.mode != Mode::Standby => {
+                self.gate(&limits, now, demand, last, ego.as_ref(), &facts, since)
+            }
             _ => {
                 // Of what somebody else commands nothing is known.
                 self.reckoning.clear();

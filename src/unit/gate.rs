@@ -11,7 +11,7 @@ use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, REACH, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::Predecessor;
 
@@ -100,7 +100,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The last gate, with the ego at the less safe end of its accuracies: the command as it is encoded, and whether the
-    /// gate changed the demand.
+    /// gate changed the demand. The last command is from so long ago.
     #[allow(clippy::too_many_arguments)] // all of them are of one tick
     pub(super) fn gate(
         &mut self,
@@ -110,6 +110,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         last: Acceleration,
         ego: Option<&State>,
         facts: &Facts,
+        since: Duration,
     ) -> (Acceleration, bool) {
         let sample = self.ego.get().unwrap_or(Sample::UNKNOWN);
         let state = ego.copied().unwrap_or_default();
@@ -135,7 +136,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let seen = self.obstacles_seen(now, rearmost).map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: facts.ego.is_ok(), spare };
-        let command = envelope::gate(limits, demand, &ego, &situation, self.config.period);
+        let command = envelope::gate_after(limits, demand, &ego, &situation, self.config.period, since);
         (envelope::encodable(limits, command), command != demand)
     }
 

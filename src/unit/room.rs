@@ -102,19 +102,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
     }
 
-    /// Where the ego, with its front bumper there, at this speed, waits until whoever is ahead in the order is estimated to have passed: before
-    /// the next conflict area, if it is slow. The law lets it start early, and it would be in there at once.
+    /// Where the ego, with its front bumper there, at this speed, waits as long as somebody ahead in the order who crosses its way is
+    /// estimated not to have left the next conflict area by the time that the ego would be there: before that area. The law looks at the
+    /// last one ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
     fn passes_first(&self, now: Instant, front: Position, speed: Speed) -> Option<Position> {
         let (crossing, line) = (self.coordination.crossing()?, self.area_begins()?);
         let end = self.coordination.end_of(self.coordination.next())?;
-        if speed > SLOW || front > line {
+        if front > line {
             return None;
         }
+        let micros = quotient(
+            i64::from(line.ahead_of(front).to_mm()).saturating_mul(1_000_000),
+            i64::from(speed.to_mm_per_s()).max(1),
+        );
+        let then = if speed <= SLOW { now } else { now.plus(Duration::from_micros(micros).min(LEAVES)) };
         let is_due = |index: &usize| {
             let standing = self.coordination.standing(*index);
             self.coordination.choice().ahead.contains(*index)
                 && standing.is_some_and(|standing| crossing.intersection.conflict(crossing.leg, standing.leg))
-                && self.rear(*index, now).is_some_and(|(_, rear)| rear < end)
+                && self.rear(*index, then).is_some_and(|(_, rear)| rear < end)
         };
         (0..PEERS).any(|index| is_due(&index)).then(|| line.ahead(LINE.negated()))
     }
