@@ -1,8 +1,10 @@
 //! A peer's motion: a motion enters; what it would change leaves, or the cause for which it is refused; then that is changed, all
 //! of it or nothing. So a motion that is refused cannot harm what is held of anybody.
 //!
-//! The checks in their order: the slot; whose it is; the age; twice or too late; the place on the ego's axis; too far; and
-//! whether it can be.
+//! The checks in their order, each once, and all before the first change: the slot; whether the station was heard in another
+//! slot just now; the age, too old or in the future; whether another station was heard in this slot just now, unless both are
+//! certain to be the same vehicle; with the place on the ego's axis, too far; twice, or too late; and whether it can be. On a way
+//! through intersections a new name is never the same vehicle, so there that comes before the age.
 
 use super::OnboardUnit;
 use crate::coordination::Axis;

@@ -205,17 +205,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.emit(&Message::Own(Said::Route(route)), frames);
     }
 
+    /// Adds a message's frames to those of this tick. What cannot be sent is lost, and counted.
     fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
         // Named, so that the image holds the encoders of these alone.
-        if !matches!(message, Message::Command(_) | Message::Estimate(_) | Message::Status(_) | Message::Own(_)) {
-            debug_assert!(false, "the unit says nothing else");
-            return;
-        }
-        let sent = self.sender.send(message, &mut |frame| {
-            let pushed = frames.push(frame);
-            debug_assert!(pushed.is_ok(), "MAX_FRAMES holds every tick's frames");
-        });
-        debug_assert!(sent.is_ok(), "the catalogue has a line for all that the unit says");
+        let is_own =
+            matches!(message, Message::Command(_) | Message::Estimate(_) | Message::Status(_) | Message::Own(_));
+        let mut lost = 0u32;
+        let mut push = |frame| lost = lost.saturating_add(u32::from(frames.push(frame).is_err()));
+        let is_sent = is_own && self.sender.send(message, &mut push).is_ok();
+        self.health.add(Cause::TransmitOverflow, lost.saturating_add(u32::from(!is_sent)));
     }
 
     fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
@@ -314,3 +312,6 @@ pub(super) fn slope(change: Speed, time: Duration) -> Acceleration {
     let slope = crate::fixed::quotient(change, time.as_micros());
     Acceleration::from_bits(crate::fixed::saturate_i32(slope))
 }
+
+#[cfg(test)]
+mod tests;

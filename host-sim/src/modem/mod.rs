@@ -219,7 +219,6 @@ impl Relay {
         // The unit trusts an identifier from its second frame on; a station's first message may be its last one before a silence.
         let times = if std::mem::replace(&mut self.is_begun[slot], true) { 1 } else { 2 };
         for said in std::iter::repeat_n(said, times).flatten() {
-            #[allow(clippy::cast_possible_truncation)] // at most 16 slots
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             debug_assert!(sent.is_ok(), "a peer says nothing that the catalogue has no line for");
         }

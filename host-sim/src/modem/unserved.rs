@@ -21,7 +21,6 @@ impl Relay {
         let ahead_m =
             unserved.iter().filter_map(|placed| Some(self.course.ahead_on_leg(&placed.route)? - placed.length_m));
         let ahead_m = ahead_m.reduce(f64::min).zip(self.course.way_m()).map(|(ahead_m, way_m)| way_m - ahead_m);
-        #[allow(clippy::cast_possible_truncation)] // limited to the field's range
         Some(Unserved {
             intersection: next.id,
             legs: legs.fold(0, |legs, leg| legs | 1u8.checked_shl(leg.into()).unwrap_or(0)),
