@@ -176,6 +176,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
 
         let is_committed = self.is_committed(front, state.speed);
+        let is_inside = self.area_begins().is_some_and(|begins| front > begins);
         let mut present: Vec<Present, PEERS> = Vec::new();
         let mut lane: Option<(usize, Position)> = None;
         for index in 0..PEERS {
@@ -191,8 +192,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
                 let lane = (self.coordination.is_on_lane(standing) && takes_along).then_some(side);
                 let is_far_behind = is_committed || self.is_far_behind(&reading, front);
                 let is_followed = self.coordination.choice().target.map(usize::from) == Some(index);
+                // Who is in the area does not wait in it for one that comes after it.
+                let is_passed = is_inside && side == Side::Behind;
                 let is_announced = is_followed
                     || self.coordination.is_announced(standing, now, self.coordination.next(), front, state.speed);
+                let is_announced = is_announced && !is_passed;
                 let heard = standing.heard;
                 let _ = present.push(Present { index, entry, heard, has_left, is_far_behind, is_announced, lane }); // as many as slots
             }
@@ -202,7 +206,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
         }
         let nearest = lane.map(|(index, _)| index);
-        let is_inside = self.area_begins().is_some_and(|begins| front > begins);
         // Who stops at the line is a hair from where it could not.
         let can_wait = if self.coordination.choice().is_held { !is_inside } else { !is_committed };
         let has_room = self.has_room(nearest, now);
@@ -216,10 +219,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         self.coordination.note_lost(self.lost(now, front));
         let is_heeded = |index: &usize| self.is_heeded(*index, now, front, state.speed);
-        // Who is in the area does not wait in it for one that comes after it.
-        let is_passed = |index: &usize| self.rear(*index, now).is_some_and(|(reading, _)| reading.position <= front);
-        let order = self.coordination.choice().order.map(usize::from);
-        let order = order.filter(is_heeded).filter(|index| !(is_inside && is_passed(index)));
+        let order = self.coordination.choice().order.map(usize::from).filter(is_heeded);
         let lane = nearest.filter(is_heeded);
         let next = self.coordination.next();
         let target = self.more_careful(order, lane, now, next, front, state.speed);

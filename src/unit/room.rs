@@ -22,6 +22,9 @@ const WAITING: Speed = Speed::from_mm_per_s(500);
 /// Slower than this a vehicle is in a queue.
 const SLOW: Speed = Speed::from_mm_per_s(3_000);
 
+/// Slower than this a vehicle may be about to stop in one.
+const QUEUED: Speed = Speed::from_mm_per_s(5_000);
+
 /// How far before the conflict area the ego stops, and at least behind the one ahead.
 const LINE: Distance = Distance::from_mm(1_000);
 
@@ -102,8 +105,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
     }
 
-    /// Where the ego, with its front bumper there, at this speed, waits as long as somebody ahead in the order who crosses its way is
-    /// estimated not to have left the next conflict area by the time that the ego would be there: before that area. The law looks at the
+    /// Where the ego, with its front bumper there, at this speed, waits as long as somebody who crosses its way, and is ahead in the order or in the
+    /// next conflict area already, is estimated not to have left it by the time that the ego would be there: before that area. The law looks at the
     /// last one ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
     fn passes_first(&self, now: Instant, front: Position, speed: Speed) -> Option<Position> {
         let (crossing, line) = (self.coordination.crossing()?, self.area_begins()?);
@@ -117,9 +120,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         );
         let then = if speed <= SLOW { now } else { now.plus(Duration::from_micros(micros).min(LEAVES)) };
         let is_due = |index: &usize| {
-            let standing = self.coordination.standing(*index);
-            self.coordination.choice().ahead.contains(*index)
-                && standing.is_some_and(|standing| crossing.intersection.conflict(crossing.leg, standing.leg))
+            let Some(standing) = self.coordination.standing(*index) else { return false };
+            let is_inside = || {
+                self.coordination.is_here(standing)
+                    && self.rear(*index, now).is_some_and(|(reading, _)| reading.position > line)
+            };
+            crossing.intersection.conflict(crossing.leg, standing.leg)
+                && (self.coordination.choice().ahead.contains(*index) || is_inside())
                 && self.rear(*index, then).is_some_and(|(_, rear)| rear < end)
         };
         (0..PEERS).any(|index| is_due(&index)).then(|| line.ahead(LINE.negated()))
@@ -129,16 +136,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// was hardly moving when it was heard last has moved on since is not believed for as long as a holdover lasts: whom it waits
     /// for may have changed.
     fn stops_at(&self, index: usize, now: Instant) -> Option<Position> {
+        let braking = i64::from(self.config.limits.braking.to_mm_per_s2()).max(1);
+        let way = |speed: Speed| Distance::from_mm(saturate_i32(braked(i64::from(speed.to_mm_per_s()), braking)));
         let track = self.peers.get(index)?;
-        let was_slow = track.newest().is_some_and(|newest| newest.speed <= SLOW);
-        if was_slow && !track.link().is_on(now, &self.config.link) && self.is_in_reach(index, now) {
-            let rear = self.bound(index, now)?.lowest_position().ahead(self.length_of(index).negated());
-            return Some(rear.ahead(LINE.negated()));
+        let is_silent = !track.link().is_on(now, &self.config.link) && self.is_in_reach(index, now);
+        let length = self.length_of(index);
+        if let Some(newest) = track.newest().filter(|newest| is_silent && newest.speed <= QUEUED) {
+            let certain = self.bound(index, now)?.lowest_position();
+            let at_rest = if newest.speed <= SLOW { certain } else { newest.position.ahead(way(newest.speed)) };
+            return Some(at_rest.ahead(length.negated()).ahead(LINE.negated()));
         }
         let (reading, rear) = self.rear(index, now)?;
-        let braking = i64::from(self.config.limits.braking.to_mm_per_s2()).max(1);
-        let way = braked(i64::from(reading.speed.to_mm_per_s()), braking);
-        Some(rear.ahead(Distance::from_mm(saturate_i32(way))).ahead(LINE.negated()))
+        Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
     }
 }
 
