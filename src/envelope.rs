@@ -142,12 +142,27 @@ pub fn gate(
     situation: &Situation,
     period: Duration,
 ) -> Acceleration {
+    gate_after(envelope, demand, ego, situation, period, period)
+}
+
+/// The gate when the last command is older than a period, as ticks were missed: no farther from it downward than the limit on jerk
+/// allows in that time. With a period's worth alone, ticks that are missed again and again would slow down the ramp of emergency
+/// braking each time, where what is kept free is for one delay.
+#[must_use]
+pub fn gate_after(
+    envelope: &Envelope,
+    demand: Acceleration,
+    ego: &Ego,
+    situation: &Situation,
+    period: Duration,
+    since: Duration,
+) -> Acceleration {
     let cap = absolute_cap(envelope)
         .min(speed_cap(envelope, ego.speed))
         .min(freshness_cap(situation.is_fresh))
         .min(distance_cap(envelope, situation.spare, period))
         .min(ceiling(envelope, ego.last, period));
-    demand.min(cap).max(floor(envelope, ego.last, period))
+    demand.min(cap).max(floor(envelope, ego.last, since.min(period.plus(envelope.delay)).max(period)))
 }
 
 /// The command as it will be encoded: the next step down, so that no rounding undoes a cap; up from where that is

@@ -51,9 +51,10 @@ pub enum Cause {
     ReceiveOverflow = 20,
     /// Frames that the bus controller lost before the platform took them ([`Incident::Overrun`]).
     Overrun = 21,
-    /// Frames of the unit that the platform's transmit queue had no room for ([`Incident::TransmitOverflow`]).
+    /// Frames of the unit that are lost before the bus, because the platform's transmit queue had no room for them
+    /// ([`Incident::TransmitOverflow`]) or the unit's own answer had none.
     TransmitOverflow = 22,
-    /// The bus controller left the bus after too many errors ([`Incident::BusOff`]).
+    /// The bus controller left the bus after too many errors, or could not be put onto it ([`Incident::BusOff`]).
     BusOff = 23,
     /// The unit was restarted by its watchdog ([`Incident::Restart`]).
     Restart = 24,
@@ -85,7 +86,7 @@ pub enum Incident {
     Overrun,
     /// The transmit queue was full.
     TransmitOverflow,
-    /// The bus controller left the bus.
+    /// The bus controller left the bus, or could not be put onto it.
     BusOff,
     /// The watchdog restarted the unit.
     Restart,

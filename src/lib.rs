@@ -23,6 +23,8 @@
         clippy::indexing_slicing,
         clippy::arithmetic_side_effects,
         clippy::cast_possible_truncation,
+        clippy::cast_possible_wrap,
+        clippy::cast_sign_loss,
         clippy::float_arithmetic
     )
 )]
@@ -52,3 +54,8 @@ pub use config::{Config, ConfigError};
 pub use coordination::MapError;
 pub use lockstep::LockStep;
 pub use unit::{Answer, Estimate, MAX_FRAMES, OnboardUnit, Reception};
+
+/// The Rust of the README, which the tests of the documentation compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

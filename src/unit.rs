@@ -31,7 +31,7 @@ use crate::units::Acceleration;
 use crate::wire::command::Command;
 use crate::wire::{BaseId, Frame, Received, Receiver, Role};
 use association::Association;
-use gate::Gate;
+use gate::{Gate, Last};
 use outbox::{Outbox, Report};
 use scene::Scene;
 
@@ -170,7 +170,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The stages in the order of the diagram above.
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
+        let last_tick = self.last_tick;
         let now = self.monotonic(now);
+        let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
         let last = self.controller.last_demand();
         coordinate::review(&mut self.scene, now, last, &mut self.health);
         let target = self.scene.target();
@@ -179,12 +181,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last);
         let demand = self.drive(now, target, ego.as_ref());
-        let (acceleration, limited) = self.limit(now, demand, last, ego.as_ref());
+        let (acceleration, limited) = self.limit(now, demand, Last { demand: last, age }, ego.as_ref());
         answer.command = self.actuate(acceleration, limited, ego.as_ref());
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
-            self.outbox.send_answer(&answer.command, answer.estimate.as_ref(), &mut answer.frames);
+            let (command, estimate) = (&answer.command, answer.estimate.as_ref());
+            self.outbox.send_answer(command, estimate, &mut self.health, &mut answer.frames);
             if self.outbox.is_due(now, self.scene.config.link.period) {
                 let own = self.foresee(now, last, target);
                 self.send_own(now, own.as_ref(), &mut answer.frames);
@@ -236,13 +239,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The command that the last gate lets through, and whether the gate changed the demand.
-    fn limit(
-        &mut self,
-        now: Instant,
-        demand: Acceleration,
-        last: Acceleration,
-        ego: Option<&State>,
-    ) -> (Acceleration, bool) {
+    fn limit(&mut self, now: Instant, demand: Acceleration, last: Last, ego: Option<&State>) -> (Acceleration, bool) {
         let (acceleration, limited) = match &self.scene.config.envelope {
             Some(limits) if self.mode != Mode::Standby => {
                 self.gate.command(limits, &self.scene, now, demand, last, ego)
@@ -283,7 +280,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        let report = Report { mode: self.mode, gains: self.association.gains(), ego: own, health: &self.health };
-        self.outbox.send_own(&self.scene, now, &report, frames);
+        let report = Report { mode: self.mode, gains: self.association.gains(), ego: own };
+        self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }
 }

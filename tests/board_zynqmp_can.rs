@@ -23,7 +23,7 @@ use embedded_can::{ExtendedId, Frame, Id, StandardId};
 use holdover::health::{Cause, Incident};
 use holdover::wire::StationHash;
 use holdover::{Config, OnboardUnit};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -32,6 +32,8 @@ const DEPTH: usize = 64;
 /// The controller as the reference manual has it, as far as the driver can tell.
 #[derive(Default)]
 struct Chip {
+    /// In a reset that does not end.
+    stuck: bool,
     /// On the bus, or ready for it; with none of it the driver may set it up.
     enabled: bool,
     timing: Option<(u32, u32)>,
@@ -73,14 +75,18 @@ impl Chip {
 }
 
 #[derive(Clone, Default)]
-struct Mock(Rc<RefCell<Chip>>);
+struct Mock {
+    chip: Rc<RefCell<Chip>>,
+    /// How many resets will not end.
+    stuck: Rc<Cell<u32>>,
+}
 
 impl Registers for Mock {
     fn read(&self, place: usize) -> u32 {
-        let mut chip = self.0.borrow_mut();
+        let mut chip = self.chip.borrow_mut();
         match place {
             offset::STATUS if chip.queued.len() == DEPTH => can::TRANSMIT_FULL,
-            offset::STATUS if !chip.enabled => can::CONFIGURING,
+            offset::STATUS if !chip.enabled && !chip.stuck => can::CONFIGURING,
             offset::STATUS => 0,
             offset::EVENTS => chip.events,
             _ => {
@@ -96,10 +102,15 @@ impl Registers for Mock {
     }
 
     fn write(&mut self, place: usize, word: u32) {
-        let mut chip = self.0.borrow_mut();
+        let mut chip = self.chip.borrow_mut();
         match place {
-            offset::CONTROL if word & can::RESET != 0 => *chip = Chip::default(),
+            offset::CONTROL if word & can::RESET != 0 => {
+                let stuck = self.stuck.get();
+                self.stuck.set(stuck.saturating_sub(1));
+                *chip = Chip { stuck: stuck > 0, ..Chip::default() };
+            }
             offset::CONTROL => {
+                assert!(!chip.stuck, "put onto the bus out of a reset that has not ended");
                 assert!(chip.timing.is_some(), "on the bus without its timing");
                 chip.enabled = word & can::ENABLE != 0;
             }
@@ -196,7 +207,7 @@ fn a_length_above_8_says_8_and_a_time_stamp_says_nothing() {
 #[test]
 fn the_controller_is_set_up_for_500_kbit_per_second_before_it_is_on_the_bus() {
     let (_, mock) = controller();
-    let chip = mock.0.borrow();
+    let chip = mock.chip.borrow();
     let (quantum, bit) = chip.timing.unwrap();
     let quanta = 1 + (bit & 15) + 1 + (bit >> 4 & 7) + 1;
     assert!(chip.enabled);
@@ -208,7 +219,7 @@ fn what_is_heard_is_received_in_order_until_nothing_is_left() {
     let (mut port, mock) = controller();
     let heard = forms();
     for part in heard.chunks(DEPTH) {
-        part.iter().for_each(|frame| mock.0.borrow_mut().hear(frame));
+        part.iter().for_each(|frame| mock.chip.borrow_mut().hear(frame));
         part.iter().for_each(|frame| assert!(same(&port.receive().unwrap(), frame)));
         assert!(matches!(port.receive(), Err(nb::Error::WouldBlock)));
     }
@@ -217,25 +228,25 @@ fn what_is_heard_is_received_in_order_until_nothing_is_left() {
 #[test]
 fn a_core_that_sleeps_is_woken_until_it_has_received_everything() {
     let (mut port, mock) = controller();
-    assert!(!mock.0.borrow().wakes());
+    assert!(!mock.chip.borrow().wakes());
     for id in 0..DEPTH as u16 + 1 {
-        mock.0.borrow_mut().hear(&standard(id, &[]));
-        assert!(mock.0.borrow().wakes());
+        mock.chip.borrow_mut().hear(&standard(id, &[]));
+        assert!(mock.chip.borrow().wakes());
     }
     assert!(matches!(port.receive(), Err(nb::Error::Other(Overrun))));
     for _ in 0..DEPTH {
-        assert!(mock.0.borrow().wakes());
+        assert!(mock.chip.borrow().wakes());
         assert!(port.receive().is_ok());
     }
     assert!(matches!(port.receive(), Err(nb::Error::WouldBlock)));
-    assert!(!mock.0.borrow().wakes());
+    assert!(!mock.chip.borrow().wakes());
 }
 
 #[test]
 fn an_overrun_is_told_once_and_what_was_there_before_is_received() {
     let (mut port, mock) = controller();
     for _ in 0..DEPTH + 3 {
-        mock.0.borrow_mut().hear(&standard(0x100, &[1]));
+        mock.chip.borrow_mut().hear(&standard(0x100, &[1]));
     }
     assert!(matches!(port.receive(), Err(nb::Error::Other(Overrun))));
     for _ in 0..DEPTH {
@@ -255,11 +266,11 @@ fn a_full_queue_takes_no_frame_and_loses_none() {
     }
     assert_eq!(outbox.pass(&mut port), Pass::Full);
     // Arbitration is lost but for a few frames; the rest follows when the bus is free.
-    let mut sent = mock.0.borrow_mut().send(3);
+    let mut sent = mock.chip.borrow_mut().send(3);
     while outbox.pass(&mut port) == Pass::Taken {}
-    sent.extend(mock.0.borrow_mut().send(DEPTH));
+    sent.extend(mock.chip.borrow_mut().send(DEPTH));
     while outbox.pass(&mut port) == Pass::Taken {}
-    sent.extend(mock.0.borrow_mut().send(DEPTH));
+    sent.extend(mock.chip.borrow_mut().send(DEPTH));
     assert_eq!(sent.len(), frames.len());
     assert!(sent.iter().zip(&frames).all(|(sent, frame)| same(sent, frame)));
     assert_eq!(outbox.pass(&mut port), Pass::Nothing);
@@ -288,10 +299,10 @@ fn a_bus_off_is_told_once_and_nothing_that_waited_is_sent_after_it() {
     for _ in 0..4 {
         outbox.pass(&mut port);
     }
-    mock.0.borrow_mut().go_off();
+    mock.chip.borrow_mut().go_off();
     let lost = outbox.lost(port.left_bus());
     assert_eq!(lost, [(Incident::TransmitOverflow, 6), (Incident::BusOff, 1)]);
-    assert!(!mock.0.borrow().enabled);
+    assert!(!mock.chip.borrow().enabled);
     // What the shell does with it, and where it shows.
     let mut unit = OnboardUnit::<1, 4, 400>::new(&Config::car(StationHash(1))).unwrap();
     lost.into_iter().for_each(|(incident, times)| unit.note(incident, times));
@@ -301,18 +312,49 @@ fn a_bus_off_is_told_once_and_nothing_that_waited_is_sent_after_it() {
     // It keeps away for two more periods, and takes nothing.
     outbox.push(&standard(0x700, &[7]));
     for period in 1..=2 {
-        assert!(!mock.0.borrow().enabled, "{period}");
+        assert!(!mock.chip.borrow().enabled, "{period}");
         assert_eq!(outbox.pass(&mut port), Pass::Full);
         assert_eq!(outbox.lost(port.left_bus()), [(Incident::TransmitOverflow, 0), (Incident::BusOff, 0)]);
     }
-    assert!(mock.0.borrow().enabled);
+    assert!(mock.chip.borrow().enabled);
     assert_eq!(outbox.pass(&mut port), Pass::Taken);
-    let sent = mock.0.borrow_mut().send(DEPTH);
+    let sent = mock.chip.borrow_mut().send(DEPTH);
     assert_eq!(sent.len(), 1);
     assert!(same(&sent[0], &standard(0x700, &[7])));
 
-    mock.0.borrow_mut().hear(&standard(0x100, &[1]));
+    mock.chip.borrow_mut().hear(&standard(0x100, &[1]));
     assert!(port.receive().is_ok());
-    mock.0.borrow_mut().go_off();
+    mock.chip.borrow_mut().go_off();
     assert!(port.left_bus(), "the next one is one of its own");
+}
+
+#[test]
+fn a_reset_that_does_not_end_is_counted_each_time_and_tried_again() {
+    let mock = Mock::default();
+    mock.stuck.set(3);
+    let mut port = Controller::start(mock.clone(), Layout::Silicon);
+    let mut outbox = Outbox::new();
+    let mut unit = OnboardUnit::<1, 4, 400>::new(&Config::car(StationHash(1))).unwrap();
+    for _ in 0..20 {
+        outbox.push(&standard(0x700, &[7]));
+        outbox.pass(&mut port);
+        outbox.lost(port.left_bus()).into_iter().for_each(|(incident, times)| unit.note(incident, times));
+    }
+    assert!(mock.chip.borrow().enabled);
+    assert_eq!(unit.health().of(Cause::BusOff), 3);
+    // What waited meanwhile is lost, and counted too; what came after it is sent.
+    let lost = unit.health().of(Cause::TransmitOverflow);
+    let sent = mock.chip.borrow_mut().send(DEPTH).len();
+    assert!((3..10).contains(&lost) && sent > 10, "{lost} {sent}");
+    assert!(lost as usize + sent <= 20, "{lost} {sent}");
+}
+
+#[test]
+fn after_a_bus_off_a_reset_that_does_not_end_is_counted_beside_it() {
+    let (mut port, mock) = controller();
+    mock.chip.borrow_mut().go_off();
+    mock.stuck.set(1);
+    let left: Vec<bool> = (0..8).map(|_| port.left_bus()).collect();
+    assert_eq!(left, [true, false, true, false, false, false, false, false]);
+    assert!(mock.chip.borrow().enabled);
 }

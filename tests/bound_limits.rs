@@ -80,7 +80,13 @@ fn drive(seed: u64) -> u32 {
         while under_way.first().is_some_and(|(arrives, _)| *arrives <= now) {
             let (_, said) = under_way.remove(0);
             let taken = rig.target(now, said);
-            let is_harmless = |cause| matches!(cause, Cause::NotYetTrusted | Cause::Torn | Cause::OutOfOrder);
+            // After 2 s of silence the slot may be another one's, until a motion says whose it is.
+            let is_parameters = matches!(said, Said::DrivingParameters(_));
+            let is_harmless = |cause| match cause {
+                Cause::NotYetTrusted | Cause::Torn | Cause::OutOfOrder => true,
+                Cause::StationConflict => is_parameters,
+                _ => false,
+            };
             assert!(taken.is_ok() || is_harmless(taken.unwrap_err()), "seed {seed} at {now}: {taken:?} {said:?}");
         }
         if let Some(bound) = rig.unit.bound(2, instant(now)) {

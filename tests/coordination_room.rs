@@ -92,3 +92,61 @@ fn who_stands_before_a_conflict_area_enters_it_when_everyone_ahead_in_the_order_
         assert!(junction.drivers.iter().all(|driver| driver.body.position > 250.0));
     }
 }
+
+/// Whether two vehicles, 0 on street 0 and 1 on street 1, were in the conflict area at once, in so many seconds.
+fn overlaps(junction: &mut Junction, seconds: f64, mut each: impl FnMut(f64, &mut [Driver])) -> bool {
+    let mut overlaps = false;
+    junction.run(seconds, |junction| {
+        each(junction.now as f64 * 1e-6, &mut junction.drivers);
+        let is_inside =
+            |driver: &Driver| driver.body.position > CROSSING - HALF && driver.body.position - LENGTH < CROSSING + HALF;
+        overlaps |= junction.drivers.iter().all(is_inside);
+    });
+    overlaps
+}
+
+#[test]
+fn one_ahead_in_the_order_that_is_heard_late_is_waited_for_while_the_ego_can_stop() {
+    for speed in [0.8, 1.5, 3.2, 5.0, 8.0] {
+        // From 2 m farther from the area than it takes to stop at 3 m/s^2, with lag and ramp, on.
+        let stops_within = speed * 0.9 + speed * speed / 6.0 + 2.0;
+        for spare in [0.0, 4.0, 8.0, 12.0] {
+            for other_at in [80.0, 95.0, 110.0, 125.0, 140.0, 160.0] {
+                let ego_at = CROSSING - HALF - stops_within - spare;
+                let ego = Driver { target_speed: 11.0, ..Driver::new(2, 0, ego_at, speed, false) };
+                let mut junction = Junction::new(vec![ego, Driver::new(1, 1, other_at, 10.0, false)]);
+                let overlaps = overlaps(&mut junction, 30.0, |seconds, drivers| {
+                    let [ego, other] = drivers else { panic!("two") };
+                    other.speaks = seconds > 3.0;
+                    if seconds < 3.0 {
+                        ego.body = Plant { position: ego_at, speed, acceleration: 0.0, ..ego.body };
+                        other.body = Plant { position: other_at, speed: 10.0, acceleration: 0.0, ..other.body };
+                    }
+                });
+                assert!(!overlaps, "{speed} m/s, {spare} m to spare, the other from {other_at} m");
+                let at: Vec<f64> = junction.drivers.iter().map(|driver| driver.body.position).collect();
+                assert!(
+                    at.iter().all(|at| *at > 210.0),
+                    "{speed} m/s, {spare} m to spare, the other from {other_at} m: {at:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn one_that_is_in_the_area_already_is_waited_for_though_it_is_behind_in_the_order() {
+    for inside in [CROSSING - HALF + 0.5, CROSSING, CROSSING + HALF] {
+        // Both set out at once, so the smaller station is first.
+        let mut junction =
+            Junction::new(vec![Driver::new(1, 0, 110.0, 9.0, false), Driver::new(2, 1, inside, 9.0, false)]);
+        let overlaps = overlaps(&mut junction, 40.0, |seconds, drivers| {
+            if seconds < 20.0 {
+                stand(&mut drivers[1], inside);
+            }
+        });
+        assert!(!overlaps, "at {inside} m");
+        let at: Vec<f64> = junction.drivers.iter().map(|driver| driver.body.position).collect();
+        assert!(at.iter().all(|at| *at > 210.0), "from {inside} m: {at:?}");
+    }
+}

@@ -8,6 +8,9 @@ use holdover::wire::Said;
 use rig::random::Random;
 use rig::{Rig, TARGET, instant, m_of, mps_of};
 
+/// Five messages, or 5 s, are documented; they are counted from the first message on, which is a period after the beginning at most.
+const PERIOD: f64 = 0.1;
+
 /// A vehicle at 15 m/s with its clock so far ahead, in microseconds, and so long under way; the seconds until the truth is inside the
 /// bound for good, the motions taken in the last 20 of 40 s, and how often its clock was named.
 fn heard(ahead: i64, mut delay: impl FnMut(&mut Random) -> i64) -> (f64, u32, u32) {
@@ -51,20 +54,20 @@ fn heard(ahead: i64, mut delay: impl FnMut(&mut Random) -> i64) -> (f64, u32, u3
 fn who_is_ahead_is_heard_after_five_messages_and_the_truth_is_inside_its_bound() {
     for (ahead, delay) in [(20_000, 5_000), (60_000, 1_000), (150_000, 80_000)] {
         let (outside, taken, named) = heard(ahead, |_| delay);
-        assert!(outside <= 1.0, "{ahead}: {outside} s");
+        assert!(outside <= 0.5 + PERIOD, "{ahead}: {outside} s");
         assert!(taken > 190, "{ahead}: {taken}");
         assert!((7..=9).contains(&named), "{ahead}: {named}");
     }
     // Under way for any time up to 80 ms, some are ahead and some are not.
     let (outside, taken, named) = heard(30_000, |random| random.between(0.0, 80_000.0) as i64);
-    assert!(outside <= 5.0 && taken > 190 && named > 5, "{outside} {taken} {named}");
+    assert!(outside <= 5.0 + PERIOD && taken > 190 && named > 5, "{outside} {taken} {named}");
 }
 
 #[test]
 fn who_is_behind_is_named_after_a_window_and_the_truth_is_inside_its_bound() {
     for (behind, delay) in [(300_000, 5_000), (150_000, 20_000), (1_000_000, 0)] {
         let (outside, taken, named) = heard(-behind, |_| delay);
-        assert!(outside <= 5.5, "{behind}: {outside} s");
+        assert!(outside <= 5.0 + PERIOD, "{behind}: {outside} s");
         assert!(taken > 190 && (6..=8).contains(&named), "{behind}: {taken} {named}");
     }
 }

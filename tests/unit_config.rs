@@ -33,7 +33,7 @@ fn the_car_is_sound() {
 }
 
 #[test]
-fn periods_and_steps() {
+fn a_period_or_step_outside_its_range_is_refused() {
     range(ConfigError::Period, [MS, 100 * MS], |config, micros| config.period = Duration::from_micros(micros));
     range(ConfigError::Step, [MS, 1_000 * MS], |config, micros| {
         config.prediction.step = Duration::from_micros(micros);
@@ -42,7 +42,7 @@ fn periods_and_steps() {
 }
 
 #[test]
-fn horizons() {
+fn a_horizon_that_is_too_short_or_beyond_the_capacity_is_refused() {
     range(ConfigError::Horizon, [20 * MS, 3_990 * MS - 1], |config, micros| {
         config.prediction.horizon = Duration::from_micros(micros); // with 400 steps of 10 ms, two of which are extra
     });
@@ -57,7 +57,7 @@ fn horizons() {
 }
 
 #[test]
-fn the_vehicle() {
+fn a_length_lag_or_body_outside_its_range_is_refused() {
     range(ConfigError::Length, [0, 40_950], |config, mm| config.length = Distance::from_mm(int(mm)));
     range(ConfigError::Lag, [0, 1_998], |config, millis| config.lag = FineSeconds::from_millis(int(millis)));
     range(ConfigError::Body, [300, 40_000], |config, kg| config.body.mass_kg = u32::try_from(kg).unwrap_or(0));
@@ -72,7 +72,7 @@ fn the_vehicle() {
 }
 
 #[test]
-fn limits() {
+fn limits_outside_their_ranges_are_refused() {
     let set = |mm: i64| Acceleration::from_mm_per_s2(int(mm));
     // Below 730 mm/s² the free road asks for more than there is, which has a name of its own.
     range(ConfigError::Limits, [1, 20_460], |config, mm| {
@@ -88,7 +88,7 @@ fn limits() {
 }
 
 #[test]
-fn the_law() {
+fn a_law_outside_its_ranges_is_refused() {
     range(ConfigError::TimeGap, [100, 3_995], |config, ms| config.law.time_gap = Seconds::from_millis(int(ms)));
     range(ConfigError::Standstill, [0, 10_230], |config, mm| config.law.standstill = Distance::from_mm(int(mm)));
     range(ConfigError::Gain, [10, 3_999], |config, milli| config.law.gain = Gain::from_milli(int(milli)));
@@ -121,7 +121,7 @@ fn no_gain_in_range_is_unstable_at_a_step_in_range() {
 }
 
 #[test]
-fn the_link() {
+fn times_of_the_link_outside_their_ranges_are_refused() {
     type Set = fn(&mut Config, Duration);
     let at_least_one: [Set; 5] = [
         |config, time| config.link.period = time,
@@ -148,7 +148,7 @@ fn the_link() {
 }
 
 #[test]
-fn the_envelope() {
+fn an_envelope_outside_its_ranges_is_refused() {
     const SOUND: Envelope = Envelope {
         acceleration: Acceleration::from_mm_per_s2(2_000),
         braking: Acceleration::from_mm_per_s2(6_000),

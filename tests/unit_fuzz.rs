@@ -58,11 +58,14 @@ fn event() -> impl Strategy<Value = Event> {
     ]
 }
 
-/// The widest that a command may be, and how far one may be from the last.
+/// The widest that a command may be, and how far one may be from the last: what the jerk makes of a period, and downward, where ticks
+/// were missed, of the time since then, up to a period and the delay that the envelope tolerates.
 struct Bounds {
     range: std::ops::RangeInclusive<Acceleration>,
-    change: Acceleration,
-    last: Option<Acceleration>,
+    jerk: Jerk,
+    period: Duration,
+    longest: Duration,
+    last: Option<(Instant, Acceleration)>,
 }
 
 impl Bounds {
@@ -72,18 +75,25 @@ impl Bounds {
             None => (limits.braking.negated()..=limits.acceleration, limits.jerk),
             Some(envelope) => (envelope.braking.negated()..=envelope.acceleration, envelope.jerk),
         };
-        Self { range, change: jerk.over(config.period.fine_seconds()), last: None }
+        let longest = config.period.plus(config.envelope.map_or(Duration::ZERO, |envelope| envelope.delay));
+        Self { range, jerk, period: config.period, longest, last: None }
     }
 
     /// In standby somebody else drives, and what they demand is what the unit starts from.
-    fn check(&mut self, mode: Mode, command: Acceleration) -> Result<(), TestCaseError> {
-        if let Some(last) = self.last.filter(|last| mode != Mode::Standby && self.range.contains(last)) {
+    fn check(&mut self, at: Instant, mode: Mode, command: Acceleration) -> Result<(), TestCaseError> {
+        if let Some((then, last)) = self.last.filter(|(_, last)| mode != Mode::Standby && self.range.contains(last)) {
             prop_assert!(self.range.contains(&command), "{command:?} after {last:?} in {mode:?}");
             // Both commands are rounded to the format from the wire's steps.
-            let change = self.change.plus(Acceleration::from_bits(2));
-            prop_assert!(command.minus(last).magnitude() <= change, "{command:?} after {last:?} in {mode:?}");
+            let within = |time: Duration| self.jerk.over(time.fine_seconds()).plus(Acceleration::from_bits(2));
+            let time = at.since(then).min(self.longest).max(self.period);
+            // What the jerk makes of a time that is no whole number of periods is encoded as the next step down.
+            let step = if time == self.period { Acceleration::ZERO } else { Acceleration::from_mm_per_s2(2) };
+            let down = within(time).plus(step);
+            let change = command.minus(last);
+            let is_kept = change <= within(self.period) && change >= down.negated();
+            prop_assert!(is_kept, "{command:?} after {last:?} in {mode:?}");
         }
-        self.last = Some(command);
+        self.last = Some((at, command));
         Ok(())
     }
 }
@@ -113,7 +123,7 @@ fn play(config: &Config, events: Vec<Event>) -> Result<(), TestCaseError> {
                 for _ in 0..periods {
                     now = traffic.now();
                     let answer = traffic.step(&mut unit);
-                    bounds.check(answer.mode, answer.command.acceleration)?;
+                    bounds.check(now, answer.mode, answer.command.acceleration)?;
                 }
                 std::mem::swap(&mut traffic.sender, &mut sender);
             }
@@ -122,7 +132,7 @@ fn play(config: &Config, events: Vec<Event>) -> Result<(), TestCaseError> {
                 let answer = unit.tick(now);
                 prop_assert!(!answer.frames.is_empty());
                 prop_assert!(answer.estimate.is_none_or(|estimate| estimate.reading.speed >= Speed::ZERO));
-                bounds.check(answer.mode, answer.command.acceleration)?;
+                bounds.check(now, answer.mode, answer.command.acceleration)?;
             }
         }
         frames.iter().for_each(|frame| drop_result(unit.receive(now, frame)));

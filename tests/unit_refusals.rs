@@ -91,7 +91,7 @@ fn good(traffic: &mut Traffic) -> Frame {
 }
 
 #[test]
-fn a_frame_that_is_not_8_bytes_long_or_remote() {
+fn a_frame_that_is_remote_or_not_8_bytes_long_is_refused() {
     for length in [0, 1, 7] {
         is_refused(Cause::Length, |unit, traffic| {
             let mut frame = AnyFrame::from(good(traffic));
@@ -105,7 +105,7 @@ fn a_frame_that_is_not_8_bytes_long_or_remote() {
 }
 
 #[test]
-fn a_frame_with_a_wrong_checksum() {
+fn a_frame_with_a_wrong_checksum_is_refused() {
     for bit in (0..64).step_by(9) {
         is_refused(Cause::Checksum, |unit, traffic| {
             let mut frame = good(traffic);
@@ -116,7 +116,7 @@ fn a_frame_with_a_wrong_checksum() {
 }
 
 #[test]
-fn a_frame_that_comes_twice() {
+fn a_frame_that_comes_twice_is_refused_the_second_time() {
     is_refused(Cause::Repeated, |unit, traffic| {
         let mut before = traffic.clone();
         before.period = 291; // when the one behind spoke last
@@ -129,7 +129,7 @@ fn a_frame_that_comes_twice() {
 }
 
 #[test]
-fn a_frame_after_too_many_that_are_missing() {
+fn a_frame_after_too_many_that_are_missing_is_refused() {
     is_refused(Cause::CounterGap, |unit, traffic| {
         let frames: [Frame; 5] = std::array::from_fn(|_| good(traffic));
         unit.receive(traffic.now(), &frames[4])
@@ -137,7 +137,7 @@ fn a_frame_after_too_many_that_are_missing() {
 }
 
 #[test]
-fn a_frame_with_counter_15() {
+fn a_frame_with_counter_15_is_refused() {
     is_refused(Cause::CounterRange, |unit, traffic| {
         let frame = resealed(good(traffic), Some(15), |_| ());
         unit.receive(traffic.now(), &frame)
@@ -145,7 +145,7 @@ fn a_frame_with_counter_15() {
 }
 
 #[test]
-fn the_first_frame_of_an_identifier() {
+fn the_first_frame_of_an_identifier_is_not_yet_trusted() {
     is_refused(Cause::NotYetTrusted, |unit, traffic| {
         let now = traffic.now();
         let motion = traffic.motion(StationHash(5), 0, now);
@@ -155,7 +155,7 @@ fn the_first_frame_of_an_identifier() {
 }
 
 #[test]
-fn a_reserved_value() {
+fn a_reserved_value_is_refused() {
     // The acceleration of MotionB, bits 29 to 39, as -1024; the part of driving parameters, bits 14 and 15, as 3.
     for (said, frame, start, length, raw) in
         [(None, 1, 29, 11, 0x400), (Some(Said::DrivingParameters(leads())), 0, 14, 2, 3)]
@@ -173,7 +173,7 @@ fn a_reserved_value() {
 }
 
 #[test]
-fn parts_that_do_not_belong_together() {
+fn parts_that_do_not_belong_together_are_refused() {
     is_refused(Cause::Torn, |unit, traffic| {
         let (now, first, second) = (traffic.now(), good(traffic), good(traffic));
         assert_eq!(unit.receive(now, &first), Ok(Reception::Pending));
@@ -182,7 +182,7 @@ fn parts_that_do_not_belong_together() {
 }
 
 #[test]
-fn a_stamp_that_is_too_old_or_in_the_future() {
+fn a_stamp_that_is_too_old_or_in_the_future_is_refused() {
     let stamped = |after: i64| {
         move |motion: &mut holdover::wire::motion::Motion, traffic: &Traffic| {
             motion.stamp = traffic.gnss(traffic.now().plus(Duration::from_micros(after))).stamp();
@@ -197,7 +197,7 @@ fn a_stamp_that_is_too_old_or_in_the_future() {
 }
 
 #[test]
-fn a_stamp_that_is_held_already() {
+fn a_stamp_that_is_held_already_is_refused() {
     is_refused(Cause::Duplicate, |unit, traffic| {
         motion(unit, traffic, |motion, traffic| {
             let spoken = Duration::from_millis(90); // the one behind spoke in period 291 of 300
@@ -208,7 +208,7 @@ fn a_stamp_that_is_held_already() {
 }
 
 #[test]
-fn a_sample_that_is_older_than_all_that_are_held() {
+fn a_sample_that_is_older_than_all_of_a_full_history_is_refused() {
     is_refused(Cause::OutOfOrder, |unit, traffic| {
         assert_eq!(unit.peers().get(1).map(|track| track.samples().len()), Some(traffic::SAMPLES));
         motion(unit, traffic, |motion, traffic| {
@@ -219,7 +219,7 @@ fn a_sample_that_is_older_than_all_that_are_held() {
 }
 
 #[test]
-fn a_slot_beyond_the_capacity() {
+fn a_slot_beyond_the_capacity_is_refused() {
     for slot in [PEERS as u8, 15] {
         is_refused(Cause::UnknownSlot, |unit, traffic| {
             let frame = traffic.peer(slot, Said::DrivingParameters(leads()))[0];
@@ -229,7 +229,7 @@ fn a_slot_beyond_the_capacity() {
 }
 
 #[test]
-fn another_station_in_the_slot_of_one_that_is_heard() {
+fn another_station_in_the_slot_of_one_that_is_heard_is_refused() {
     is_refused(Cause::StationConflict, |unit, traffic| {
         motion(unit, traffic, |motion, _| motion.station = StationHash(77))
     });
@@ -265,7 +265,7 @@ fn another_station_that_is_refused_leaves_the_slot_to_the_one_that_is_silent() {
 }
 
 #[test]
-fn a_peer_that_is_too_far_away() {
+fn a_peer_that_is_too_far_away_is_refused() {
     // The ego is 30 m along by now.
     for mm in [1_530_200, -1_470_200, 10_000_000] {
         is_refused(Cause::TooFar, |unit, traffic| {
@@ -275,7 +275,31 @@ fn a_peer_that_is_too_far_away() {
 }
 
 #[test]
-fn a_follow_up_without_its_sync_message() {
+fn a_motion_that_breaks_several_rules_is_refused_by_the_first_in_their_order() {
+    type Change = fn(&mut holdover::wire::motion::Motion, &Traffic);
+    let other: Change = |motion, _| motion.station = StationHash(77);
+    let stale: Change = |motion, _| motion.stamp = Stamp::from_raw(motion.stamp.raw().wrapping_sub(110_000));
+    let far: Change = |motion, _| motion.position = WirePosition::from_mm(9_000_000);
+    let held: Change = |motion, traffic| {
+        motion.stamp = traffic.gnss(traffic.now().minus(Duration::from_millis(90))).stamp();
+    };
+    let wild: Change = |motion, _| motion.acceleration = Acceleration::from_mm_per_s2(-15_000);
+    let cases: [(Cause, &[Change]); 5] = [
+        (Cause::Stale, &[other, stale, far, wild]),
+        (Cause::StationConflict, &[other, far, wild]),
+        (Cause::TooFar, &[held, far, wild]),
+        (Cause::Duplicate, &[held, wild]),
+        (Cause::Implausible, &[wild]),
+    ];
+    for (cause, changes) in cases {
+        is_refused(cause, |unit, traffic| {
+            motion(unit, traffic, |motion, traffic| changes.iter().for_each(|change| change(motion, traffic)))
+        });
+    }
+}
+
+#[test]
+fn a_follow_up_without_its_sync_message_is_refused() {
     is_refused(Cause::SyncSequence, |unit, traffic| {
         let frame = traffic.frames(&Message::FollowUp(FollowUp { sequence: 3, micros: 0 }))[0];
         unit.receive(traffic.now(), &frame)
@@ -283,7 +307,7 @@ fn a_follow_up_without_its_sync_message() {
 }
 
 #[test]
-fn a_synchronisation_that_was_long_on_its_way() {
+fn a_synchronisation_that_was_long_on_its_way_is_refused() {
     is_refused(Cause::SyncLate, |unit, traffic| {
         let now = traffic.now();
         let frames = traffic.time_base();
@@ -294,7 +318,7 @@ fn a_synchronisation_that_was_long_on_its_way() {
 }
 
 #[test]
-fn a_synchronisation_that_is_ahead() {
+fn a_synchronisation_that_is_ahead_is_refused() {
     is_refused(Cause::SyncEarly, |unit, traffic| {
         let before = Traffic { offset: traffic.offset.minus(Duration::from_micros(60_000)), ..traffic.clone() };
         let (now, sequence) = (traffic.now(), traffic.sequence);
@@ -309,7 +333,7 @@ fn a_synchronisation_that_is_ahead() {
 }
 
 #[test]
-fn a_follow_up_of_another_sync_message_which_does_not_spoil_the_right_one() {
+fn a_follow_up_of_another_sync_message_is_refused_and_does_not_spoil_the_right_one() {
     let (mut unit, mut traffic) = settled();
     let (now, time) = (traffic.now(), traffic.gnss(traffic.now()).as_micros());
     let (seconds, micros) = (u32::try_from(time / 1_000_000).expect("before 2116"), (time % 1_000_000) as u32);
@@ -322,7 +346,7 @@ fn a_follow_up_of_another_sync_message_which_does_not_spoil_the_right_one() {
 }
 
 #[test]
-fn a_time_that_runs_backwards() {
+fn a_time_that_runs_backwards_is_counted_and_taken_as_the_last_one() {
     let (mut unit, mut traffic) = settled();
     let before = counts(&unit);
     let last = traffic.now().minus(traffic::PERIOD);

@@ -120,7 +120,6 @@ pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
 
 /// Share of time in which the envelope changed the command of one of these vehicles, 0 to 1.
 #[must_use]
-#[allow(clippy::cast_precision_loss)] // fewer ticks than 2⁵³
 pub fn limited_share(trace: &Trace, vehicles: &[usize]) -> f64 {
     let ticks = || vehicles.iter().flat_map(|index| &trace.vehicles[*index]);
     ticks().filter(|tick| tick.limited).count() as f64 / ticks().count().max(1) as f64

@@ -24,7 +24,6 @@ pub struct Point {
 
 impl Point {
     fn steps(self) -> (i32, i32) {
-        #[allow(clippy::cast_possible_truncation)] // ±1.8e9
         let steps = |degrees: f64| (degrees * 1e7).round() as i32;
         (steps(self.latitude), steps(self.longitude))
     }
@@ -69,7 +68,6 @@ fn length_m(from: Point, to: Point) -> f64 {
     segment(from, to, 0.0).1
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // scales below 2³⁰, headings below 28,800
 fn segment(from: Point, to: Point, begins_m: f64) -> (Segment, f64) {
     let ((latitude, longitude), (to_latitude, to_longitude)) = (from.steps(), to.steps());
     let (north_m, east_m) = step_m((from.latitude + to.latitude) / 2.0);

@@ -40,7 +40,6 @@ impl Observer {
             }
             Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
                 let time = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
-                #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
                 let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
                 let vehicle = index_of(motion.station)?;
                 let position = motion.position.nearest_to(near);

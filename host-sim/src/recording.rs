@@ -232,7 +232,6 @@ fn slope(rows: &[MotionRow]) -> f64 {
     if rows.len() < 3 {
         return 0.0;
     }
-    #[allow(clippy::cast_precision_loss)]
     let count = rows.len() as f64;
     let mean = |of: fn(&MotionRow) -> f64| rows.iter().map(of).sum::<f64>() / count;
     let (t, v) = (mean(|row| row.t_s), mean(|row| row.speed_mps));

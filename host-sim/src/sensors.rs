@@ -38,7 +38,6 @@ pub struct Sensors {
 impl Sensors {
     /// Those that a scenario gives the vehicle with that index.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // few vehicles
     pub fn new(described: &Vehicle, seed: u64, index: usize) -> Self {
         let generator = || stream(seed, Purpose::RangeSensor(index as u32));
         Self {

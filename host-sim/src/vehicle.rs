@@ -206,7 +206,6 @@ impl Vehicle {
 
     /// The time of the run at an instant of the unit's clock.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
     pub fn time_of(&self, at: Instant) -> f64 {
         at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
     }
@@ -252,9 +251,7 @@ impl Vehicle {
     fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
         self.synced = (self.synced + 1) % 16;
         let time = gnss(at_s).as_micros();
-        #[allow(clippy::cast_possible_truncation)] // 32 bits of seconds last until 2116
         let sync = Sync { sequence: self.synced, seconds: (time / 1_000_000) as u32 };
-        #[allow(clippy::cast_possible_truncation)] // below a million
         let follow_up = FollowUp { sequence: self.synced, micros: (time % 1_000_000) as u32 };
         self.put(at_s, &Message::Sync(sync))?;
         self.put(at_s, &Message::FollowUp(follow_up))

@@ -146,13 +146,11 @@ impl<'a> World<'a> {
         let ticks = self.ticks();
         let mut trace = self.trace();
         for tick in 0..ticks {
-            #[allow(clippy::cast_precision_loss)]
             let at_s = tick as f64 * period_s;
             self.speak(at_s)?;
             self.act(at_s, &mut trace)?;
             self.drive(at_s)?;
             if tick % 100 == 0 {
-                #[allow(clippy::cast_precision_loss)]
                 progress(tick as f64 / ticks as f64);
             }
         }
@@ -173,7 +171,6 @@ impl<'a> World<'a> {
 
     /// Ticks of the run.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a day of milliseconds at most
     pub fn ticks(&self) -> usize {
         (self.scenario.duration_s / self.scenario.period_s).round() as usize
     }
@@ -336,14 +333,12 @@ impl<'a> World<'a> {
 
 /// The ticks of a warm-up: whole cycles of the messages.
 #[must_use]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
 pub fn warm_up_ticks(at_least_s: f64, message_rate_hz: f64, period_s: f64) -> u32 {
     let messages = (at_least_s * message_rate_hz).ceil();
     (messages / message_rate_hz / period_s - 1e-9).ceil() as u32
 }
 
 /// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 #[must_use]
 pub fn clock_offset(seed: u64, index: usize) -> u64 {
     let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
@@ -385,7 +380,6 @@ pub const HORIZON_S: f64 = 3.9;
 
 /// A horizon of this length, or as many whole steps as come to at least that, within the capacity.
 #[must_use]
-#[allow(clippy::cast_precision_loss)]
 pub fn horizon(horizon_s: f64, step_s: f64) -> holdover::time::Duration {
     let steps = (horizon_s / step_s).ceil().clamp(2.0, (crate::vehicle::STEPS - 2) as f64);
     duration(steps * step_s)

@@ -89,7 +89,7 @@ fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_s
 #[test]
 fn a_limit_that_is_missed_is_a_failed_verdict() {
     let folder = tempfile::tempdir().unwrap();
-    let file = short(folder.path(), &[("position_error_m = 0.2 ", "position_error_m = 0.0001 ")]);
+    let file = short(folder.path(), &[("position_error_m = 0.16 ", "position_error_m = 0.0001 ")]);
     let output = sim(&["run", &file, "--no-report"]);
     assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();

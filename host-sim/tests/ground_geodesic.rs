@@ -7,7 +7,6 @@ use holdover::wire::geo::GeoPosition;
 use holdover_sim::ground::{Point, path, point_at};
 
 /// What a receiver would send: 1e-7°.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 fn geo(latitude: f64, longitude: f64, heading_deg: f64) -> GeoPosition {
     GeoPosition {
         tag: 0,

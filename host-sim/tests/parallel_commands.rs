@@ -73,7 +73,7 @@ fn drives(count: usize) -> String {
 }
 
 #[test]
-fn evaluate_in_silences_with_any_number_of_files() {
+fn evaluate_in_silences_is_the_same_on_any_number_of_threads() {
     let folder = folder();
     for count in [1, 2, 3, 9, 24] {
         let arguments = format!("evaluate --motion{} --outage 0.1,0.5 --step 0.05", drives(count));
@@ -82,7 +82,7 @@ fn evaluate_in_silences_with_any_number_of_files() {
 }
 
 #[test]
-fn evaluate_over_a_link_with_any_number_of_files() {
+fn evaluate_over_a_link_is_the_same_on_any_number_of_threads() {
     let folder = folder();
     for count in [1, 2, 3, 9, 24] {
         let arguments = format!("evaluate --motion{} --channel link.csv --step 0.05", drives(count));
@@ -91,37 +91,37 @@ fn evaluate_over_a_link_with_any_number_of_files() {
 }
 
 #[test]
-fn sweep() {
+fn sweep_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "sweep paper.toml --seeds 24 --steps 0.1,1");
 }
 
 #[test]
-fn string() {
+fn string_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "string --delays 0 --losses 0.2 --step-only --seeds 2");
 }
 
 #[test]
-fn motions() {
+fn motions_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "motions --silences 3");
 }
 
 #[test]
-fn price() {
+fn price_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "price paper.toml --silences 1 --seeds 2");
 }
 
 #[test]
-fn gains() {
+fn gains_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "gains");
 }
 
 #[test]
-fn run_with_many_seeds() {
+fn a_corridor_with_many_seeds_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "run corridor.toml --seeds 2");
 }
 
 /// The steps of the figures are done on all cores, and the simulation's own speed is measured on threads of its own.
 #[test]
-fn run_with_a_report_and_its_own_speed() {
+fn a_corridor_with_a_report_and_its_own_speed_passes_on_eight_threads() {
     run(folder().path(), "run corridor.toml --vehicles 12 --out report", 8);
 }

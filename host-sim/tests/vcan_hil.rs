@@ -166,14 +166,18 @@ fn a_device_that_is_silent_or_ends_or_goes_half_way_is_a_verdict_in_time() {
     assert!(code == 1 && reason.starts_with("the device is gone: its last frame was at "), "{reason}");
 }
 
-/// Presses a button in a run of 6 s; what is to become of the device, and that the run passes.
-fn press(fault: &str, worst: &[&str]) -> Value {
+/// A process wakes later than a timer says, by what the machine does otherwise, and its first frame waits for the next tick.
+const SCHEDULING_S: f64 = 0.25;
+
+/// Presses a button in a run of 6 s; what is to become of the device, within which time it is documented to drive again, and
+/// that the run passes.
+fn press(fault: &str, worst: &[&str], within_s: f64) -> Value {
     let (_folder, file) = scenario("duration_s = 6\n[channel]\noutages = []\nloss = 0.0");
     let (code, results) = judged(&[&file, "--device", &device(""), "--fault", fault]);
     assert_eq!((code, &results["reasons"]), (0, &serde_json::json!([])), "{fault}");
     let recovery = &results["faults"][0];
     assert!(worst.contains(&recovery["worst"].as_str().unwrap()), "{fault}: {recovery}");
-    assert!(recovery["recovered_after_s"].as_f64().unwrap() < 2.5, "{fault}: {recovery}");
+    assert!(recovery["recovered_after_s"].as_f64().unwrap() < within_s + SCHEDULING_S, "{fault}: {recovery}");
     results
 }
 
@@ -184,14 +188,14 @@ fn refused(results: &Value, cause: &str) -> u64 {
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_process_whose_power_is_cut_is_silent_and_drives_again() {
-    let results = press("power@2:1", &["silent"]);
+    let results = press("power@2:1", &["silent"], 1.0);
     assert!(results["device"]["modes"]["standby"].as_u64().unwrap() > 0, "{}", results["device"]);
 }
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn an_interface_that_was_down_is_used_again() {
-    let results = press("interface@2:0.5", &["silent"]);
+    let results = press("interface@2:0.5", &["silent"], 1.5);
     assert!(results["timing"]["harness"]["refused"].as_u64().unwrap() > 50);
     assert!(results["device"]["modes"]["fault"].as_u64().unwrap() > 0, "{}", results["device"]);
 }
@@ -199,23 +203,23 @@ fn an_interface_that_was_down_is_used_again() {
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_babbling_node_does_not_keep_the_unit_from_driving() {
-    let results = press("babble@2:1", &["cooperative", "holdover"]);
+    let results = press("babble@2:1", &["cooperative", "holdover"], 0.0);
     assert_eq!(results["timing"]["harness"]["lost"], 0);
 }
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn spoilt_frames_are_refused_by_their_cause() {
-    let results = press("corrupt@2:1", &["cooperative", "holdover", "fault"]);
+    let results = press("corrupt@2:1", &["cooperative", "holdover", "fault"], 1.0);
     assert!(refused(&results, "checksum") > 50, "{}", results["device"]);
-    let results = press("truncate@2:1", &["cooperative", "holdover", "fault"]);
+    let results = press("truncate@2:1", &["cooperative", "holdover", "fault"], 1.0);
     assert!(refused(&results, "length") > 50, "{}", results["device"]);
 }
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_foreign_node_on_the_vehicles_identifiers_is_seen_and_refused() {
-    let results = press("foreign@2:1", &["cooperative", "holdover", "fault"]);
+    let results = press("foreign@2:1", &["cooperative", "holdover", "fault"], 1.0);
     assert!(results["device"]["foreign_frames"].as_u64().unwrap() > 100, "{}", results["device"]);
     assert!(refused(&results, "repeated") + refused(&results, "counter_gap") > 30, "{}", results["device"]);
 }
@@ -223,13 +227,13 @@ fn a_foreign_node_on_the_vehicles_identifiers_is_seen_and_refused() {
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn error_frames_are_counted() {
-    let results = press("errors@2:1", &["cooperative", "holdover"]);
+    let results = press("errors@2:1", &["cooperative", "holdover"], 0.0);
     assert!(results["device"]["bus_errors"].as_u64().unwrap() > 50, "{}", results["device"]);
 }
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_drift_and_a_small_step_of_the_time_synchronisation_are_followed() {
-    press("clock-drift=200@2:2", &["cooperative", "holdover"]);
-    press("clock-step=0.003@2:1", &["cooperative", "holdover"]);
+    press("clock-drift=200@2:2", &["cooperative", "holdover"], 0.0);
+    press("clock-step=0.003@2:1", &["cooperative", "holdover"], 0.0);
 }

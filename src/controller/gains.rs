@@ -45,7 +45,8 @@ impl Gains {
     }
 
     /// At a place of the table in parts of a cell.
-    #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // thousandths of a few units, parts up to 2²⁴
+    // Thousandths of a few units, parts up to 2²⁴, and a few points.
+    #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_possible_wrap)]
     fn at(own: i64, target: i64, headway: i64) -> Self {
         let along = |own, target| between(headway, |cell| gain(own, target, cell));
         let across = |own| between(target, |cell| along(own, cell));
@@ -60,7 +61,7 @@ impl Gains {
 }
 
 /// Where a value is on an axis of so many points, in parts of a cell.
-#[allow(clippy::arithmetic_side_effects)] // a few thousand metres in millimetres times 256
+#[allow(clippy::arithmetic_side_effects, clippy::cast_possible_wrap)] // a few thousand metres in millimetres times 256; a few points
 fn place(value: i32, first: i32, step: i32, points: usize) -> i64 {
     let parts = quotient((i64::from(value) - i64::from(first)) * PARTS, i64::from(step));
     parts.clamp(0, (points as i64 - 1) * PARTS)

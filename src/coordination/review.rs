@@ -19,8 +19,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
         // is ahead takes the ego along. Or else three could wait for one another, two by the order and two on the leg.
         let ahead = present.iter().filter(|other| other.lane == Some(Side::Ahead) && !other.has_left);
-        let after =
-            ahead.filter_map(|other| other.entry.arrival).filter(|arrival| registration.arrival.is_before(*arrival));
+        let after = ahead.filter(|other| ego.is_before(&other.entry)).filter_map(|other| other.entry.arrival);
         if let Some(latest) = after.reduce(|a, b| if a.is_before(b) { b } else { a }) {
             self.registration.set(Registration { arrival: latest.next(), ..registration });
         }

@@ -315,6 +315,11 @@ fn whoever_is_ahead_on_the_same_leg_takes_the_ego_along_until_it_has_left() {
     let further = there(1, entry(2, 40, Some(1)), Some(Side::Ahead));
     assert_eq!(reviewed(1, &[further, ahead]), (41, Predecessor::Station(StationHash(2))));
     assert_eq!(reviewed(1, &[Present { has_left: true, ..ahead }]), (20, Predecessor::None));
+    // Of two that tell the same arrival the smaller number is first, and behind on the leg it must not be: each would wait for
+    // the other, one by the order and one on the leg, as soon as a third one told that arrival too.
+    let together = |station| there(0, entry(station, 20, None), Some(Side::Ahead));
+    assert_eq!(reviewed(1, &[together(12)]), (21, Predecessor::Station(StationHash(12))));
+    assert_eq!(reviewed(1, &[together(3)]), (20, Predecessor::Station(StationHash(3))));
 }
 
 #[test]

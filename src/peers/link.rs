@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn delay_and_loss_are_measured() {
+    fn delay_and_loss_are_those_of_the_messages() {
         let mut link = Link::new(Duration::from_millis(100));
         for n in (0..200u64).filter(|n| n % 4 != 3) {
             link.heard(at(n * 100 + 40), at(n * 100));

@@ -34,6 +34,8 @@ pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
     parameters: Held<DrivingParameters>,
+    /// When that was received last.
+    intended: Instant,
     limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
@@ -49,6 +51,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             samples: Vec::new(),
             certainty: Certainty::NONE,
             parameters: Held::Nothing,
+            intended: Instant::ZERO,
             limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
@@ -128,8 +131,23 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// Takes over what the same station said of how it drives in the slot in which it was before.
     pub fn follow_on(&mut self, before: &Self) {
         if self.parameters.as_ref().is_none() {
-            (self.parameters, self.limits) = (before.parameters, before.limits);
+            (self.parameters, self.intended, self.limits) = (before.parameters, before.intended, before.limits);
         }
+    }
+
+    /// Whether what was said here of how somebody drives was said before any motion named a station, and so long ago that
+    /// it need not be of whom a motion names now.
+    #[must_use]
+    pub fn is_of_another(&self, at: Instant, slot_reuse: Duration) -> bool {
+        let is_old = at.since(self.intended) >= slot_reuse;
+        self.station().is_none() && self.parameters.as_ref().is_some() && is_old
+    }
+
+    /// Begins anew for whom a motion names now. Of what was said here before by nobody knows whom, a length counts if it is
+    /// longer than what is taken for a vehicle that does not say its own: it may be this one's all the same.
+    pub fn begin(&mut self) {
+        let said = self.parameters.get().filter(|parameters| parameters.length > DEFAULT_LENGTH);
+        *self = Self { parameters: said.into(), intended: self.intended, ..Self::new(self.link.period()) };
     }
 
     /// What it said of how it drives.
@@ -270,6 +288,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         };
         self.limits.set(limits);
         self.certainty.settle(&limits);
+        self.intended = at;
         let is_new = self.parameters.as_ref() != Some(&parameters);
         self.parameters.set(parameters);
         is_new

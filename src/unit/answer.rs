@@ -7,10 +7,28 @@ use crate::model::Reading;
 use crate::model::bound::Bound;
 use crate::time::Duration;
 use crate::wire::Frame;
+use crate::wire::catalogue::{About, CATALOGUE, Content, Node};
 use crate::wire::command::Command;
 
 /// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), status.
 pub const MAX_FRAMES: usize = 16;
+
+/// The frames of all messages of the unit in the catalogue. Its place on the globe is not among those that it sends: others
+/// hear of the ego by its route.
+#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
+const SENT: usize = {
+    let (mut frames, mut line) = (0, 0);
+    while line < CATALOGUE.len() {
+        let is_sent = !matches!(CATALOGUE[line].content, Content::Said(_, About::Geo));
+        if matches!(CATALOGUE[line].sender, Node::Unit) && is_sent {
+            frames += CATALOGUE[line].frames as usize;
+        }
+        line += 1;
+    }
+    frames
+};
+
+const _: () = assert!(SENT == MAX_FRAMES, "an answer has room for every message once, and no more");
 
 /// What became of a frame that was not refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -40,8 +40,8 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
 
     let view = scene.vantage(now, front, speed);
     let is_committed = view.is_committed();
-    let (present, nearest) = around(&view, is_committed);
     let is_inside = scene.area_begins().is_some_and(|begins| front > begins);
+    let (present, nearest) = around(&view, is_committed, is_inside);
     // A vehicle that stops at the line is a hair from where it could not.
     let can_wait = if scene.coordination.choice().is_held { !is_inside } else { !is_committed };
     let has_room = view.has_room(nearest);
@@ -55,7 +55,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
         health.count(Cause::Overlooked);
     }
     scene.coordination.note_lost(lost(scene, now, front));
-    choose(scene, now, front, speed, nearest, is_inside);
+    choose(scene, now, front, speed, nearest);
     lane::note(scene, now, front);
 }
 
@@ -63,6 +63,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
 fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
     is_committed: bool,
+    is_inside: bool,
 ) -> (Vec<Present, PEERS>, Option<usize>) {
     let coordination = &view.scene.coordination;
     let followed = coordination.choice().target.map(usize::from);
@@ -75,13 +76,15 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         let side = if reading.position > view.front { Side::Ahead } else { Side::Behind };
         if coordination.is_here(standing) {
             let takes_along = side == Side::Behind || !is_committed;
+            // A vehicle in the area does not wait in it for one that comes after it.
+            let is_passed = is_inside && side == Side::Behind;
             let _ = present.push(Present {
                 index,
                 entry,
                 heard: standing.heard,
                 has_left: coordination.end_of(view.next).is_some_and(|end| rear >= end),
                 is_far_behind: is_committed || view.is_far_behind(&reading),
-                is_announced: followed == Some(index) || view.is_announced(standing),
+                is_announced: !is_passed && (followed == Some(index) || view.is_announced(standing)),
                 lane: (is_on_lane && takes_along).then_some(side),
             }); // as many as slots
         }
@@ -118,15 +121,11 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     front: Position,
     speed: Speed,
     nearest: Option<usize>,
-    is_inside: bool,
 ) {
     let view = scene.vantage(now, front, speed);
     let before = scene.coordination.choice();
     let is_heeded = |index: &usize| view.is_heeded(*index);
-    // A vehicle in the area does not wait in it for one that comes after it.
-    let is_passed = |index: &usize| scene.estimated(*index, now).is_some_and(|reading| reading.position <= front);
     let order = before.order.map(usize::from).filter(is_heeded);
-    let order = order.filter(|index| !(is_inside && is_passed(index)));
     let lane = nearest.filter(is_heeded);
     let followed = before.target.map(usize::from);
     let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(*target, followed));

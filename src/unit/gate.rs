@@ -12,13 +12,20 @@ use crate::parameters::{
     DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
 };
 use crate::peers::Sample;
-use crate::time::Instant;
+use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position};
 
 /// The gate's memory: the ego as the gate carries it on by the commands alone.
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     reckoning: Held<Reckoning>,
+}
+
+/// What the last tick demanded, and how long ago that was: longer than a period, where ticks were missed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Last {
+    pub demand: Acceleration,
+    pub age: Duration,
 }
 
 impl Gate {
@@ -39,7 +46,7 @@ impl Gate {
         scene: &Scene<PEERS, SAMPLES, STEPS>,
         now: Instant,
         demand: Acceleration,
-        last: Acceleration,
+        last: Last,
         ego: Option<&State>,
     ) -> (Acceleration, bool) {
         let sample = scene.ego.get().unwrap_or(Sample::UNKNOWN);
@@ -54,8 +61,8 @@ impl Gate {
             speed: sample.speed.plus(faster),
             acceleration: sample.acceleration,
         };
-        let reckoning = Reckoning::carry(&mut self.reckoning, &start, now, last, limits);
-        let ego = reckoning.ego(limits, last, scene.config.lag);
+        let reckoning = Reckoning::carry(&mut self.reckoning, &start, now, last.demand, limits);
+        let ego = reckoning.ego(limits, last.demand, scene.config.lag);
         // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
@@ -67,7 +74,7 @@ impl Gate {
         let seen = view.obstacles_seen().map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: scene.fresh_ego(now).is_some(), spare };
-        let command = envelope::gate(limits, demand, &ego, &situation, scene.config.period);
+        let command = envelope::gate_after(limits, demand, &ego, &situation, scene.config.period, last.age);
         (envelope::encodable(limits, command), command != demand)
     }
 }

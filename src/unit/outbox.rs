@@ -39,7 +39,6 @@ pub(super) struct Report<'a> {
     /// The ego's motion with the demand in force up to its stamp: from it a receiver's model repeats the demand of this tick. `None`
     /// if it is too old.
     pub ego: Option<&'a Sample>,
-    pub health: &'a Health,
 }
 
 /// When what is due, and the end-to-end state of what is sent.
@@ -115,12 +114,13 @@ impl Outbox {
         &mut self,
         command: &Command,
         estimate: Option<&Estimate>,
+        health: &mut Health,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
-        self.emit(&Message::Command(*command), frames);
+        self.emit(&Message::Command(*command), health, frames);
         if let Some(estimate) = estimate {
             let estimate = self.target_estimate(estimate);
-            self.emit(&Message::Estimate(estimate), frames);
+            self.emit(&Message::Estimate(estimate), health, frames);
         }
     }
 
@@ -130,21 +130,22 @@ impl Outbox {
         scene: &Scene<PEERS, SAMPLES, STEPS>,
         now: Instant,
         report: &Report<'_>,
+        health: &mut Health,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
         if let Some(ego) = report.ego {
-            self.send_motion(scene, ego, report, frames);
+            self.send_motion(scene, ego, report, health, frames);
         }
         let cause = self.next_page();
         let status = Status {
             cause,
-            count: report.health.of(cause),
+            count: health.of(cause),
             mode: report.mode.code(),
             detail: report.mode.detail(),
             synchronised: scene.is_synchronised(now),
             links_on: links_on(scene, now),
         };
-        self.emit(&Message::Status(status), frames);
+        self.emit(&Message::Status(status), health, frames);
     }
 
     fn send_motion<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
@@ -152,6 +153,7 @@ impl Outbox {
         scene: &Scene<PEERS, SAMPLES, STEPS>,
         ego: &Sample,
         report: &Report<'_>,
+        health: &mut Health,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
         self.tag = self.tag.wrapping_add(1) % 4;
@@ -167,29 +169,29 @@ impl Outbox {
             speed_accuracy: ego.speed_accuracy,
             station: scene.config.station,
         };
-        self.emit(&Message::Own(Said::Motion(motion)), frames);
+        self.emit(&Message::Own(Said::Motion(motion)), health, frames);
         if let Some(route) = route(scene, tag, ego) {
-            self.emit(&Message::Own(Said::Route(route)), frames);
+            self.emit(&Message::Own(Said::Route(route)), health, frames);
         }
         if report.mode != Mode::Standby {
             let parameters = parameters(scene, report);
             if self.is_parameters_due(parameters) {
-                self.emit(&Message::Own(Said::DrivingParameters(parameters)), frames);
+                self.emit(&Message::Own(Said::DrivingParameters(parameters)), health, frames);
             }
         }
         if report.mode.is_by_law() {
             let knots = own_knots(scene, tag, ego);
-            self.emit(&Message::Own(Said::Horizon(knots)), frames);
+            self.emit(&Message::Own(Said::Horizon(knots)), health, frames);
         }
     }
 
+    /// Adds a message's frames to those of this tick. What cannot be sent is lost, and counted.
     #[inline(never)] // one place that encodes
-    fn emit(&mut self, message: &Message, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        let sent = self.sender.send_as_unit(message, &mut |frame| {
-            let pushed = frames.push(frame);
-            debug_assert!(pushed.is_ok(), "MAX_FRAMES holds every tick's frames");
-        });
-        debug_assert!(sent.is_ok(), "the unit says nothing else");
+    fn emit(&mut self, message: &Message, health: &mut Health, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        let mut lost = 0u32;
+        let mut push = |frame| lost = lost.saturating_add(u32::from(frames.push(frame).is_err()));
+        let is_sent = self.sender.send_as_unit(message, &mut push).is_ok();
+        health.add(Cause::TransmitOverflow, lost.saturating_add(u32::from(!is_sent)));
     }
 
     fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
@@ -309,3 +311,6 @@ fn ends(told: &Reading, bound: &Bound) -> Ends {
 fn rounded(speed: Speed) -> Speed {
     Speed::from_steps(speed.to_steps(500).clamp(0, 32_767), 500)
 }
+
+#[cfg(test)]
+mod tests;

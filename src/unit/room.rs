@@ -23,6 +23,9 @@ const WAITING: Speed = Speed::from_mm_per_s(500);
 /// Slower than this a vehicle is in a queue.
 const SLOW: Speed = Speed::from_mm_per_s(3_000);
 
+/// Slower than this a vehicle may be about to stop in one.
+const QUEUED: Speed = Speed::from_mm_per_s(5_000);
+
 /// How far before the conflict area the ego stops, and at least behind the vehicle ahead.
 const LINE: Distance = Distance::from_mm(1_000);
 
@@ -64,38 +67,53 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         self.speed <= WAITING && ahead.is_none_or(is_first)
     }
 
-    /// Where the ego, if it is slow, waits until everyone ahead in the order is estimated to have passed: before the next conflict area.
-    /// The law lets it start early, and it would be in there at once.
+    /// Where the ego waits as long as a vehicle that crosses its way, and is ahead in the order or in the next conflict area already, is
+    /// estimated not to have left that area by the time that the ego would be there: before the area. The law looks at the last vehicle
+    /// ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
     fn passes_first(&self) -> Option<Position> {
         let coordination = &self.scene.coordination;
         let (crossing, line) = (coordination.crossing()?, self.scene.area_begins()?);
         let end = coordination.end_of(self.next)?;
-        if self.speed > SLOW || self.front > line {
+        if self.front > line {
             return None;
         }
+        let then = if self.speed <= SLOW { self.at } else { self.at.plus(self.time_to(line).min(LEAVES)) };
         let is_due = |index: usize| {
-            let standing = coordination.standing(index);
-            coordination.choice().ahead.contains(index)
-                && standing.is_some_and(|standing| crossing.intersection.conflict(crossing.leg, standing.leg))
-                && self.scene.rear(index, self.at).is_some_and(|(_, rear)| rear < end)
+            let Some(standing) = coordination.standing(index) else { return false };
+            let is_inside = || {
+                coordination.is_here(standing)
+                    && self.scene.rear(index, self.at).is_some_and(|(reading, _)| reading.position > line)
+            };
+            crossing.intersection.conflict(crossing.leg, standing.leg)
+                && (coordination.choice().ahead.contains(index) || is_inside())
+                && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end)
         };
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))
     }
 
+    /// How long the ego takes to a place ahead at its speed now, rounded.
+    fn time_to(&self, place: Position) -> Duration {
+        let mm = i64::from(place.ahead_of(self.front).to_mm());
+        let mm_per_s = i64::from(self.speed.to_mm_per_s()).max(1);
+        Duration::from_micros(quotient(mm.saturating_mul(1_000_000), mm_per_s))
+    }
+
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that
     /// hardly moved when it was heard last is not believed to have moved on since, for as long as a holdover lasts: the vehicle that it
-    /// waits for may have changed.
+    /// waits for may have changed. A peer that was slow then is taken to have braked from there on.
     fn stops_at(&self, index: usize) -> Option<Position> {
         let (scene, now) = (self.scene, self.at);
+        let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
+        let way = |speed: Speed| Distance::from_mm(saturate_i32(braked(i64::from(speed.to_mm_per_s()), braking)));
         let track = scene.peers.get(index)?;
-        let was_slow = track.newest().is_some_and(|newest| newest.speed <= SLOW);
-        if was_slow && !track.link().is_on(now, &scene.config.link) && scene.is_in_reach(index, now) {
-            return Some(scene.near_rear(index, now)?.0.ahead(LINE.negated()));
+        let is_silent = !track.link().is_on(now, &scene.config.link) && scene.is_in_reach(index, now);
+        if let Some(newest) = track.newest().filter(|newest| is_silent && newest.speed <= QUEUED) {
+            let certain = scene.bound(index, now)?.lowest_position();
+            let at_rest = if newest.speed <= SLOW { certain } else { newest.position.ahead(way(newest.speed)) };
+            return Some(at_rest.ahead(track.length().negated()).ahead(LINE.negated()));
         }
         let (reading, rear) = scene.rear(index, now)?;
-        let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
-        let way = braked(i64::from(reading.speed.to_mm_per_s()), braking);
-        Some(rear.ahead(Distance::from_mm(saturate_i32(way))).ahead(LINE.negated()))
+        Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
     }
 }
 

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn the_transitions_of_the_specification() {
+    fn transitions_are_those_of_the_specification() {
         use Status::{Initial, NoNewData, Ok, OkSomeLost, Repeated, Sync, WrongCrc, WrongSequence};
         // WaitForFirstData ends with the first intact frame, whatever its counter; broken ones and silence do not end it.
         run(&LIMITS, &[(Nothing, NoNewData), (Broken, WrongCrc), (Counter(9), Initial), (Counter(10), Ok)]);
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn the_checksums_of_an_independent_implementation() {
+    fn checksums_are_those_of_an_independent_implementation() {
         let vectors = include_str!("../../tests/vectors/e2e_p01.csv");
         let mut count = 0;
         for line in vectors.lines().skip(1) {

@@ -91,6 +91,7 @@ impl Field {
 
     /// Only the named raw values are values; they count from 0.
     #[must_use]
+    #[allow(clippy::cast_possible_wrap)] // a field has at most 2⁸ names
     pub const fn named(self, values: &'static [(i64, &'static str)]) -> Self {
         Self { max: (values.len() as i64).wrapping_sub(1), values, ..self }
     }

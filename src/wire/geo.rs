@@ -44,7 +44,7 @@ impl GeoPosition {
 
     /// From the two parts' payloads; every payload within the fields' limits is a position.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation)] // fields of at most 32 bits
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // fields of at most 32 bits, and a heading has no sign
     pub fn decode([a, b]: &[Payload; 2]) -> Self {
         Self {
             tag: TAG.byte(*a),

@@ -38,6 +38,7 @@ pub struct Knots {
 /// When the knots are, in thousandths of the horizon's length.
 pub const SHARES_PER_MILLE: [u16; KNOTS] = [175, 375, 600, 800, 1000];
 
+#[allow(clippy::cast_possible_wrap)] // 5
 const PART: Field = Field::selector("Part", 14, 3, KNOTS as i64);
 const DISPLACEMENT: Field = Field::unsigned("Displacement", 17, 18).steps(1000, "m");
 const SPEED: Field = motion::speed("Speed", 35);

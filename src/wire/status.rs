@@ -26,7 +26,7 @@ pub struct Status {
 /// Every cause with its number.
 static CAUSES: [(i64, &str); Cause::ALL.len()] = causes();
 
-#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
+#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects, clippy::cast_possible_wrap)] // in const, a few
 const fn causes() -> [(i64, &'static str); Cause::ALL.len()] {
     let mut causes = [(0, ""); Cause::ALL.len()];
     let mut number = 0;

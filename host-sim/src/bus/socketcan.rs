@@ -53,7 +53,6 @@ impl SocketCan {
             socket.set_error_filter_accept_all()?;
             // Beyond the system's own limit that takes root; within it, half a thousand frames fit.
             let forced = socket.set_socket_option_int(SOL_SOCKET, SO_RCVBUFFORCE, WAITING_BYTES);
-            #[allow(clippy::cast_sign_loss)] // a constant
             forced.or_else(|_| socket.as_raw_socket().set_recv_buffer_size(WAITING_BYTES as usize))
         };
         set_up().map_err(|error| unopened(name, &error))?;

@@ -62,7 +62,6 @@ impl Class {
 
     /// Root of the mean square.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // fewer ticks than 2⁵³
     pub fn rms_m(&self) -> Option<f64> {
         (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
     }

@@ -126,7 +126,6 @@ pub struct Side {
 impl Side {
     /// Of the runs of all seeds, in their order.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // counts of vehicles and ticks
     pub fn of(outcomes: &[&Outcome]) -> Self {
         let all = || outcomes.iter().copied();
         let times: Vec<f64> = all().flat_map(|outcome| outcome.travel_times_s.iter().copied()).collect();

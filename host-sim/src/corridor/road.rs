@@ -68,7 +68,6 @@ impl Road {
 
     /// The place after that way, as a positioning system says it.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // degrees
     pub fn said(&self, way_m: f64, tag: u8, stamp: Stamp) -> GeoPosition {
         let (point, heading_deg) = self.at(way_m);
         let steps = |degrees: f64| (degrees * 1e7).round() as i32;

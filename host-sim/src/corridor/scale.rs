@@ -79,7 +79,6 @@ fn core_s() -> Option<f64> {
 ///
 /// # Errors
 /// A scenario that the units refuse.
-#[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // numbers of vehicles
 pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f64) -> Result<Load, Error> {
     let fill_s = FILL * travel_s;
     let corridor = Corridor { duration_s: fill_s + SPAN_S, ..experiment.corridor.clone() };
@@ -137,7 +136,6 @@ impl Lot {
 }
 
 /// Corridors with so many vehicles under way: as many as it takes, and arrivals left out at even distances.
-#[allow(clippy::cast_precision_loss)] // a number of vehicles
 fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize) -> Vec<Lot> {
     let network = &experiment.network;
     let mut lots: Vec<Lot> = Vec::new();

@@ -191,7 +191,6 @@ impl<'a> Traffic<'a> {
     }
 
     /// The time of the next tick.
-    #[allow(clippy::cast_precision_loss)]
     fn at_s(&self) -> f64 {
         self.ticks as f64 * self.corridor.period_s
     }

@@ -160,7 +160,6 @@ impl Listener {
         self.synced = Some(at_us);
         self.sequence = (self.sequence + 1) % 16;
         let time = gnss(seconds(at_us)).as_micros();
-        #[allow(clippy::cast_possible_truncation)]
         // 32 bits of seconds last until 2116, and the rest is below a million
         let (seconds, micros) = ((time / 1_000_000) as u32, (time % 1_000_000) as u32);
         self.say(at_us, &Message::Sync(Sync { sequence: self.sequence, seconds }));

@@ -41,7 +41,6 @@ pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
     let start = Instant::now();
     let outcomes = outcomes(options)?;
     let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();
-    #[allow(clippy::cast_precision_loss)] // far fewer than 2⁵³ ticks
     let timing = Timing { ticks_per_s: (ticks as f64 / start.elapsed().as_secs_f64().max(1e-9)).round() };
     let results = Results::pooled(&outcomes, options.lengths_s(), timing);
     if let Some(file) = &options.trace {
@@ -67,9 +66,7 @@ pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
 /// parallel.
 fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
     let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
     let bar = ProgressBar::new((total_s * 10.0) as u64);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
     let advance = |seconds: f64| bar.inc((seconds * 10.0) as u64);
     let (recordings, step_s) = (&options.recordings, options.step_s);
     let over_link = |link, recording| over_link::evaluate(recording, link, step_s, &advance);

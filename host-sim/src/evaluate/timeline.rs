@@ -40,7 +40,6 @@ impl Timeline {
 
     /// The instant of a tick.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ ticks
     pub fn tick(&self, index: u64) -> i64 {
         micros(index as f64 * self.step_s)
     }
@@ -53,7 +52,6 @@ impl Timeline {
 
 /// In seconds; the quotient is the float nearest to the decimal fraction, so it equals a bound written as one.
 #[must_use]
-#[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
 pub fn seconds(us: i64) -> f64 {
     us as f64 / 1e6
 }

@@ -50,9 +50,7 @@ pub fn curve() -> Vec<u32> {
 #[must_use]
 pub fn on_curve(curve: &[u32], gain_milli: u32) -> Pair {
     let along = f64::from(gain_milli.saturating_sub(CURVE_FIRST_MILLI)) / f64::from(CURVE_STEP_MILLI);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few points
     let cell = (along as usize).min(curve.len().saturating_sub(2));
-    #[allow(clippy::cast_precision_loss)]
     let share = along - cell as f64;
     let at = |point: usize| curve.get(point).copied().map_or(0.0, f64::from);
     let damping_milli = at(cell) * (1.0 - share) + at(cell + 1) * share;
@@ -68,7 +66,6 @@ pub fn pairs(curve: &[u32]) -> Vec<Pair> {
 
 /// All situations: own speed slowest, headway fastest.
 #[must_use]
-#[allow(clippy::cast_precision_loss)] // small numbers
 pub fn situations() -> Vec<Situation> {
     let mut situations = Vec::new();
     for own in 0..SPEEDS {

@@ -48,7 +48,6 @@ pub fn text(curve: &[u32], cells: &[Cell]) -> String {
 }
 
 /// `k` of a cell in the table's steps.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most 120
 fn step(cell: &Cell) -> u32 {
     (cell.pair.gain * 1e3 / f64::from(GAIN_STEP_MILLI)).round() as u32
 }

@@ -114,7 +114,6 @@ fn same(device: &Command, twin: &Command) -> bool {
 fn apart_m(a: &TargetEstimate, b: &TargetEstimate) -> f64 {
     const TURN_MM: i64 = 1 << 25;
     let apart_mm = (i64::from(a.position.mm()) - i64::from(b.position.mm()) + TURN_MM / 2).rem_euclid(TURN_MM);
-    #[allow(clippy::cast_precision_loss)] // 25 bits
     let apart_mm = (apart_mm - TURN_MM / 2).abs() as f64;
     apart_mm * 1e-3
 }
@@ -127,7 +126,6 @@ fn mps(speed: Speed) -> f64 {
     speed.get().to_num()
 }
 
-#[allow(clippy::cast_precision_loss)] // seconds
 fn seconds(duration: Duration) -> f64 {
     duration.as_micros() as f64 * 1e-6
 }

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::fault::Kind;
+use super::fault_injector::Played;
 use super::lateness::{self, LATE_MAX_MS, LATE_P99_MS};
 use super::monitor::CommandRecord;
 use super::outcome::{Cut, Outcome};
@@ -251,11 +253,11 @@ fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
             }
         }
     }
-    let is_down = outcome.faults.iter().any(|(fault, _)| fault.kind == super::fault::Kind::Interface);
+    let is_down = outcome.faults.iter().any(|played| played.fault.kind == Kind::Interface);
     if timing.harness.lost > 0 && !is_down {
         reasons.push(format!("{} frames of the harness were not seen on the bus", timing.harness.lost));
     }
-    for (fault, failed) in &outcome.faults {
+    for Played { fault, failed, .. } in &outcome.faults {
         if let Some(failed) = failed {
             reasons.push(format!("the fault {} could not be played: {failed}", fault.kind.name()));
         }
@@ -291,7 +293,6 @@ fn failed(
             ),
         );
     }
-    #[allow(clippy::cast_precision_loss)] // counts
     let share = timing.missed_periods as f64 / (timing.missed_periods + timing.judged_commands).max(1) as f64;
     limit(share <= MISSED_SHARE, format!("late: {} periods without a command", timing.missed_periods));
     limit(device.e2e_errors == 0, format!("{} errors of its end-to-end protection", device.e2e_errors));

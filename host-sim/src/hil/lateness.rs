@@ -49,7 +49,6 @@ impl Lateness {
     /// Whether the harness was late around a time of the run, in seconds: from three ticks before its tick to the one after.
     #[must_use]
     pub fn is_around(&self, at_s: f64) -> bool {
-        #[allow(clippy::cast_possible_truncation)] // microseconds of a run
         let at_us = (at_s * 1e6).round() as i64;
         let period_us = self.period.as_micros().max(1);
         let tick = self.warm_up + at_us.div_euclid(period_us);

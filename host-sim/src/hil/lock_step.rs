@@ -78,7 +78,6 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     rig.power(true)?;
     let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
     let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
-    #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³
     let time = |tick: i64| tick as f64 * scenario.period_s;
     let mut cut = bench.find(setup, time(-warm_up - 1), rig)?;
     let begun = bench.talk.now();
@@ -120,7 +119,6 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             progress(at_s);
         }
     }
-    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
     let took_s = bench.talk.now().since(begun).as_micros() as f64 * 1e-6;
     let realtime_factor = time(i64::try_from(trace.times_s.len()).unwrap_or(0)) / took_s.max(1e-6);
     rig.power(false)?;
@@ -145,7 +143,6 @@ impl<P: Port> Bench<P> {
     fn pair(&mut self, at_s: f64) -> Vec<Frame> {
         self.sequence = (self.sequence + 1) % 16;
         let (sequence, time) = (self.sequence, EPOCH_US.saturating_add_signed(micros(at_s)));
-        #[allow(clippy::cast_possible_truncation)] // 32 bits of seconds last until 2116
         let (seconds, micros) = ((time / 1_000_000) as u32, (time % 1_000_000) as u32);
         let mut frames = Vec::new();
         for message in [Message::Sync(Sync { sequence, seconds }), Message::FollowUp(FollowUp { sequence, micros })] {

@@ -50,7 +50,6 @@ pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
     let mut rig = MachineRig::new(&options.bus, options.device.clone());
     let bar = ProgressBar::new(1000);
     let duration_s = options.setup.scenario.duration_s;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of 1000
     let progress = |at_s: f64| bar.set_position((at_s / duration_s * 1000.0).max(0.0) as u64);
     let outcome = if options.lock_step {
         lock_step::run(&options.setup, port, &mut rig, progress)

@@ -3,7 +3,7 @@
 use holdover::time::{Duration, Instant};
 
 use super::deviation::Deviation;
-use super::fault::Fault;
+use super::fault_injector::Played;
 use super::lateness::Lateness;
 use super::monitor::Monitor;
 use super::talk::Counts;
@@ -75,7 +75,7 @@ pub struct Outcome {
     /// The time of the bus at which the run began.
     pub origin: Instant,
     /// The faults that were played, and why one could not be.
-    pub faults: Vec<(Fault, Option<String>)>,
+    pub faults: Vec<Played>,
     /// Seconds of the run per second.
     pub realtime_factor: f64,
     /// Why it ended early.
@@ -85,7 +85,6 @@ pub struct Outcome {
 impl Outcome {
     /// A time of the bus as one of the run, in seconds.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
     pub fn time_of(&self, at: Instant) -> f64 {
         at.since(self.origin).as_micros() as f64 * 1e-6
     }

@@ -78,7 +78,6 @@ fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
     let ahead = speeds(&outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
     let gap = gaps(&options.setup.scenario, &outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
     let millis = |at: &super::monitor::CommandRecord| {
-        #[allow(clippy::cast_precision_loss)] // milliseconds
         at.latency.map(|latency| (outcome.time_of(at.at), latency.as_micros() as f64 * 1e-3))
     };
     let latency: Vec<(f64, f64)> =

@@ -16,7 +16,7 @@ use holdover::{Config, ConfigError};
 
 use super::deviation::Deviation;
 use super::fault::Fault;
-use super::fault_injector::FaultInjector;
+use super::fault_injector::{FaultInjector, Played};
 use super::lateness::Lateness;
 use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
@@ -192,7 +192,6 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         if cut.is_some() {
             break;
         }
-        #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³
         let time = |tick: i64| tick as f64 * scenario.period_s;
         let (at_s, due) = (time(tick), talk.instant(time(tick)));
         while talk.now() < due {
@@ -201,6 +200,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             listen(&mut talk, &mut listener, &world, scenario.ego, until)?;
         }
         lateness.note(talk.now().since(due));
+        injector.note_altered(talk.altered());
         if injector.switch(at_s, rig) {
             listener.restart();
         }
@@ -240,8 +240,10 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         let pause = talk.now().plus(Duration::from_millis(10));
         listen(&mut talk, &mut listener, &world, scenario.ego, pause)?;
     }
+    injector.note_altered(talk.altered());
     injector.stop(rig);
-    finished(world, trace, &talk, listener, lateness, injector.played(), cut)
+    let faults = injector.played(cut.is_none());
+    finished(world, trace, &talk, listener, lateness, faults, cut)
 }
 
 fn finished<P: Port>(
@@ -250,7 +252,7 @@ fn finished<P: Port>(
     talk: &Talk<P>,
     listener: BusListener,
     lateness: Lateness,
-    faults: Vec<(Fault, Option<String>)>,
+    faults: Vec<Played>,
     cut: Option<Cut>,
 ) -> io::Result<Outcome> {
     Ok(Outcome {
@@ -278,7 +280,6 @@ fn listen<P: Port>(
 ) -> io::Result<()> {
     let mut heard = Ok(());
     let origin = talk.instant(0.0);
-    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
     let local = |at: Instant| {
         let at_s = at.since(origin).as_micros() as f64 * 1e-6;
         (at_s, world.vehicles()[ego].instant(at_s))

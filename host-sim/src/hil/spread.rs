@@ -19,7 +19,6 @@ impl Spread {
     pub fn of(micros: &[i64]) -> Self {
         let mut sorted = micros.to_vec();
         sorted.sort_unstable();
-        #[allow(clippy::cast_precision_loss)] // milliseconds
         let millis = |rank: usize| sorted.get(rank.clamp(1, sorted.len().max(1)) - 1).map(|value| *value as f64 * 1e-3);
         Self {
             p50_ms: millis(sorted.len().div_ceil(2)),

@@ -41,6 +41,15 @@ impl Counts {
     }
 }
 
+/// What the harness has said otherwise than it was given, on purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Altered {
+    /// Frames that were spoilt.
+    pub frames: u64,
+    /// Time synchronisations that were wrong.
+    pub times: u64,
+}
+
 /// The line of the catalogue that a frame stands on.
 #[must_use]
 pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
@@ -66,6 +75,7 @@ pub struct Talk<P> {
     /// How frames are spoiled, on purpose.
     pub spoiled: Option<Kind>,
     counts: Counts,
+    altered: Altered,
 }
 
 impl<P: Port> Talk<P> {
@@ -83,6 +93,7 @@ impl<P: Port> Talk<P> {
             clock_error_us: 0,
             spoiled: None,
             counts: Counts::default(),
+            altered: Altered::default(),
         }
     }
 
@@ -97,7 +108,6 @@ impl<P: Port> Talk<P> {
     }
 
     /// A time of the bus as one of the run, in seconds.
-    #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
     pub fn time_of(&self, at: Instant) -> f64 {
         at.since(self.origin).as_micros() as f64 * 1e-6
     }
@@ -110,6 +120,11 @@ impl<P: Port> Talk<P> {
     /// What became of the frames.
     pub fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// What was said otherwise, on purpose.
+    pub fn altered(&self) -> Altered {
+        self.altered
     }
 
     /// A frame is to be sent, behind those that wait already.
@@ -171,7 +186,10 @@ impl<P: Port> Talk<P> {
                     frame
                 }
                 Some(Content::FollowUp) if self.dates => match self.mark {
-                    Some((sync, _, Some(marked))) => self.dated(&frame, &sync, marked),
+                    Some((sync, _, Some(marked))) => {
+                        self.altered.times += u64::from(self.clock_error_us != 0);
+                        self.dated(&frame, &sync, marked)
+                    }
                     Some((_, sent, None)) if now.since(sent) < MARK_PATIENCE => {
                         return Ok(Some(sent.plus(MARK_PATIENCE)));
                     }
@@ -182,8 +200,9 @@ impl<P: Port> Talk<P> {
             self.queue.pop_front();
             self.burst = (next, left - 1);
             self.counts.sent += 1;
-            match self.port.send(self.spoilt(frame)) {
-                Ok(()) => {}
+            let spoilt = self.spoilt(frame);
+            match self.port.send(spoilt.unwrap_or(frame)) {
+                Ok(()) => self.altered.frames += u64::from(spoilt.is_some()),
                 Err(error) if error.kind() == ErrorKind::NetworkDown => self.counts.refused += 1,
                 Err(error) => return Err(error),
             }
@@ -214,14 +233,13 @@ impl<P: Port> Talk<P> {
         Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
     }
 
-    fn spoilt(&self, frame: Frame) -> Frame {
-        let is_turn = self.counts.sent.is_multiple_of(3);
-        match self.spoiled {
-            Some(Kind::Corrupt) if is_turn => frame.with_flipped_bit(usize::try_from(self.counts.sent).unwrap_or(0)),
-            Some(Kind::Truncate) if is_turn => {
-                embedded_can::Frame::new(frame.id(), frame.data().get(..4).unwrap_or_default()).unwrap_or(frame)
-            }
-            _ => frame,
+    /// What is sent in a frame's place, if it is its turn to be spoilt.
+    fn spoilt(&self, frame: Frame) -> Option<Frame> {
+        let kind = self.spoiled.filter(|_| self.counts.sent.is_multiple_of(3))?;
+        match kind {
+            Kind::Corrupt => Some(frame.with_flipped_bit(usize::try_from(self.counts.sent).unwrap_or(0))),
+            Kind::Truncate => embedded_can::Frame::new(frame.id(), frame.data().get(..4).unwrap_or_default()),
+            _ => None,
         }
     }
 }

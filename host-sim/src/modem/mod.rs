@@ -19,9 +19,11 @@ use holdover::wire::motion::Motion;
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
 
+mod front;
 mod relevance;
 mod unserved;
 
+use front::Front;
 pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
 pub use unserved::UNSERVED_EVERY_S;
 
@@ -185,11 +187,12 @@ impl Relay {
         let station = message.motion.station;
         self.begun_s.get_or_insert(at_s);
         self.place(at_s, message);
-        let rank = self.rank(station, at_s);
+        let front = Front::of(&self.course, &self.places);
+        let rank = self.rank(station, at_s, &front);
         if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
             return;
         }
-        let Some(slot) = self.slot_of(station, rank, at_s) else {
+        let Some(slot) = self.slot_of(station, rank, at_s, &front) else {
             self.turned_away += 1;
             return;
         };
@@ -216,7 +219,6 @@ impl Relay {
         // The unit trusts an identifier from its second frame on; a station's first message may be its last one before a silence.
         let times = if std::mem::replace(&mut self.is_begun[slot], true) { 1 } else { 2 };
         for said in std::iter::repeat_n(said, times).flatten() {
-            #[allow(clippy::cast_possible_truncation)] // at most 16 slots
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             debug_assert!(sent.is_ok(), "a peer says nothing that the catalogue has no line for");
         }
@@ -250,15 +252,15 @@ impl Relay {
         self.places.push(Placed { station, route, speed_mps, length_m, at_s });
     }
 
-    fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64) -> Option<usize> {
+    fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64, front: &Front) -> Option<usize> {
         let held = |tenant: &Option<Tenant>| tenant.is_some_and(|tenant| tenant.station == station);
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
         }
         if self.course.is_on_route() {
             let has_listened = self.begun_s.is_some_and(|begun_s| at_s - begun_s >= LISTENS_S - 1e-9);
-            let is_served = has_listened && self.is_among_the_first(rank, at_s);
-            if rank != Rank::Irrelevant && (!is_served || !self.makes_room(rank, at_s)) {
+            let is_served = has_listened && self.is_among_the_first(rank, at_s, front);
+            if rank != Rank::Irrelevant && (!is_served || !self.makes_room(rank, at_s, front)) {
                 return None;
             }
         }
@@ -274,7 +276,7 @@ impl Relay {
                 let first = if self.rested_s[other] < self.rested_s[one] { other } else { one };
                 (first, self.rested_s[first].max(at_s))
             }
-            (None, _) => self.least_relevant(rank, at_s)?,
+            (None, _) => self.least_relevant(rank, at_s, front)?,
         };
         self.left[slot] = None;
         self.slots[slot] = Some(Tenant {
@@ -291,19 +293,19 @@ impl Relay {
 
     /// Whether so few of those that are heard matter more than one of that rank that there is a slot for it too, beside the one in
     /// reserve: or else it would be in the way of somebody who matters more and is heard next.
-    fn is_among_the_first(&self, rank: Rank, at_s: f64) -> bool {
+    fn is_among_the_first(&self, rank: Rank, at_s: f64, front: &Front) -> bool {
         let heard = self.places.iter().filter(|placed| at_s - placed.at_s < HEARD_S);
-        let first = heard.filter(|placed| self.rank(placed.station, at_s) < rank).count();
-        first + 1 < self.slots.len()
+        let mut first = heard.filter(|placed| self.rank_of(placed, at_s, front) < rank);
+        self.slots.len().checked_sub(2).is_some_and(|others| first.nth(others).is_none())
     }
 
     /// On a route one slot is held in reserve and rests, so that whoever comes up near by is heard at once: the last free one is
     /// taken only by a station that puts a less relevant one out of its slot. Whether there is room then.
-    fn makes_room(&mut self, rank: Rank, at_s: f64) -> bool {
+    fn makes_room(&mut self, rank: Rank, at_s: f64, front: &Front) -> bool {
         if self.slots.iter().filter(|tenant| tenant.is_none()).count() != 1 {
             return true;
         }
-        let Some((slot, rested_s)) = self.least_relevant(rank, at_s) else { return false };
+        let Some((slot, rested_s)) = self.least_relevant(rank, at_s, front) else { return false };
         self.left[slot] = self.slots[slot].take();
         self.rested_s[slot] = rested_s;
         true
@@ -317,9 +319,9 @@ impl Relay {
 
     /// The slot of the least relevant station, of several the one silent for longest, if one of that rank may have it; and
     /// from when on.
-    fn least_relevant(&self, rank: Rank, at_s: f64) -> Option<(usize, f64)> {
+    fn least_relevant(&self, rank: Rank, at_s: f64, front: &Front) -> Option<(usize, f64)> {
         let tenants = self.slots.iter().enumerate().filter_map(|(slot, tenant)| Some((slot, (*tenant)?)));
-        let ranked = tenants.map(|(slot, tenant)| (slot, self.rank(tenant.station, at_s), tenant.relayed_s));
+        let ranked = tenants.map(|(slot, tenant)| (slot, self.rank(tenant.station, at_s, front), tenant.relayed_s));
         let (slot, least, relayed_s) =
             ranked.reduce(|a, b| if b.1 > a.1 || b.1 == a.1 && b.2 < a.2 { b } else { a })?;
         let rested_s = relayed_s + SLOT_REUSE_S;
@@ -328,47 +330,17 @@ impl Relay {
     }
 
     /// How much a station matters now, if it has gone on at its speed.
-    fn rank(&self, station: StationHash, at_s: f64) -> Rank {
-        let placed = self.places.iter().find(|placed| placed.station == station);
-        let way_m =
-            |placed: &Placed| placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
-        let route = placed.map(|placed| (placed.route, way_m(placed)));
-        self.course.rank(
-            station,
-            route,
-            self.steps_to(station),
-            placed.map_or(Foremost::No, |placed| self.foremost(placed)),
-        )
-    }
-
-    fn foremost(&self, placed: &Placed) -> Foremost {
-        match self.course.across(&placed.route) {
-            _ if self.leads(placed) => Foremost::Ahead,
-            Some(across) if across.has_entered() => Foremost::Inside,
-            Some(across) if self.enters_next(across) => Foremost::Across,
-            _ => Foremost::No,
+    fn rank(&self, station: StationHash, at_s: f64, front: &Front) -> Rank {
+        match self.places.iter().find(|placed| placed.station == station) {
+            Some(placed) => self.rank_of(placed, at_s, front),
+            None => self.course.rank(station, None, self.steps_to(station), Foremost::No),
         }
     }
 
-    /// Whether a station is the next one of its leg into the unit's next conflict area, by what each said last; or the second, where the first
-    /// is there soon.
-    fn enters_next(&self, one: Across) -> bool {
-        let mut nearer = self.nearer_across(one);
-        nearer.next().is_none_or(|first| first.enters_soon() && nearer.next().is_none())
-    }
-
-    /// Those who come into it before that one by the same leg.
-    fn nearer_across(&self, one: Across) -> impl Iterator<Item = Across> {
-        let others = self.places.iter().filter_map(|other| self.course.across(&other.route));
-        others.filter(move |other| other.leg == one.leg && !other.has_entered() && other.way_m < one.way_m)
-    }
-
-    /// Whether a station is one of the nearest ahead on the unit's own leg, by what each said last: who is silent has not
-    /// passed anybody.
-    fn leads(&self, placed: &Placed) -> bool {
-        let Some(ahead_m) = self.course.ahead_on_leg(&placed.route) else { return false };
-        let nearer = self.places.iter().filter_map(|other| self.course.ahead_on_leg(&other.route));
-        nearer.filter(|other_m| *other_m < ahead_m).count() < LEADERS
+    fn rank_of(&self, placed: &Placed, at_s: f64, front: &Front) -> Rank {
+        let way_m = placed.route.distance.get().to_num::<f64>() - placed.speed_mps * (at_s - placed.at_s);
+        let (route, foremost) = (Some((placed.route, way_m)), front.foremost(&self.course, placed));
+        self.course.rank(placed.station, route, self.steps_to(placed.station), foremost)
     }
 
     /// How many steps up the chain of those who follow one another, from whom the unit follows, a station is.

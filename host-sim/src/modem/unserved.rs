@@ -3,6 +3,7 @@
 use holdover::units::Distance;
 use holdover::wire::unserved::Unserved;
 
+use super::front::Front;
 use super::{HEARD_S, Placed, Rank, Relay};
 
 /// Time from one message to the next.
@@ -13,12 +14,13 @@ impl Relay {
     #[must_use]
     pub fn unserved(&self, at_s: f64) -> Option<Unserved> {
         let next = self.course.next()?;
-        let unserved: Vec<&Placed> = self.places.iter().filter(|placed| self.is_unserved(placed, at_s)).collect();
-        let legs = unserved.iter().filter(|placed| self.is_in_the_way(placed)).map(|placed| placed.route.leg);
+        let front = Front::of(&self.course, &self.places);
+        let unserved: Vec<&Placed> =
+            self.places.iter().filter(|placed| self.is_unserved(placed, at_s, &front)).collect();
+        let legs = unserved.iter().filter(|placed| self.is_in_the_way(placed, &front)).map(|placed| placed.route.leg);
         let ahead_m =
             unserved.iter().filter_map(|placed| Some(self.course.ahead_on_leg(&placed.route)? - placed.length_m));
         let ahead_m = ahead_m.reduce(f64::min).zip(self.course.way_m()).map(|(ahead_m, way_m)| way_m - ahead_m);
-        #[allow(clippy::cast_possible_truncation)] // limited to the field's range
         Some(Unserved {
             intersection: next.id,
             legs: legs.fold(0, |legs, leg| legs | 1u8.checked_shl(leg.into()).unwrap_or(0)),
@@ -28,20 +30,19 @@ impl Relay {
     }
 
     /// Whether a station that the unit could meet has no slot. A modem that hears nobody any more goes by what it heard last.
-    fn is_unserved(&self, placed: &Placed, at_s: f64) -> bool {
-        let newest_s = self.places.iter().map(|placed| placed.at_s).fold(f64::NEG_INFINITY, f64::max);
+    fn is_unserved(&self, placed: &Placed, at_s: f64, front: &Front) -> bool {
         let is_relayed = self.slots.iter().flatten().any(|tenant| tenant.station == placed.station && tenant.relayed);
         let matters = || {
-            let rank = self.rank(placed.station, at_s);
+            let rank = self.rank_of(placed, at_s, front);
             self.course.comes_before(&placed.route) && !matches!(rank, Rank::Other | Rank::Irrelevant)
         };
-        newest_s - placed.at_s < HEARD_S && !is_relayed && matters()
+        front.newest_s() - placed.at_s < HEARD_S && !is_relayed && matters()
     }
 
     /// Whether a station is in the unit's next conflict area, or the next one of its leg to come there.
-    fn is_in_the_way(&self, placed: &Placed) -> bool {
+    fn is_in_the_way(&self, placed: &Placed, front: &Front) -> bool {
         let Some(one) = self.course.across(&placed.route) else { return false };
-        one.has_entered() || one.is_near() && self.nearer_across(one).next().is_none()
+        one.has_entered() || one.is_near() && front.is_first(one)
     }
 }
 

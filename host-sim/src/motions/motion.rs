@@ -112,7 +112,6 @@ impl TargetMotion {
             Self::Braking => Box::new(move |t_s| braking(t_s, brakes_after(0.2), 2.0)),
             Self::HardBraking => Box::new(move |t_s| braking(t_s, brakes_after(0.1), 5.0)),
         };
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few seconds
         let rows = (scenario.duration_s / scenario.period_s).ceil() as u32 + 1;
         Some(Motion::of((0..=rows).map(|index| row(f64::from(index) * scenario.period_s)).collect()))
     }

@@ -68,7 +68,6 @@ pub struct MethodFigures {
     pub growth: Vec<(f64, f64)>,
 }
 
-#[allow(clippy::trivially_copy_pass_by_ref)] // serde's signature
 fn key<S: serde::Serializer>(motion: &TargetMotion, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(motion.key())
 }
@@ -148,7 +147,6 @@ fn figures(method: usize, errors: &[Errors]) -> Option<MethodFigures> {
 }
 
 fn growth(method: usize, errors: &[Errors]) -> Vec<(f64, f64)> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few classes
     let classes = (SILENCE_S / CLASS_S).round() as u32;
     let class = |number: u32| {
         let (from_s, to_s) = (f64::from(number) * CLASS_S, f64::from(number + 1) * CLASS_S);

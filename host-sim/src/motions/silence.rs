@@ -68,7 +68,6 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
     let mut trace = world.trace();
     let mut errors = Vec::new();
     for tick in 0..world.ticks() {
-        #[allow(clippy::cast_precision_loss)] // a few thousand
         let at_s = tick as f64 * scenario.period_s;
         world.speak(at_s)?;
         listener.hear(&world, Measured { vehicle: target, by }, at_s)?;

@@ -160,7 +160,6 @@ fn say_safety(rows: &[Row]) -> String {
     )
 }
 
-#[allow(clippy::cast_precision_loss)] // small counts
 fn stops_per_run(row: &Row, side: &Side) -> f64 {
     side.full_stops as f64 / row.seeds as f64
 }

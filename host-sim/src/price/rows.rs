@@ -106,7 +106,6 @@ fn travel_time(trace: &Trace, vehicle: usize, distance_m: f64) -> Option<f64> {
 }
 
 impl Side {
-    #[allow(clippy::cast_precision_loss)] // few runs
     fn of(outcomes: &[&Outcome]) -> Self {
         let sides = || outcomes.iter().map(|outcome| outcome.side);
         let times: Option<Vec<f64>> = outcomes.iter().flat_map(|outcome| outcome.travel_times_s.clone()).collect();

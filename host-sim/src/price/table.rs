@@ -30,7 +30,6 @@ pub fn silence(row: &Row) -> String {
     row.silence_s.map_or("recorded".into(), |length| length.to_string())
 }
 
-#[allow(clippy::cast_precision_loss)] // small counts
 fn line(text: &mut String, silence: &str, envelope: &str, side: &Side, seeds: u64) {
     let number = |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$}"));
     let cells = [

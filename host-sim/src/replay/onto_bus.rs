@@ -21,7 +21,6 @@ pub(super) fn replay<R: BufRead>(
 ) -> Result<Verdict, Error> {
     let mut port = bus::open(bus)?;
     let Sent { frames, latest } = play(&mut port, interface, file, log)?;
-    #[allow(clippy::cast_precision_loss)] // milliseconds
     let latest_ms = latest.as_micros() as f64 * 1e-3;
     output::say(&format!("{frames} frames sent, the latest {latest_ms:.1} ms after its time"));
     Ok(Verdict::Pass)

@@ -37,7 +37,6 @@ pub struct Timing {
 impl Summary {
     /// Of these counts, after so many seconds.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // counts
     pub fn new(tally: &Tally, state_changed: bool, elapsed_s: f64) -> Self {
         Self {
             frames: tally.frames(),
@@ -52,7 +51,6 @@ impl Summary {
 
     /// For a terminal.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive rate
     pub fn text(&self) -> String {
         let mut text = String::new();
         // Writing into a string cannot fail.

@@ -125,7 +125,6 @@ fn say_errors(rows: &[SweepRow]) -> String {
 }
 
 fn cost_table(page: &mut Page, rows: &[SweepRow]) {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // positive, far below 2^64
     let whole = |value: f64| count(value.round() as u64);
     let cells = |row: &SweepRow| {
         vec![

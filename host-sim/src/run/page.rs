@@ -128,7 +128,6 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
         limit,
     };
     let (ours, paper) = (summary.ours, summary.paper);
-    #[allow(clippy::cast_precision_loss)] // small counts
     let count = |count: usize| Some(count as f64);
     let limited = summary.envelope.engaged.then_some(100.0 * summary.envelope.limited_share);
     vec![

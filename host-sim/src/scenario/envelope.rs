@@ -48,7 +48,6 @@ impl Envelope {
     /// As the units take it: to the nearest thousandth; `None` if it is not engaged.
     #[must_use]
     pub fn limits(&self) -> Option<holdover::config::Envelope> {
-        #[allow(clippy::cast_possible_truncation)] // tens at most
         let milli = |value: f64| (value * 1e3).round() as i32;
         self.engaged.then(|| holdover::config::Envelope {
             acceleration: Acceleration::from_mm_per_s2(milli(self.acceleration_mps2)),

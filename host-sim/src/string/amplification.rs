@@ -38,7 +38,6 @@ impl Speeds {
     /// Of each vehicle the amplitude.
     #[must_use]
     pub fn amplitudes(&self, disturbance: Disturbance) -> Vec<f64> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few hundred seconds
         let tick = |at_s: f64| (at_s / self.period_s).round() as usize;
         let (from, to) = (tick(disturbance.measured_from_s()), tick(disturbance.duration_s()));
         let of = |speeds: &Vec<f64>| {
@@ -73,7 +72,6 @@ fn farthest(speeds: &[f64]) -> f64 {
 }
 
 /// The amplitude at a frequency in cycles per tick.
-#[allow(clippy::cast_precision_loss)] // thousands of ticks
 fn harmonic(speeds: &[f64], frequency: f64) -> f64 {
     let count = speeds.len().max(1) as f64;
     let mean = speeds.iter().sum::<f64>() / count;

@@ -73,7 +73,6 @@ impl Disturbance {
     /// The leader's drive, in steps of a period of the units.
     #[must_use]
     pub fn motion(self, period_s: f64) -> Motion {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few hundred seconds
         let rows = (self.duration_s() / period_s).ceil() as u32 + 1;
         Motion::of((0..=rows).map(|row| self.row(f64::from(row) * period_s)).collect())
     }

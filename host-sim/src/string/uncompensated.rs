@@ -55,14 +55,12 @@ pub fn run(scenario: &Scenario, seed: u64, reading: Reading) -> Speeds {
         })
         .collect();
     let origin_m = starts[0].position_m - motion.at(0.0).position_m;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few hundred seconds
     let (ticks, every) = (
         (scenario.duration_s / period_s).round() as usize,
         (1.0 / scenario.message_rate_hz / period_s).round().max(1.0) as usize,
     );
     let mut vehicles = vec![Vec::with_capacity(ticks); starts.len()];
     for tick in 0..ticks {
-        #[allow(clippy::cast_precision_loss)]
         let at_s = tick as f64 * period_s;
         let leader = motion.at(at_s);
         let mut ahead = Sample { at_s, position_m: origin_m + leader.position_m, speed_mps: leader.speed_mps };
@@ -108,7 +106,6 @@ impl Follower {
         let slew = number(limits.jerk.to_mm_per_s3()) * scenario.period_s;
         let (lowest, highest) = (-number(limits.braking.to_mm_per_s2()), number(limits.acceleration.to_mm_per_s2()));
         self.demand_mps2 = desired.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
-        #[allow(clippy::cast_possible_truncation)] // within the limits
         let demand = Acceleration::from_bits((self.demand_mps2 * f64::from(1 << 25)).round() as i32);
         let body: Body = config.body;
         self.plant.drive(body.effort(demand, speed(speed_mps)), scenario.period_s);

@@ -44,7 +44,6 @@ fn metres(value: Option<f64>) -> String {
     value.map_or("-".into(), |value| format!("{value:.4}"))
 }
 
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive number far below 2^64
 fn whole(value: f64) -> String {
     count(value.round() as u64)
 }

@@ -58,7 +58,6 @@ pub fn of_log(unit: &Unit, config: &Config, log: &[(f64, Frame)]) -> Option<Timi
     if fastest.is_empty() {
         return None;
     }
-    #[allow(clippy::cast_precision_loss)] // microseconds, a few thousand times
     let ns_per_tick = fastest.iter().sum::<time::Duration>().as_nanos() as f64 / fastest.len() as f64;
     Some(Timing { ns_per_tick, updates_per_s: 1e9 / ns_per_tick })
 }

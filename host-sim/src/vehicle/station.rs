@@ -7,7 +7,6 @@ use super::{seconds, speed};
 
 /// The station of the vehicle with that index. Stations repeat after 255 vehicles, when the first of them is long gone.
 #[must_use]
-#[allow(clippy::cast_possible_truncation)] // up to 255
 pub const fn station(index: usize) -> StationHash {
     StationHash((index % 255) as u8 + 1)
 }

@@ -13,7 +13,6 @@ pub fn gnss(at_s: f64) -> GnssTime {
 
 /// Microseconds, to nearest.
 #[must_use]
-#[allow(clippy::cast_possible_truncation)] // runs last a day at most
 pub fn micros(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64
 }

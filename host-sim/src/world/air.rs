@@ -77,7 +77,6 @@ impl Air {
         let now_us = micros(at_s);
         self.flights.peek().filter(|Reverse(flight)| flight.arrives_us <= now_us)?;
         let Reverse(flight) = self.flights.pop()?;
-        #[allow(clippy::cast_precision_loss)] // a run's microseconds are exact in 53 bits
         let at_s = flight.arrives_us as f64 * 1e-6;
         Some(Arrived { at_s, to: flight.to, message: flight.message })
     }

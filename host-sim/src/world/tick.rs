@@ -103,7 +103,6 @@ impl TargetBelief {
             lowest_speed_mps: (speed_mps - mps(ends.slower)).max(0.0),
             highest_speed_mps: speed_mps + mps(ends.faster),
         });
-        #[allow(clippy::cast_precision_loss)] // seconds
         let age_s = estimate.age.as_micros() as f64 * 1e-6;
         Self { position_m, speed_mps, age_s, bound }
     }

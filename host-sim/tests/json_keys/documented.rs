@@ -1,4 +1,5 @@
-//! The tables of keys in README: the Markdown enters; which keys a command's JSON has leaves, and what of a JSON is not as said.
+//! The tables of keys in `docs/JSON.md`: the Markdown enters; which keys a command's JSON has leaves, and what of a JSON is not as
+//! said.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,8 +11,7 @@ pub struct Documents(BTreeMap<String, Vec<(String, Option<String>)>>);
 impl Documents {
     pub fn read() -> Self {
         let mut sections: BTreeMap<String, Vec<(String, Option<String>)>> = BTreeMap::new();
-        let readme = std::fs::read_to_string("../README.md").unwrap();
-        let (_, tables) = readme.split_once("\n## `--json`\n").expect("a section on it");
+        let tables = std::fs::read_to_string("../docs/JSON.md").unwrap();
         let mut heading = String::new();
         for line in tables.lines() {
             if let Some(title) = line.strip_prefix('#') {

@@ -1,4 +1,4 @@
-//! `--json` of every command: its keys are those that README tells, no more and no less, and outside `timing` the same input is
+//! `--json` of every command: its keys are those that `docs/JSON.md` tells, no more and no less, and outside `timing` the same input is
 //! the same bytes on any number of threads.
 
 mod documented;
@@ -63,14 +63,14 @@ fn folder() -> tempfile::TempDir {
 }
 
 #[test]
-fn of_run_on_a_string() {
+fn the_keys_of_run_on_a_string_are_the_documented_ones() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 3").unwrap();
     holds("run", folder.path(), &["run short.toml --no-report"]);
 }
 
 #[test]
-fn of_run_on_a_corridor() {
+fn the_keys_of_run_on_a_corridor_are_the_documented_ones() {
     let folder = folder();
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
     let text =
@@ -82,7 +82,7 @@ fn of_run_on_a_corridor() {
 }
 
 #[test]
-fn of_evaluate() {
+fn the_keys_of_evaluate_are_the_documented_ones() {
     let folder = folder();
     let drive = |t: u32| format!("{},{},10\n", f64::from(t) / 10.0, t);
     let motion: String = (0..60).map(drive).collect();
@@ -95,30 +95,30 @@ fn of_evaluate() {
 }
 
 #[test]
-fn of_sweep_and_price() {
+fn the_keys_of_sweep_and_price_are_the_documented_ones() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 5").unwrap();
     holds("sweep", folder.path(), &["sweep short.toml --seeds 2 --steps 0.1,1 --no-report"]);
-    holds("price", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
+    holds("envelope-cost", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
 }
 
 #[test]
-fn of_gains() {
+fn the_keys_of_gains_are_the_documented_ones() {
     holds("gains", folder().path(), &["gains --no-report"]);
 }
 
 #[test]
-fn of_string() {
+fn the_keys_of_string_are_the_documented_ones() {
     holds("string", folder().path(), &["string --delays 0.1 --losses 0.2 --frequencies 1 --seeds 2 --no-report"]);
 }
 
 #[test]
-fn of_motions() {
+fn the_keys_of_motions_are_the_documented_ones() {
     holds("motions", folder().path(), &["motions --silences 1 --no-report"]);
 }
 
 #[test]
-fn of_replay() {
+fn the_keys_of_replay_are_the_documented_ones() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 2").unwrap();
     run(folder.path(), "run short.toml --no-report --candump good.log", "1");
@@ -128,7 +128,7 @@ fn of_replay() {
 }
 
 #[test]
-fn of_hil() {
+fn the_keys_of_hil_are_the_documented_ones() {
     let scenario = Scenario::parse(Path::new("hil"), "duration_s = 4", &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = vec!["corrupt@1:1".parse().unwrap()];

@@ -80,12 +80,14 @@ pub struct Controller<R> {
     layout: Layout,
     /// How many periods it still keeps away from the bus.
     absent: u32,
+    /// A reset did not end, and nobody has been told.
+    is_stuck: bool,
 }
 
 impl<R: Registers> Controller<R> {
     /// Puts it into operation.
     pub fn start(registers: R, layout: Layout) -> Self {
-        let mut controller = Self { registers, layout, absent: 0 };
+        let mut controller = Self { registers, layout, absent: 0, is_stuck: false };
         controller.leave();
         controller.join();
         controller
@@ -94,12 +96,19 @@ impl<R: Registers> Controller<R> {
     /// Resets the controller: it is off the bus, and its queues are empty.
     fn leave(&mut self) {
         self.registers.write(offset::CONTROL, RESET);
+        self.absent = ABSENCE;
     }
 
-    /// From a reset onto the bus. The controller joins when that has been idle for a moment.
+    /// From a reset onto the bus. The controller joins when that has been idle for a moment. If the reset does not end, the
+    /// controller takes no settings, so it keeps away and is reset anew.
     fn join(&mut self) {
         // A reset takes some of the controller's clocks, which are slower than the core's.
-        let _ = (0..1000).any(|_| self.registers.read(offset::STATUS) & CONFIGURING != 0);
+        if !(0..1000).any(|_| self.registers.read(offset::STATUS) & CONFIGURING != 0) {
+            self.is_stuck = true;
+            self.leave();
+            return;
+        }
+        self.absent = 0;
         self.registers.write(offset::PRESCALER, QUANTUM);
         self.registers.write(offset::TIMING, BIT);
         self.registers.write(offset::FILTERS, 0);
@@ -146,20 +155,20 @@ impl<R: Registers> Can for Controller<R> {
 
 impl<R: Registers> Port for Controller<R> {
     /// After a bus-off the controller has to be reset, and then it would join at once; so it is kept away for as long as a
-    /// node has to be. Its own queue is empty then, since what waited there has been overtaken.
+    /// node has to be. Its own queue is empty then, since what waited there has been overtaken. A reset that does not end is
+    /// told likewise, each time that it is tried.
     fn left_bus(&mut self) -> bool {
         if self.absent > 0 {
             self.absent -= 1;
             if self.absent == 0 {
                 self.join();
             }
-            return false;
+            return core::mem::take(&mut self.is_stuck);
         }
         let left = self.registers.read(offset::EVENTS) & BUS_OFF != 0;
         if left {
             self.registers.write(offset::CLEAR, BUS_OFF);
             self.leave();
-            self.absent = ABSENCE;
         }
         left
     }

@@ -1,8 +1,10 @@
 //! A peer's motion: a motion enters; what it would change leaves, or the cause for which it is refused; then that is changed, all
 //! of it or nothing. So a motion that is refused cannot harm what is held of anybody.
 //!
-//! The checks in their order: the slot; whose it is; the age; twice or too late; the place on the ego's axis; too far; and
-//! whether it can be.
+//! The checks in their order, each once, and all before the first change: the slot; whether the station was heard in another
+//! slot just now; the age, too old or in the future; whether another station was heard in this slot just now, unless both are
+//! certain to be the same vehicle; with the place on the ego's axis, too far; twice, or too late; and whether it can be. On a way
+//! through intersections a new name is never the same vehicle, so there that comes before the age.
 
 use super::Scene;
 use crate::coordination::Axis;
@@ -23,6 +25,8 @@ struct Seat {
     is_taken_over: bool,
     /// It is another station's so far, which was heard just now: the same vehicle by another name, or a mistake.
     is_renamed: bool,
+    /// It is nobody's so far, but what was said in it may be another station's.
+    is_of_another: bool,
     /// The slot in which the station was.
     left: Option<usize>,
 }
@@ -112,11 +116,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
         let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
+        let own = own.filter(|_| !seat.is_of_another);
         let off = own.filter(|_| self.is_synchronised(at)).map_or(Off::No, Track::clock_off);
         let stamped = off.corrected(stamped);
         timely(stamped, at, link.stale, link.future)?;
         let placed = self.place_motion(index, motion);
-        let track = self.peers.get(index).filter(|_| !seat.is_taken_over);
+        let track = self.peers.get(index).filter(|_| !seat.is_taken_over && !seat.is_of_another);
         let sample = placed.motion.map(|motion| {
             let moved = placed.moved.unwrap_or(Distance::ZERO);
             let newest = || Some(track?.newest()?.position.ahead(moved));
@@ -158,7 +163,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         station: StationHash,
     ) -> Result<Seat, Cause> {
         if holder == Some(station) {
-            return Ok(Seat { is_taken_over: false, is_renamed: false, left: None });
+            return Ok(Seat { is_taken_over: false, is_renamed: false, is_of_another: false, left: None });
         }
         let left = self.peers.index_of(station);
         let is_heard = |index: usize| {
@@ -170,7 +175,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if is_renamed && self.coordination.itinerary().is_some() || left.is_some_and(is_heard) {
             return Err(Cause::StationConflict);
         }
-        Ok(Seat { is_taken_over: holder.is_some() && !is_renamed, is_renamed, left })
+        let slot_reuse = self.config.link.slot_reuse;
+        let is_of_another = self.peers.get(index).is_some_and(|track| track.is_of_another(at, slot_reuse));
+        Ok(Seat { is_taken_over: holder.is_some() && !is_renamed, is_renamed, is_of_another, left })
     }
 
     /// A motion on the ego's axis.
@@ -219,6 +226,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     fn carry_out(&mut self, index: usize, plan: &Plan) {
         if plan.seat.is_taken_over {
             self.vacate(index);
+        }
+        if plan.seat.is_of_another
+            && let Some(track) = self.peers.get_index_mut(index)
+        {
+            track.begin();
         }
         if let Some(left) = plan.seat.left {
             self.peers.follow_on(left, index);

@@ -51,8 +51,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said, health: &mut Health) -> Result<(), Cause> {
         let index = usize::from(slot.0);
-        if !matches!(said, Said::Motion(_)) && self.peers.get_mut(slot)?.is_disputed() {
-            return Err(Cause::StationConflict);
+        if !matches!(said, Said::Motion(_)) {
+            let is_disputed = self.peers.get_mut(slot)?.is_disputed();
+            // A place holds from the motion of its stamp on, so that it waits for that.
+            let is_of_whom_moves = matches!(said, Said::DrivingParameters(_) | Said::Horizon(_));
+            if is_disputed || is_of_whom_moves && self.may_be_of_another(at, index) {
+                return Err(Cause::StationConflict);
+            }
         }
         match said {
             Said::Motion(motion) => self.take_motion(at, slot, motion, health)?,
@@ -82,5 +87,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             }
         }
         Ok(())
+    }
+
+    /// Whether a slot has been silent for so long that it may be another station's, whose first motion was lost or is still to
+    /// come.
+    pub(super) fn may_be_of_another(&self, at: Instant, index: usize) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+        silence.is_some_and(|silence| silence >= self.config.link.slot_reuse)
     }
 }

@@ -40,7 +40,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Takes in what a peer says of its way to a crossing point.
     pub(super) fn take_peer_route(&mut self, at: Instant, slot: Slot, route: &Route) {
         let Some((place, crossing)) = self.coordination.itinerary().and_then(|way| way.find(route.intersection)) else {
-            return self.leave(slot);
+            return self.leave(at, slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
         let standing = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
@@ -54,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if self.coordination.itinerary().is_none() || self.coordination.standing(index).is_some_and(says_more) {
             return;
         }
-        let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(slot) };
+        let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(at, slot) };
         let standing =
             PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
         self.take_standing(slot, geo.stamp, crossing, distance, standing);
@@ -103,7 +103,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    fn leave(&mut self, slot: Slot) {
+    fn leave(&mut self, at: Instant, slot: Slot) {
+        if self.may_be_of_another(at, slot.0.into()) {
+            return;
+        }
         if let Some(axis) = self.coordination.axis_mut(slot.0.into()) {
             axis.leave();
         }

@@ -9,8 +9,8 @@
 //! takes its place unless it is nearer: then it hides what stood beyond, and both are remembered.
 //!
 //! *Contradiction.* [`DISAGREEMENT`] views in a row that what is certain of the target excludes are one. It lasts until
-//! none has contradicted it for [`SETTLED`]. If they saw past all that is certain of the target, nobody is where that is
-//! held to be, and the contradiction lasts until the target is heard again, however long it is silent.
+//! none has contradicted it for [`SETTLED`]. If as many in a row saw past all that is certain of the target, nobody is where that
+//! is held to be, and the contradiction lasts until the target is heard again, however long it is silent.
 
 use crate::held::Held;
 use crate::model::Reading;
@@ -76,6 +76,8 @@ pub(in crate::unit) struct Ranging {
     standing: Held<Sight>,
     /// Views in a row that contradict.
     contradictions: u8,
+    /// Views in a row that saw past all that is certain of the target.
+    past: u8,
     contradiction: Held<Contradiction>,
     /// Since when the driver has named whom it names.
     named: Instant,
@@ -87,6 +89,7 @@ impl Ranging {
             newest: Held::Nothing,
             standing: Held::Nothing,
             contradictions: 0,
+            past: 0,
             contradiction: Held::Nothing,
             named: Instant::ZERO,
         }
@@ -94,7 +97,7 @@ impl Ranging {
 
     /// Takes note that the driver names another one from now on: what was seen before is not of that one.
     pub(in crate::unit) fn note_named(&mut self, at: Instant) {
-        (self.named, self.contradictions) = (at, 0);
+        (self.named, self.contradictions, self.past) = (at, 0, 0);
     }
 
     /// Whether a view may be of whom the driver names: who was not on the way yet was not hidden by what was seen.
@@ -149,16 +152,20 @@ impl Ranging {
         verdict: Verdict,
         heard: Option<Instant>,
     ) -> bool {
+        self.past = if verdict == Verdict::SeesPast { self.past.saturating_add(1) } else { 0 };
         if verdict == Verdict::Agrees {
             self.contradictions = 0;
             return false;
         }
         self.contradictions = self.contradictions.saturating_add(1);
-        let begins = !self.disagrees(station, at, heard);
+        let held = self.holds(station, at, heard, SETTLED);
+        let begins = held.is_none();
         if begins && self.contradictions < DISAGREEMENT {
             return false;
         }
-        self.contradiction.set(Contradiction { station, at, is_past: verdict == Verdict::SeesPast });
+        // A single view past it, while somebody nearer had contradicted it, is one that missed it.
+        let was_past = held.is_some_and(|held| held.is_past) && self.past > 0;
+        self.contradiction.set(Contradiction { station, at, is_past: was_past || self.past >= DISAGREEMENT });
         begins
     }
 

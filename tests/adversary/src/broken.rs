@@ -8,7 +8,6 @@ use crate::scenario::{Event, Family, Scenario, What};
 /// What is broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // `says` tells
 pub enum Assumption {
     PeerBraking,
     PeerAccuracy,

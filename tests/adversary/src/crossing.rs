@@ -20,21 +20,17 @@ pub struct Comer {
     pub street: u8,
     /// Front bumper, m from where the street begins, and speed, m/s.
     pub at: f64,
-    #[allow(missing_docs)]
     pub speed: f64,
     /// It hears nobody from then until then, s.
     pub deaf_from: f64,
-    #[allow(missing_docs)]
     pub deaf_until: f64,
     /// It is not synchronised from then until then, s.
     #[serde(default)]
     pub timeless_from: f64,
     #[serde(default)]
-    #[allow(missing_docs)]
     pub timeless_until: f64,
     /// Its driver wants to stand then, for so long, s.
     pub rests_at: f64,
-    #[allow(missing_docs)]
     pub rests: f64,
 }
 

@@ -55,11 +55,8 @@ pub struct Motion {
     pub stamp: i64,
     /// As measured.
     pub position: f64,
-    #[allow(missing_docs)]
     pub speed: f64,
-    #[allow(missing_docs)]
     pub acceleration: f64,
-    #[allow(missing_docs)]
     pub demand: f64,
     /// What is published of the accuracies.
     pub sensor: Sensor,
@@ -100,19 +97,16 @@ pub struct Other {
     pub demand: f64,
     /// Station and slot as they are now.
     pub station: u8,
-    #[allow(missing_docs)]
     pub slot: u8,
     /// Whether it is on the ego's lane.
     pub on_lane: bool,
     /// Limits and length that it publishes.
     pub limits: Limits,
-    #[allow(missing_docs)]
     pub length: f64,
     /// Limits that the unit took last.
     pub known: Vec<(f64, Limits)>,
     /// Whether the unit has taken a motion of that station, and what it publishes.
     pub is_heard: bool,
-    #[allow(missing_docs)]
     pub has_told: bool,
     /// It is silent until then.
     pub mute_until: f64,
@@ -122,7 +116,6 @@ pub struct Other {
     pub air: Vec<(f64, Message)>,
     /// Stamp of the newest motion that was delivered, and since when honest ones are refused, how many.
     pub newest: i64,
-    #[allow(missing_docs)]
     pub refused: Option<(f64, u32)>,
     tag: u8,
     parameters_tag: u8,

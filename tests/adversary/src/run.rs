@@ -17,7 +17,6 @@ use crate::world;
 pub struct Plan {
     /// The number of the first, and how many, kept and broken.
     pub first: u64,
-    #[allow(missing_docs)]
     pub drives: u64,
     /// Of everything.
     pub seed: u64,
@@ -42,7 +41,6 @@ pub struct Violation {
 
 /// Counts of one row of the table.
 #[derive(Clone, Copy, Debug, Default)]
-#[allow(missing_docs)]
 pub struct Row {
     pub drives: u64,
     pub collisions: u64,
@@ -64,7 +62,6 @@ pub struct Report {
     pub broken: BTreeMap<Assumption, Row>,
     /// Ticks, and those whose bound was checked, of kept drives.
     pub ticks: u64,
-    #[allow(missing_docs)]
     pub checked: u64,
 }
 

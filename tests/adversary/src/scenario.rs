@@ -8,7 +8,6 @@ use crate::broken::Assumption;
 /// What kind of drive it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // `--help` says what each is
 pub enum Family {
     Following,
     Closing,
@@ -57,7 +56,6 @@ impl Family {
 /// How a sensor errs within its accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[allow(missing_docs)] // the names say it
 pub enum Error {
     None,
     Uniform,
@@ -73,7 +71,6 @@ pub enum Error {
 pub struct Sensor {
     /// Published accuracies, m and m/s; none are published if negative.
     pub position: f64,
-    #[allow(missing_docs)]
     pub speed: f64,
     /// How it errs in position.
     pub error: Error,
@@ -86,15 +83,12 @@ pub struct Sensor {
 pub struct Ego {
     /// Where its front bumper is at time 0, m, and how fast it is, m/s.
     pub position: f64,
-    #[allow(missing_docs)]
     pub speed: f64,
     /// The speed that the driver wants, m/s, and the time gap, s.
     pub wanted: f64,
-    #[allow(missing_docs)]
     pub gap: f64,
     /// Configured lag, s, and the true one's ratio to it.
     pub lag: f64,
-    #[allow(missing_docs)]
     pub lag_factor: f64,
     /// What its road allows, m/s².
     pub road: f64,
@@ -106,7 +100,6 @@ pub struct Ego {
     pub engages: f64,
     /// The unit's clock when the drive begins, µs, and its drift, ppm.
     pub clock: u64,
-    #[allow(missing_docs)]
     pub drift: f64,
     /// When the unit is started, s.
     pub starts: f64,
@@ -121,15 +114,12 @@ pub struct Ego {
 pub struct Radio {
     /// Least delay and mean of what is added, s.
     pub delay: f64,
-    #[allow(missing_docs)]
     pub jitter: f64,
     /// Share of messages that take up to `tail` seconds, so that they are overtaken.
     pub tails: f64,
-    #[allow(missing_docs)]
     pub tail: f64,
     /// Fraction that is lost, and mean number that is lost in a row.
     pub loss: f64,
-    #[allow(missing_docs)]
     pub burst: f64,
 }
 
@@ -138,7 +128,6 @@ pub struct Radio {
 pub struct Bus {
     /// Share of single frames that are lost, and that come twice.
     pub loss: f64,
-    #[allow(missing_docs)]
     pub twice: f64,
     /// Largest error of the time at which a synchronisation is received, µs.
     pub jitter: f64,
@@ -155,11 +144,9 @@ pub struct Peer {
     pub length: f64,
     /// Published hardest braking and acceleration, m/s².
     pub braking: f64,
-    #[allow(missing_docs)]
     pub pulling: f64,
     /// Front bumper ahead of the ego's at time 0, m, and speed, m/s.
     pub ahead: f64,
-    #[allow(missing_docs)]
     pub speed: f64,
     /// Whether it is on the ego's lane.
     pub on_lane: bool,
@@ -193,7 +180,6 @@ pub struct Range {
 /// What happens at an instant. `peer` is the number of a peer in its list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "what")]
-#[allow(missing_docs)] // seconds, metres and their like
 pub enum What {
     /// Demands an acceleration; beyond its published limits it takes the limit. -99 is "as hard as it may".
     Drive { peer: usize, demand: f64 },
@@ -261,7 +247,6 @@ pub struct Scenario {
     /// What it breaks, and by how much, in the assumption's own measure.
     pub broken: Option<Assumption>,
     #[serde(default)]
-    #[allow(missing_docs)]
     pub amount: f64,
     /// How far ahead of itself the checker takes the truth to be, m: a fault of its own, to show that it is found.
     #[serde(default)]
@@ -274,22 +259,16 @@ pub struct Scenario {
     pub epoch: i64,
     /// Whom the driver tells the unit to follow at first; 0: nobody.
     pub follow: u8,
-    #[allow(missing_docs)]
     pub ego: Ego,
-    #[allow(missing_docs)]
     pub radio: Radio,
-    #[allow(missing_docs)]
     pub bus: Bus,
-    #[allow(missing_docs)]
     pub range: Range,
     /// At an intersection: where each of the other vehicles comes from.
     #[serde(default)]
     pub crossing: Vec<crate::crossing::Comer>,
     #[serde(default)]
-    #[allow(missing_docs)]
     pub peer: Vec<Peer>,
     #[serde(default)]
-    #[allow(missing_docs)]
     pub event: Vec<Event>,
 }
 

@@ -64,15 +64,11 @@ pub enum Verdict {
 pub struct Told {
     /// m; a position of the bus, which wraps.
     pub position: f64,
-    #[allow(missing_docs)]
     pub behind: f64,
-    #[allow(missing_docs)]
     pub ahead: f64,
     /// m/s.
     pub speed: f64,
-    #[allow(missing_docs)]
     pub slower: f64,
-    #[allow(missing_docs)]
     pub faster: f64,
 }
 

@@ -2,7 +2,6 @@
 
 /// What must not be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)] // `name` says it
 pub enum Fault {
     Collision,
     Bound,
@@ -50,7 +49,6 @@ pub struct Outcome {
     pub findings: Vec<Finding>,
     /// Ticks, and of them with the truth outside.
     pub ticks: u64,
-    #[allow(missing_docs)]
     pub outside: u64,
     /// Ticks whose bound was checked.
     pub checked: u64,

@@ -92,7 +92,6 @@ impl Horizon {
         (self.motion[next].speed_mps - self.motion[nearest].speed_mps) / self.step_s
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturating, and the ends are held
     fn nearest(&self, at_s: f64) -> usize {
         (((at_s - self.anchor_s) / self.step_s + 0.5).floor() as usize).min(self.motion.len() - 1)
     }

@@ -61,7 +61,6 @@ pub struct Paper {
 impl Paper {
     /// For that vehicle with the prediction step `δt`, which must be positive.
     #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a positive count of steps
     pub fn new(target: usize, step_s: f64) -> Self {
         assert!(step_s > 0.0, "the prediction step is {step_s} s, which is not a step");
         let steps = (HORIZON_S / step_s).round().max(1.0) as usize;
@@ -146,7 +145,6 @@ impl Baseline for Paper {
         "paper"
     }
 
-    #[allow(clippy::cast_possible_truncation)] // a count of steps
     fn hear(&mut self, heard: &Heard) {
         self.unread.push(((heard.at_s / self.step_s - SAME_STEP).ceil() as i64, *heard));
     }

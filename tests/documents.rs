@@ -1,0 +1,72 @@
+//! The documents: every link between them leads to a file and a heading that are there, and the two that are read first stay
+//! short.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// All Markdown files below a folder.
+fn markdown_in(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            markdown_in(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.push(path);
+        }
+    }
+}
+
+/// The lines that are not code.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    let mut is_code = false;
+    text.lines().filter(move |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        !is_code && !is_fence
+    })
+}
+
+/// The anchor that a heading gets on a page: its words in lower case, joined by hyphens.
+fn anchor(heading: &str) -> String {
+    let kept = |letter: &char| letter.is_alphanumeric() || matches!(letter, ' ' | '-' | '_');
+    heading.trim_start_matches('#').trim().to_lowercase().chars().filter(kept).collect::<String>().replace(' ', "-")
+}
+
+/// What `[text](target)` leads to, in a line.
+fn targets(line: &str) -> impl Iterator<Item = &str> {
+    line.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target)
+}
+
+#[test]
+fn every_link_between_the_documents_leads_to_a_file_and_a_heading() {
+    let mut files = Vec::new();
+    markdown_in(Path::new(env!("CARGO_MANIFEST_DIR")), &mut files);
+    let texts: BTreeMap<PathBuf, String> =
+        files.into_iter().map(|path| (path.canonicalize().unwrap(), fs::read_to_string(&path).unwrap())).collect();
+    let mut broken = Vec::new();
+    for (page, text) in &texts {
+        for target in prose(text).flat_map(targets).filter(|target| !target.contains("://")) {
+            let (file, heading) =
+                target.split_once('#').map_or((target, None), |(file, heading)| (file, Some(heading)));
+            let file = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
+            let is_heading = |heading: &str| {
+                let text = texts.get(&file.canonicalize().unwrap_or_default());
+                text.is_some_and(|text| prose(text).any(|line| line.starts_with('#') && anchor(line) == heading))
+            };
+            if !file.exists() || heading.is_some_and(|heading| !is_heading(heading)) {
+                broken.push(format!("{}: {target}", page.display()));
+            }
+        }
+    }
+    assert!(texts.len() > 10 && broken.is_empty(), "{broken:#?}");
+}
+
+#[test]
+fn the_two_documents_that_are_read_first_have_at_most_two_hundred_lines() {
+    for name in ["README.md", "ARCHITECTURE.md"] {
+        let lines = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap().lines().count();
+        assert!(lines <= 200, "{name}: {lines} lines");
+    }
+}
