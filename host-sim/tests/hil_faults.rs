@@ -1,11 +1,11 @@
 //! The fault buttons on a bus in memory: what the device does, what the harness says, and that it recovers.
 
 use holdover::time::Duration;
-use holdover_sim::hil::judge::{LATENCY_P99_MS, Results, judge};
-use holdover_sim::hil::session::{self, Setup};
-use holdover_sim::hil::virtual_bus::{Behaviour, bench};
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::world;
+use holdover_sim::commands::hil::judge::{LATENCY_P99_MS, Results, judge};
+use holdover_sim::commands::hil::session::{self, Setup};
+use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::sim::world;
 use std::path::Path;
 
 /// Twelve seconds on a clean channel, and one fault.

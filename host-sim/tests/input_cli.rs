@@ -1,9 +1,10 @@
 //! What the command line means, and how the program ends when it means nothing.
 
 use clap::{CommandFactory, Parser};
-use holdover_sim::channel::Impairment;
-use holdover_sim::cli::Cli;
-use holdover_sim::options::{Candump, Options, RunOptions};
+use holdover_sim::commands::cli::Cli;
+use holdover_sim::commands::options::Options;
+use holdover_sim::commands::run::options::{Candump, RunOptions};
+use holdover_sim::input::impairment::Impairment;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 

@@ -5,10 +5,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use holdover_sim::figures::{Errors, Summary, Timing};
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::measure::figures::{Errors, Summary, Timing};
+use holdover_sim::measure::simulate::simulate;
 use holdover_sim::parallel;
-use holdover_sim::run::simulate;
-use holdover_sim::scenario::{Overrides, Scenario};
 
 const SEEDS: u64 = 100;
 /// Half as long again as the 0.3 s that every vehicle publishes.

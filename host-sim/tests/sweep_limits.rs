@@ -1,7 +1,7 @@
 //! The accuracy that the product claims: the worst of 100 seeds of the paper's scenario, at three prediction steps.
 
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::sweep::rows::run;
+use holdover_sim::commands::sweep::rows::run;
+use holdover_sim::input::scenario::{Overrides, Scenario};
 
 #[test]
 fn the_worst_of_100_seeds_keeps_the_limit_of_its_step_and_the_paper_does_not() {

@@ -1,0 +1,84 @@
+//! `evaluate`: recorded vehicles and a recorded link, or silences, enter; how far from the truth the unit and the
+//! baselines believe the vehicles to be leaves, as a table or JSON, a report and a trace.
+//!
+//! ```text
+//! recording -> publisher -> (link | silence) -> listener: bus -> unit      -> sample -> figures -> table, JSON
+//!                                                             -> baselines                      -> report, trace
+//! ```
+
+pub mod arguments;
+pub mod figures;
+pub mod in_silence;
+pub mod listener;
+pub mod options;
+pub mod over_link;
+mod page;
+pub mod publisher;
+pub mod sample;
+mod table;
+pub mod timeline;
+mod trace;
+
+use std::time::Instant;
+
+use holdover::ConfigError;
+use indicatif::ProgressBar;
+
+use crate::commands::ending::write_report;
+use crate::error::Error;
+use crate::output;
+use crate::parallel;
+use crate::verdict::Verdict;
+use figures::{Results, Timing};
+use options::{EvaluateOptions, Impairment};
+use sample::Outcome;
+
+/// Evaluates what the options name and writes all that they ask for.
+///
+/// # Errors
+/// Places that cannot be written.
+pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
+    let start = Instant::now();
+    let outcomes = outcomes(options)?;
+    let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();
+    #[allow(clippy::cast_precision_loss)] // far fewer than 2⁵³ ticks
+    let timing = Timing { ticks_per_s: (ticks as f64 / start.elapsed().as_secs_f64().max(1e-9)).round() };
+    let results = Results::pooled(&outcomes, options.lengths_s(), timing);
+    if let Some(file) = &options.trace {
+        trace::write(file, &outcomes)?;
+    }
+    let report = match &options.report {
+        Some(folder) => Some(write_report(folder, &page::report(options, &outcomes, &results).render())?),
+        None => None,
+    };
+    if options.json {
+        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
+        output::print(&format!("{json}\n"))?;
+    } else {
+        output::print(&table::text(options, &outcomes, &results))?;
+    }
+    if let Some(report) = report {
+        output::say(&format!("report: {}", report.display()));
+    }
+    Ok(Verdict::Pass)
+}
+
+/// Every recording, in the order of the command line: in parallel over a link, one after the other with its silences in
+/// parallel.
+fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
+    let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
+    let bar = ProgressBar::new((total_s * 10.0) as u64);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // progress
+    let advance = |seconds: f64| bar.inc((seconds * 10.0) as u64);
+    let (recordings, step_s) = (&options.recordings, options.step_s);
+    let over_link = |link, recording| over_link::evaluate(recording, link, step_s, &advance);
+    let in_silence = |lengths_s, recording| in_silence::evaluate(recording, lengths_s, step_s, &advance);
+    let outcomes: Vec<Result<Outcome, ConfigError>> = match &options.impairment {
+        Impairment::Channel(_, link) => parallel::each(recordings, |recording| over_link(link, recording)),
+        Impairment::Outages(lengths_s) => recordings.iter().map(|recording| in_silence(lengths_s, recording)).collect(),
+    };
+    bar.finish_and_clear();
+    let refused = |cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step");
+    outcomes.into_iter().map(|outcome| outcome.map_err(refused)).collect()
+}

@@ -1,0 +1,59 @@
+//! The command line of `sweep` as it is meant: raw values enter, a checked scenario for each step leaves.
+
+use std::path::PathBuf;
+
+use super::arguments::SweepArguments;
+use crate::error::Error;
+use crate::input::scenario::{Overrides, Scenario};
+use crate::places::can_be_folder;
+use crate::seeds;
+
+/// A sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepOptions {
+    /// The scenario.
+    pub base: Scenario,
+    /// The same at each step, in the order given; at least one.
+    pub scenarios: Vec<Scenario>,
+    /// The file that it came from; `None`: it is the paper's.
+    pub scenario_file: Option<PathBuf>,
+    /// The first seed.
+    pub seed: u64,
+    /// How many; at least 1.
+    pub seeds: u64,
+    /// Results as JSON.
+    pub json: bool,
+    /// Folder of the report; `None`: no report.
+    pub report: Option<PathBuf>,
+}
+
+impl SweepOptions {
+    /// Reads what the arguments name and checks it.
+    ///
+    /// # Errors
+    /// Values that cannot be, a scenario that cannot be used, and a folder that cannot be written.
+    pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
+        let SweepArguments { scenario: scenario_file, steps, seeds, seed, json, out, no_report } = arguments;
+        let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
+        let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
+        let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
+        seeds::checked(scenario.seed, seeds)?;
+        let report = (!no_report).then_some(out);
+        if let Some(folder) = &report {
+            can_be_folder(folder)?;
+        }
+        Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, json, report })
+    }
+
+    /// The last seed.
+    #[must_use]
+    pub fn last_seed(&self) -> u64 {
+        self.seed + (self.seeds - 1)
+    }
+
+    /// Runs of all steps and seeds.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.scenarios.len() as u64 * self.seeds
+    }
+}
