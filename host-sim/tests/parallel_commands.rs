@@ -106,8 +106,8 @@ fn motions() {
 }
 
 #[test]
-fn price() {
-    is_the_same_on_all(folder().path(), "price paper.toml --silences 1 --seeds 2");
+fn envelope_cost() {
+    is_the_same_on_all(folder().path(), "envelope-cost paper.toml --silences 1 --seeds 2");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use crate::commands::capture::{self, arguments::CaptureArguments};
 use crate::commands::ecu::{self, arguments::EcuArguments};
-use crate::commands::envelope_cost::{self, arguments::PriceArguments};
+use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
 use crate::commands::evaluate::{self, arguments::EvaluateArguments};
 use crate::commands::gains::{self, arguments::GainsArguments};
 use crate::commands::hil::{self, arguments::HilArguments};
@@ -44,8 +44,8 @@ pub enum Command {
     #[command(after_help = sweep::arguments::AFTER_HELP)]
     Sweep(SweepArguments),
     /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
-    #[command(after_help = envelope_cost::arguments::AFTER_HELP)]
-    Price(PriceArguments),
+    #[command(visible_alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
+    EnvelopeCost(EnvelopeCostArguments),
     /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
     #[command(after_help = gains::arguments::AFTER_HELP)]
     Gains(GainsArguments),

@@ -5,7 +5,7 @@ use crate::commands::capture::CaptureOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::ecu::options::EcuOptions;
-use crate::commands::envelope_cost::options::PriceOptions;
+use crate::commands::envelope_cost::options::EnvelopeCostOptions;
 use crate::commands::evaluate::options::EvaluateOptions;
 use crate::commands::gains::GainsOptions;
 use crate::commands::hil::options::HilOptions;
@@ -37,7 +37,7 @@ pub enum Options {
     /// Run a scenario at several steps with many seeds.
     Sweep(SweepOptions),
     /// Measure what the envelope costs.
-    Price(PriceOptions),
+    EnvelopeCost(EnvelopeCostOptions),
     /// Make and prove the table of gains.
     Gains(GainsOptions),
     /// Measure string stability.
@@ -64,7 +64,7 @@ impl Options {
             Some(Command::Run(arguments)) => Self::of_run(arguments),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
-            Some(Command::Price(arguments)) => PriceOptions::read(arguments).map(Self::Price),
+            Some(Command::EnvelopeCost(arguments)) => EnvelopeCostOptions::read(arguments).map(Self::EnvelopeCost),
             Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
             Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
@@ -104,7 +104,7 @@ impl Options {
             Self::Gains(options) => gains::gains(options),
             Self::String(options) => string::string(options),
             Self::Motions(options) => motions::motions(options),
-            Self::Price(options) => envelope_cost::price(options),
+            Self::EnvelopeCost(options) => envelope_cost::run(options),
             Self::Replay(options) => replay::replay(options),
             Self::Record(options) => capture::capture(options),
             Self::Ecu(options) => ecu::run(options),

@@ -23,7 +23,7 @@ impl PaperBeside {
         Self { paper: Paper::new(tap.measured().vehicle, scenario.step_s), tap }
     }
 
-    /// Notes what it believes in a tick; between [`World::speak`] and [`World::act`].
+    /// Notes what it believes in a tick; after the units have acted in it.
     ///
     /// # Errors
     /// The bus's.

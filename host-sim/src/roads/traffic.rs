@@ -1,8 +1,7 @@
 //! The world of a corridor: trips enter; vehicles appear, sense, hear, tick, speak, move and leave; every tick, who is where
 //! goes to those who watch.
 //!
-//! Order within a tick as in a string's world: what has arrived is put on the buses, sensors speak, units tick, what they
-//! broadcast goes into the air, bodies move on. A vehicle appears when its time has come and there is room for it to follow
+//! The order within a tick is that of [`Stages`]. A vehicle appears when its time has come and there is room for it to follow
 //! the one ahead; until then it waits out of sight, and that counts as travel time. Its unit has power before.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -29,6 +28,7 @@ use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
 use crate::sim::modem::V2xMessage;
 use crate::sim::road::Ground;
+use crate::sim::stages::Stages;
 use crate::sim::station::station;
 use crate::sim::vehicle::Vehicle;
 use crate::sim::world::TargetBelief;
@@ -163,7 +163,7 @@ impl<'a> Traffic<'a> {
     pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
         while !self.is_over() && self.at_s() <= longest_s {
-            self.tick(watches, log)?;
+            self.step(watches, log)?;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left()).count();
         let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
@@ -180,7 +180,7 @@ impl<'a> Traffic<'a> {
     /// As for [`run`](Self::run).
     pub fn advance(&mut self, to_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
         while self.at_s() < to_s {
-            self.tick(watches, &mut Vec::new())?;
+            self.step(watches, &mut Vec::new())?;
         }
         Ok(())
     }
@@ -203,26 +203,18 @@ impl<'a> Traffic<'a> {
             && self.waiting.iter().all(VecDeque::is_empty)
     }
 
-    fn tick(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+    fn step(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let at_s = self.at_s();
         self.ticks += 1;
-        while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
-            if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
-                self.tally.heard += u64::from(!traveller.has_left());
-                traveller.vehicle.hear(at_s, &message)?;
-            }
-        }
-        self.admit(at_s)?;
-        let mut broadcasts = Vec::new();
-        for (index, traveller) in &mut self.travellers {
-            traveller.vehicle.speak(at_s, self.corridor.period_s, None)?;
-            let message = traveller.vehicle.tick(at_s)?;
-            broadcasts.extend(message.filter(|_| !traveller.is_dark(at_s)).map(|message| (*index, message)));
-        }
-        if self.conditions.when_lost == WhenLost::Alone {
-            self.drive_alone(at_s);
-        }
-        self.run_out();
+        self.tick(at_s, |traffic| {
+            traffic.show(at_s, watches);
+            Ok(())
+        })?;
+        self.dismiss(at_s, watches, log)
+    }
+
+    /// Those who watch see who is where.
+    fn show(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
         let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
             self.travellers.values().partition(|traveller| traveller.has_left());
         let [beyond, on_way] = [beyond, on_way]
@@ -232,11 +224,6 @@ impl<'a> Traffic<'a> {
             watch.beyond(&beyond);
             watch.tick(at_s, &on_way);
         }
-        self.broadcast(at_s, broadcasts);
-        for traveller in self.travellers.values_mut() {
-            traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
-        }
-        self.dismiss(at_s, watches, log)
     }
 
     /// Messages go to everyone within the radio's range.
@@ -288,6 +275,41 @@ impl<'a> Traffic<'a> {
             let choice = vehicle.unit.coordination().choice();
             vehicle.override_with(alone::still_given_way(lost, choice, wanted, vehicle.command_mps2));
         }
+    }
+}
+
+impl Stages for Traffic<'_> {
+    fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
+            if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
+                self.tally.heard += u64::from(!traveller.has_left());
+                traveller.vehicle.hear(at_s, &message)?;
+            }
+        }
+        self.admit(at_s)?;
+        let period_s = self.corridor.period_s;
+        self.travellers.values_mut().try_for_each(|traveller| traveller.vehicle.speak(at_s, period_s, None))
+    }
+
+    fn act(&mut self, at_s: f64) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for (index, traveller) in &mut self.travellers {
+            let message = traveller.vehicle.tick(at_s)?;
+            broadcasts.extend(message.filter(|_| !traveller.is_dark(at_s)).map(|message| (*index, message)));
+        }
+        if self.conditions.when_lost == WhenLost::Alone {
+            self.drive_alone(at_s);
+        }
+        self.run_out();
+        self.broadcast(at_s, broadcasts);
+        Ok(())
+    }
+
+    fn drive(&mut self, _: f64) -> io::Result<()> {
+        for traveller in self.travellers.values_mut() {
+            traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
+        }
+        Ok(())
     }
 }
 

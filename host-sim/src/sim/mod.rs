@@ -13,6 +13,7 @@ pub mod plant;
 pub mod quantities;
 pub mod road;
 pub mod sensors;
+pub mod stages;
 pub mod station;
 pub mod time;
 pub mod vehicle;

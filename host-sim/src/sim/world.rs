@@ -1,33 +1,31 @@
 //! The world of a run: a scenario enters; every tick the vehicles sense, hear, tick, speak and move; a trace of every tick
 //! leaves.
 //!
-//! Order within a tick at time t: what arrived over the channel up to t is put on the buses with its time of arrival;
-//! sensors and time base speak; every unit receives and ticks; what the units broadcast goes into the channel; the bodies
-//! move on to the next tick under the commands. So a message sent without delay at t is used in the next tick, as on
-//! real buses; a microsecond goes by before it is on the bus there.
+//! The order within a tick is that of [`Stages`].
 
 use std::io;
 use std::rc::Rc;
 
-use holdover::config::Envelope;
+use holdover::ConfigError;
 use holdover::health::Cause;
 use holdover::time::Instant;
-use holdover::{Config, ConfigError};
 
 use crate::bus::memory::MemoryNode;
 use crate::bus::{Bus, Frame};
 use crate::input::scenario::Scenario;
 use crate::sim::channel::Channel;
-use crate::sim::plant::{Machine, Plant};
-use crate::sim::quantities::{duration, fine_seconds, seconds, speed};
+use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
-use crate::sim::station::{request, station};
+use crate::sim::stages::Stages;
+use crate::sim::station::request;
 use crate::sim::vehicle::{Alias, Vehicle};
 use crate::streams::{Purpose, stream, unit};
 
+mod config;
 mod tick;
 
 use crate::sim::air::{Air, Arrived};
+pub use config::{HORIZON_S, config, horizon, machine};
 pub use tick::{Bounds, TargetBelief, Tick};
 
 /// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
@@ -129,7 +127,7 @@ impl<'a> World<'a> {
         self.run_beside(|_, _, _| Ok(()), progress)
     }
 
-    /// The same, and shows every tick of it to somebody beside, between [`speak`](Self::speak) and [`act`](Self::act).
+    /// The same, and shows every tick of it to somebody beside, before the bodies move on.
     ///
     /// # Errors
     /// The buses', and those of who is beside.
@@ -150,10 +148,10 @@ impl<'a> World<'a> {
         for tick in 0..ticks {
             #[allow(clippy::cast_precision_loss)]
             let at_s = tick as f64 * period_s;
-            self.speak(at_s)?;
-            beside(&self, at_s, &mut trace)?;
-            self.act(at_s, &mut trace)?;
-            self.drive(at_s)?;
+            self.tick(at_s, |world| {
+                world.note(at_s, &mut trace);
+                beside(world, at_s, &mut trace)
+            })?;
             if tick % 100 == 0 {
                 #[allow(clippy::cast_precision_loss)]
                 progress(tick as f64 / ticks as f64);
@@ -220,8 +218,7 @@ impl<'a> World<'a> {
         self.place_recorded_leader(0.0);
         for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
             vehicle.engage(false);
-            vehicle.plant.position_m = start_m + vehicle.plant.speed_mps * at_s;
-            vehicle.speak(at_s, self.scenario.period_s, None)?;
+            vehicle.approach(*start_m, (at_s, -at_s), self.scenario.period_s)?;
         }
         Ok(())
     }
@@ -242,52 +239,12 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The first part of a tick: messages arrive, sensors and time base speak.
-    ///
-    /// # Errors
-    /// The buses'.
-    pub fn speak(&mut self, at_s: f64) -> io::Result<()> {
-        self.deliver(at_s)?;
-        self.place_recorded_leader(at_s);
-        let program = &self.scenario.leader.program;
-        if let Some((_, speed_mps)) = program.iter().rfind(|(from_s, _)| *from_s <= at_s + 1e-9) {
-            self.vehicles[0].want(*speed_mps);
-        }
-        let mut ahead = None;
-        for vehicle in &mut self.vehicles {
-            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
-            ahead = Some(vehicle.seen_from_behind());
-        }
-        Ok(())
-    }
-
-    /// The second part: the units tick, and their modems broadcast.
-    ///
-    /// # Errors
-    /// The buses'.
-    pub fn act(&mut self, at_s: f64, trace: &mut Trace) -> io::Result<()> {
-        let mut broadcasts = Vec::new();
-        for vehicle in &mut self.vehicles {
-            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
-        }
+    /// Writes a tick down; after [`act`](Stages::act).
+    pub fn note(&self, at_s: f64, trace: &mut Trace) {
         trace.times_s.push(at_s);
         for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
             ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
         }
-        for (from, message) in broadcasts {
-            let others = (0..self.vehicles.len()).filter(|to| *to != from);
-            self.air.broadcast(at_s, from, others, &Rc::new(message));
-        }
-        Ok(())
-    }
-
-    /// The third part: the bodies move on to the next tick.
-    ///
-    /// # Errors
-    /// The buses'.
-    pub fn drive(&mut self, at_s: f64) -> io::Result<()> {
-        let period_s = self.scenario.period_s;
-        self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged).try_for_each(|vehicle| vehicle.drive(at_s, period_s))
     }
 
     /// The run is over: the trace is completed.
@@ -329,6 +286,40 @@ impl<'a> World<'a> {
     }
 }
 
+impl Stages for World<'_> {
+    fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        self.deliver(at_s)?;
+        self.place_recorded_leader(at_s);
+        let program = &self.scenario.leader.program;
+        if let Some((_, speed_mps)) = program.iter().rfind(|(from_s, _)| *from_s <= at_s + 1e-9) {
+            self.vehicles[0].want(*speed_mps);
+        }
+        let mut ahead = None;
+        for vehicle in &mut self.vehicles {
+            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
+            ahead = Some(vehicle.seen_from_behind());
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, at_s: f64) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for vehicle in &mut self.vehicles {
+            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
+        }
+        for (from, message) in broadcasts {
+            let others = (0..self.vehicles.len()).filter(|to| *to != from);
+            self.air.broadcast(at_s, from, others, &Rc::new(message));
+        }
+        Ok(())
+    }
+
+    fn drive(&mut self, at_s: f64) -> io::Result<()> {
+        let period_s = self.scenario.period_s;
+        self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged).try_for_each(|vehicle| vehicle.drive(at_s, period_s))
+    }
+}
+
 /// The ticks of a warm-up: whole cycles of the messages.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 s of milliseconds at most
@@ -343,45 +334,4 @@ pub fn warm_up_ticks(at_least_s: f64, message_rate_hz: f64, period_s: f64) -> u3
 pub fn clock_offset(seed: u64, index: usize) -> u64 {
     let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
     10_000_000 + (share * 1e9) as u64
-}
-
-/// The body of a vehicle.
-#[must_use]
-pub fn machine(scenario: &Scenario, index: usize) -> Machine {
-    let vehicle = &scenario.vehicles[index];
-    Machine::new(vehicle.kind, vehicle.plant_lag_s, &vehicle.difference)
-}
-
-/// The configuration of a vehicle's unit.
-#[must_use]
-pub fn config(scenario: &Scenario, index: usize) -> Config {
-    let vehicle = &scenario.vehicles[index];
-    let mut config = Config::car(station(index));
-    config.period = duration(scenario.period_s);
-    config.length = crate::sim::quantities::distance(vehicle.length_m);
-    config.lag = fine_seconds(vehicle.lag_s);
-    config.body = vehicle.kind.body();
-    config.limits = vehicle.kind.limits();
-    config.law.time_gap = seconds(vehicle.time_gap_s);
-    config.law.standstill = crate::sim::quantities::distance(vehicle.standstill_m);
-    config.law.target_speed = speed(scenario.leader.target_speed_mps);
-    config.link.period = duration(1.0 / scenario.message_rate_hz);
-    config.prediction.step = duration(scenario.step_s);
-    config.prediction.horizon = horizon(HORIZON_S, scenario.step_s);
-    // Nobody brakes harder than it publishes.
-    let capable = config.limits.emergency_braking;
-    config.envelope =
-        scenario.envelope.limits().map(|limits| Envelope { braking: limits.braking.min(capable), ..limits });
-    config
-}
-
-/// How far ahead the units look.
-pub const HORIZON_S: f64 = 3.9;
-
-/// A horizon of this length, or as many whole steps as come to at least that, within the capacity.
-#[must_use]
-#[allow(clippy::cast_precision_loss)]
-pub fn horizon(horizon_s: f64, step_s: f64) -> holdover::time::Duration {
-    let steps = (horizon_s / step_s).ceil().clamp(2.0, (crate::sim::vehicle::STEPS - 2) as f64);
-    duration(steps * step_s)
 }

@@ -3,12 +3,12 @@
 
 use std::fmt::Write;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::verdict;
 use crate::error::Error;
 use crate::input::scenario::Envelope;
+use crate::parallel;
 use crate::roads::conditions::Conditions;
 use crate::roads::experiment::Experiment;
 use crate::roads::figures::{Outcome, Side};
@@ -32,13 +32,31 @@ pub struct Row {
 impl Row {
     /// What it is called.
     fn name(&self) -> String {
-        let link = if self.perfect_link { "perfect link" } else { "link" };
-        let gate = if self.envelope { "envelope" } else { "no envelope" };
-        format!("{} a minute, {} slots, {link}, {gate}", self.vehicles_per_min, self.slots)
+        name(self.vehicles_per_min, self.slots, self.perfect_link, self.envelope)
     }
 }
 
-/// Runs every seed under all of them; `done` is called after each run.
+fn name(vehicles_per_min: f64, slots: usize, perfect_link: bool, envelope: bool) -> String {
+    let link = if perfect_link { "perfect link" } else { "link" };
+    let gate = if envelope { "envelope" } else { "no envelope" };
+    format!("{vehicles_per_min} a minute, {slots} slots, {link}, {gate}")
+}
+
+/// A demand under one condition.
+struct Case<'a> {
+    vehicles_per_min: f64,
+    experiment: &'a Experiment,
+    conditions: Conditions,
+    perfect_link: bool,
+}
+
+impl Case<'_> {
+    fn name(&self) -> String {
+        name(self.vehicles_per_min, self.conditions.slots, self.perfect_link, self.conditions.envelope.engaged)
+    }
+}
+
+/// Runs every seed under all of them; `done` is told after each run which it was.
 ///
 /// # Errors
 /// A scenario that the units refuse.
@@ -47,34 +65,34 @@ pub fn run(
     demand: &[f64],
     slots: &[usize],
     seeds: &[u64],
-    done: impl Fn() + Sync,
+    done: impl Fn(&str) + Sync,
 ) -> Result<Vec<Row>, Error> {
-    let demanding: Vec<Experiment> =
-        demand.iter().map(|per_min| experiment.of(experiment.corridor.demanding(*per_min))).collect();
-    let mut cases: Vec<(usize, Conditions, bool)> = Vec::new();
-    for (which, experiment) in demanding.iter().enumerate() {
+    let demanding: Vec<(f64, Experiment)> =
+        demand.iter().map(|per_min| (*per_min, experiment.of(experiment.corridor.demanding(*per_min)))).collect();
+    let mut cases = Vec::new();
+    for (vehicles_per_min, experiment) in &demanding {
         let scenario = Conditions::of(&experiment.corridor);
         for slots in slots {
-            for (perfect, engaged) in [(false, false), (true, false), (false, true), (true, true)] {
-                let radio = if perfect { scenario.radio.perfect() } else { scenario.radio };
+            for (perfect_link, engaged) in [(false, false), (true, false), (false, true), (true, true)] {
+                let radio = if perfect_link { scenario.radio.perfect() } else { scenario.radio };
                 let envelope = Envelope { engaged, ..scenario.envelope };
-                cases.push((which, Conditions { slots: *slots, radio, envelope, ..scenario }, perfect));
+                let conditions = Conditions { slots: *slots, radio, envelope, ..scenario };
+                cases.push(Case { vehicles_per_min: *vehicles_per_min, experiment, conditions, perfect_link });
             }
         }
     }
-    let jobs: Vec<(usize, Conditions, u64)> =
-        cases.iter().flat_map(|(which, conditions, _)| seeds.iter().map(|seed| (*which, *conditions, *seed))).collect();
-    let one = |(which, conditions, seed): &(usize, Conditions, u64)| {
-        let outcome = demanding[*which].run(*seed, *conditions, None);
-        done();
+    let jobs: Vec<(&Case, u64)> = cases.iter().flat_map(|case| seeds.iter().map(move |seed| (case, *seed))).collect();
+    let one = |(case, seed): &(&Case, u64)| {
+        let outcome = case.experiment.run(*seed, case.conditions, None);
+        done(&format!("{}, seed {seed}", case.name()));
         outcome
     };
-    let outcomes: Vec<Outcome> = jobs.par_iter().map(one).collect::<Vec<_>>().into_iter().collect::<Result<_, _>>()?;
-    let row = |((which, conditions, perfect_link), outcomes): (&(usize, Conditions, bool), &[Outcome])| Row {
-        vehicles_per_min: demand[*which],
-        slots: conditions.slots,
-        perfect_link: *perfect_link,
-        envelope: conditions.envelope.engaged,
+    let outcomes: Vec<Outcome> = parallel::each(&jobs, one).into_iter().collect::<Result<_, _>>()?;
+    let row = |(case, outcomes): (&Case, &[Outcome])| Row {
+        vehicles_per_min: case.vehicles_per_min,
+        slots: case.conditions.slots,
+        perfect_link: case.perfect_link,
+        envelope: case.conditions.envelope.engaged,
         side: Side::of(&outcomes.iter().collect::<Vec<_>>()),
     };
     Ok(cases.iter().zip(outcomes.chunks(seeds.len().max(1))).map(row).collect())

@@ -15,9 +15,10 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use crate::commands::ending::json;
 use crate::commands::motions::rows::{self, Row};
 use crate::error::Error;
-use crate::output;
+use crate::output::{self, LongRuns};
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
@@ -78,7 +79,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     if !options.demand.is_empty() {
         return run_demand(options, &experiment);
     }
-    let is_drawn = options.report.is_some() || options.picture.is_some();
+    let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len()) as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
@@ -127,38 +128,27 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         failures,
         timing: Timing { wall_s, vehicle_seconds_per_s: driven_s / wall_s.max(1e-9), cost: costs, scale: loads },
     };
-    if options.json {
-        output::say(table::text(&results).trim_end());
-        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&table::text(&results))?;
-    }
-    if let Some(folder) = &options.report {
-        let page = page::render(options, &experiment, &results, &steps);
-        let report = crate::commands::ending::write_report(folder, &page)?;
-        output::say(&format!("report: {}", report.display()));
-    }
+    let text = table::text(&results);
+    options.destination.deliver(&results, &text, &text, || page::render(options, &experiment, &results, &steps))?;
     if let Some(file) = &options.picture {
         let drawn = picture::draw(&experiment, &results, &steps);
         std::fs::write(file, drawn).map_err(|error| Error::unwritable(file, &error))?;
     }
-    Ok(if results.failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    Ok(Verdict::of(&results.failures))
 }
 
 /// Tries more traffic, and nothing else.
 fn run_demand(options: &CorridorOptions, experiment: &Experiment) -> Result<Verdict, Error> {
     let runs = 4 * options.demand.len() * options.slots.len() * options.seeds.len();
-    let bar = ProgressBar::new(runs as u64);
-    let rows = demand::run(experiment, &options.demand, &options.slots, &options.seeds, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let progress = LongRuns::new(runs);
+    let rows = demand::run(experiment, &options.demand, &options.slots, &options.seeds, |which| progress.done(which))?;
+    progress.finish();
     let failures = demand::failures(&rows);
-    if options.json {
-        let json = serde_json::to_string(&rows).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
+    if options.destination.json {
+        output::print(&format!("{}\n", json(&rows)?))?;
     } else {
         output::print(&demand::text(&rows))?;
     }
     failures.iter().for_each(|failure| output::say(failure));
-    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    Ok(Verdict::of(&failures))
 }

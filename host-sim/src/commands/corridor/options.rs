@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::scale::VEHICLES;
+use crate::commands::ending::Destination;
 use crate::commands::run::arguments::RunSettings;
 use crate::error::Error;
 use crate::input::scenario::Overrides;
-use crate::places::{can_be_file, can_be_folder};
+use crate::places::can_be_file;
 use crate::roads::description::Corridor;
 use crate::roads::read;
 use crate::seeds;
@@ -26,10 +27,8 @@ pub struct CorridorOptions {
     pub command: String,
     /// The seeds, from the first on.
     pub seeds: Vec<u64>,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
     /// How fast so many vehicles at once are simulated is to be measured.
     pub vehicles: Vec<usize>,
     /// So much traffic is to be tried instead of the scenario's; usually empty.
@@ -73,14 +72,11 @@ impl CorridorOptions {
         let slots = slots(settings.slots.clone(), &mut corridor, !demand.is_empty())?;
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
-        let report = (!settings.no_report).then_some(settings.out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
         if let Some(picture) = &settings.picture {
             can_be_file("--picture", picture, &[named])?;
         }
-        let usual = if report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
+        let usual = if destination.report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
         let is_given = settings.vehicles.is_some();
         let vehicles = settings.vehicles.unwrap_or(usual);
         if let Some(beyond) = vehicles.iter().find(|number| !(1..=MOST_VEHICLES).contains(*number)) {
@@ -108,18 +104,7 @@ impl CorridorOptions {
             command += &format!(" --vehicles {}", listed(vehicles.iter().map(usize::to_string).collect()));
         }
         let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
-        Ok(Self {
-            corridor,
-            name,
-            command,
-            seeds,
-            json: settings.json,
-            report,
-            vehicles,
-            demand,
-            slots,
-            picture: settings.picture,
-        })
+        Ok(Self { corridor, name, command, seeds, destination, vehicles, demand, slots, picture: settings.picture })
     }
 }
 

@@ -1,11 +1,11 @@
-//! What can follow `price` on the command line: arguments enter, raw values leave.
+//! What can follow `envelope-cost` on the command line: arguments enter, raw values leave.
 
 use clap::Args;
 use std::path::PathBuf;
 
-/// The arguments of `price`.
+/// The arguments of `envelope-cost`.
 #[derive(Clone, Debug, Args)]
-pub struct PriceArguments {
+pub struct EnvelopeCostArguments {
     /// The scenario; the paper's if none is given
     #[arg(value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
@@ -39,7 +39,7 @@ pub struct PriceArguments {
     pub json: bool,
 
     /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/price")]
+    #[arg(long, value_name = "DIR", default_value = "holdover-report/envelope-cost")]
     pub out: PathBuf,
 
     /// Write no report
@@ -47,12 +47,12 @@ pub struct PriceArguments {
     pub no_report: bool,
 }
 
-/// The end of `price --help`.
+/// The end of `envelope-cost --help`.
 pub const AFTER_HELP: &str = "\
 Examples:
-  holdover-sim price                        silences of 1, 2, 4 and 8 s
-  holdover-sim price --silences 0.5,1 --seeds 100 --json
-  holdover-sim price --leader-motion drive.csv --channel-trace link.csv
+  holdover-sim envelope-cost                silences of 1, 2, 4 and 8 s
+  holdover-sim envelope-cost --silences 0.5,1 --seeds 100 --json
+  holdover-sim envelope-cost --leader-motion drive.csv --channel-trace link.csv
                                             your recordings, as they are
 
 Runs:

@@ -1,12 +1,12 @@
-//! The command line of `price` as it is meant: raw values enter, a checked scenario for each silence leaves.
+//! The command line of `envelope-cost` as it is meant: raw values enter, a checked scenario for each silence leaves.
 
 use std::path::PathBuf;
 
-use super::arguments::PriceArguments;
+use super::arguments::EnvelopeCostArguments;
+use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::impairment::{Impairment, Window};
 use crate::input::scenario::{Overrides, Scenario};
-use crate::places::can_be_folder;
 use crate::seeds;
 
 /// Silences unless given, in seconds.
@@ -20,7 +20,7 @@ const AFTERWARDS_S: f64 = 30.0;
 
 /// What is to be measured and what becomes of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PriceOptions {
+pub struct EnvelopeCostOptions {
     /// Each silence in seconds with its scenario; a recorded channel is one scenario without a length.
     pub scenarios: Vec<(Option<f64>, Scenario)>,
     /// The file that they came from; `None`: it is the paper's.
@@ -33,21 +33,28 @@ pub struct PriceOptions {
     pub seeds: u64,
     /// The way for which the travel time is taken, in metres.
     pub distance_m: f64,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
-impl PriceOptions {
+impl EnvelopeCostOptions {
     /// Reads what the arguments name and checks it.
     ///
     /// # Errors
     /// Values that cannot be, a scenario that cannot be used, and a folder that cannot be written.
-    pub fn read(arguments: PriceArguments) -> Result<Self, Error> {
+    pub fn read(arguments: EnvelopeCostArguments) -> Result<Self, Error> {
         let words = typed(&arguments);
-        let PriceArguments { scenario: scenario_file, silences, seeds, seed, distance, json, out, no_report, .. } =
-            arguments;
+        let EnvelopeCostArguments {
+            scenario: scenario_file,
+            silences,
+            seeds,
+            seed,
+            distance,
+            json,
+            out,
+            no_report,
+            ..
+        } = arguments;
         let overrides = Overrides {
             seed,
             leader_motion: arguments.leader_motion,
@@ -61,10 +68,7 @@ impl PriceOptions {
             let error = Error::new(format!("is {distance}"), "give metres from 1 to 1000000");
             return Err(error.in_option("--distance"));
         }
-        let report = (!no_report).then_some(out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
         Ok(Self {
             scenarios,
             scenario_file,
@@ -72,8 +76,7 @@ impl PriceOptions {
             seed: scenario.seed,
             seeds,
             distance_m: distance,
-            json,
-            report,
+            destination,
         })
     }
 }
@@ -121,7 +124,7 @@ fn silent(scenario: &Scenario, outage: Window, end_s: f64) -> Result<Scenario, E
 }
 
 /// The options but for the seeds, as they would have to be typed again.
-fn typed(arguments: &PriceArguments) -> Vec<String> {
+fn typed(arguments: &EnvelopeCostArguments) -> Vec<String> {
     let file = |option: &str, file: &Option<PathBuf>| file.as_ref().map(|file| format!("{option} {}", file.display()));
     let silences = arguments.silences.as_ref().map(|lengths| {
         let lengths: Vec<String> = lengths.iter().map(f64::to_string).collect();

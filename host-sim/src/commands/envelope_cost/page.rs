@@ -1,6 +1,6 @@
-//! The report of the envelope's price: rows enter, an HTML page with a table and bars leaves.
+//! The report of the envelope's cost: rows enter, an HTML page with a table and bars leaves.
 
-use super::options::PriceOptions;
+use super::options::EnvelopeCostOptions;
 use super::rows::{Row, Side};
 use super::table::silence;
 use crate::report::markup::{count, quantity, significant};
@@ -13,8 +13,8 @@ const WHAT: &str = "The envelope is each unit’s last gate. In every tick it ca
                     vehicle; without the envelope it drives on by the estimate.";
 
 /// The page.
-pub fn render(options: &PriceOptions, rows: &[Row], failures: &[String]) -> String {
-    let mut page = Page::new("holdover-sim · report of a price", "What the envelope costs");
+pub fn render(options: &EnvelopeCostOptions, rows: &[Row], failures: &[String]) -> String {
+    let mut page = Page::new("holdover-sim · report of the envelope’s cost", "What the envelope costs");
     let passed = "With the envelope nobody collided, and no target was ever outside its bound.".to_owned();
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
     table(&mut page, rows);
@@ -22,7 +22,7 @@ pub fn render(options: &PriceOptions, rows: &[Row], failures: &[String]) -> Stri
     page.section("Scenario");
     page.facts(&facts(options));
     page.command(&command(options));
-    page.section("Price");
+    page.section("Cost");
     figures(&mut page, rows);
     page.finish()
 }
@@ -58,7 +58,7 @@ fn table(page: &mut Page, rows: &[Row]) {
     page.table(caption, &header, &rows.iter().flat_map(pair).collect::<Vec<_>>());
 }
 
-fn facts(options: &PriceOptions) -> Vec<(String, String)> {
+fn facts(options: &EnvelopeCostOptions) -> Vec<(String, String)> {
     let first = options.scenarios.first().map(|(_, scenario)| scenario);
     let mut facts = vec![
         ("seeds".into(), format!("{} to {}", options.seed, options.seed + (options.seeds - 1))),
@@ -77,8 +77,8 @@ fn facts(options: &PriceOptions) -> Vec<(String, String)> {
     facts
 }
 
-fn command(options: &PriceOptions) -> String {
-    let mut words = vec!["holdover-sim price".to_owned()];
+fn command(options: &EnvelopeCostOptions) -> String {
+    let mut words = vec!["holdover-sim envelope-cost".to_owned()];
     words.extend(options.scenario_file.as_ref().map(|file| file.display().to_string()));
     words.push(format!("--seed {} --seeds {}", options.seed, options.seeds));
     words.extend(options.arguments.iter().cloned());

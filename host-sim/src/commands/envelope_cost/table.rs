@@ -1,4 +1,4 @@
-//! The table of the envelope's price, for a terminal: rows enter, text leaves.
+//! The table of the envelope's cost, for a terminal: rows enter, text leaves.
 
 use std::fmt::Write;
 

@@ -24,9 +24,7 @@ use std::time::Instant;
 use holdover::ConfigError;
 use indicatif::ProgressBar;
 
-use crate::commands::ending::write_report;
 use crate::error::Error;
-use crate::output;
 use crate::parallel;
 use crate::verdict::Verdict;
 use figures::{Results, Timing};
@@ -47,19 +45,8 @@ pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
     if let Some(file) = &options.trace {
         trace::write(file, &outcomes)?;
     }
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::report(options, &outcomes, &results).render())?),
-        None => None,
-    };
-    if options.json {
-        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&table::text(options, &outcomes, &results))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
+    let page = || page::report(options, &outcomes, &results).render();
+    options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page)?;
     Ok(Verdict::Pass)
 }
 

@@ -1,9 +1,10 @@
 //! The options of `evaluate`: raw values enter; recordings that have been read and that belong together leave.
 
 use super::arguments::EvaluateArguments;
+use crate::commands::ending::Destination;
 use crate::error::{Error, quoted};
 use crate::input::recording::{ChannelTrace, Motion};
-use crate::places::{can_be_file, can_be_folder};
+use crate::places::can_be_file;
 use std::path::{Path, PathBuf};
 
 /// What is to be measured and what becomes of its results.
@@ -15,10 +16,8 @@ pub struct EvaluateOptions {
     pub impairment: Impairment,
     /// Prediction step of the core, and time between two ticks.
     pub step_s: f64,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
     /// Where to write every tick.
     pub trace: Option<PathBuf>,
 }
@@ -58,16 +57,13 @@ impl EvaluateOptions {
         if let Impairment::Channel(file, trace) = &impairment {
             recordings.iter().try_for_each(|recording| recording.overlaps(file, trace))?;
         }
-        let report = (!arguments.no_report).then_some(arguments.out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(arguments.json, (!arguments.no_report).then_some(arguments.out))?;
         if let Some(file) = &arguments.trace {
             let inputs = arguments.motion.iter().chain(&arguments.predecessor).chain(&arguments.channel);
             can_be_file("--trace", file, &inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;
         }
-        let EvaluateArguments { step: step_s, json, trace, .. } = arguments;
-        Ok(Self { recordings, impairment, step_s, json, report, trace })
+        let EvaluateArguments { step: step_s, trace, .. } = arguments;
+        Ok(Self { recordings, impairment, step_s, destination, trace })
     }
 
     /// The lengths of the silences, if those are to be measured.

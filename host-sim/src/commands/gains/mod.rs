@@ -19,10 +19,10 @@ use std::path::PathBuf;
 use holdover::parameters;
 use serde::Serialize;
 
-use crate::commands::ending::write_report;
+use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::output;
-use crate::places::{can_be_file, can_be_folder};
+use crate::places::can_be_file;
 use crate::verdict::Verdict;
 use arguments::GainsArguments;
 use cell::Cell;
@@ -33,10 +33,8 @@ use proof::Proof;
 pub struct GainsOptions {
     /// Where to write it.
     pub write: Option<PathBuf>,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
 impl GainsOptions {
@@ -46,14 +44,11 @@ impl GainsOptions {
     /// Places that cannot be written.
     pub fn read(arguments: GainsArguments) -> Result<Self, Error> {
         let GainsArguments { write, json, out, no_report } = arguments;
-        let report = (!no_report).then_some(out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
         if let Some(file) = &write {
             can_be_file("--write", file, &[])?;
         }
-        Ok(Self { write, json, report })
+        Ok(Self { write, destination })
     }
 }
 
@@ -116,20 +111,8 @@ pub fn gains(options: &GainsOptions) -> Result<Verdict, Error> {
         output::say(&format!("table: {}", file.display()));
     }
     let results = table.results();
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::render(&table))?),
-        None => None,
-    };
-    if options.json {
-        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&text(&results))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
-    Ok(if results.failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    options.destination.deliver(&results, &text(&results), "", || page::render(&table))?;
+    Ok(Verdict::of(results.failures))
 }
 
 fn text(results: &Results) -> String {

@@ -26,6 +26,7 @@ use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
 use crate::measure::paper_beside::PaperBeside;
+use crate::sim::stages::Stages;
 use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::vehicle::Unit;
 use crate::sim::world::World;
@@ -116,8 +117,9 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         if tick < 0 {
             world.answer(at_s)?;
         } else {
+            world.act(at_s)?;
+            world.note(at_s, &mut trace);
             paper.note(&world, at_s, &mut trace)?;
-            world.act(at_s, &mut trace)?;
             world.drive(at_s)?;
         }
         if tick % 100 == 0 {

@@ -33,11 +33,9 @@ pub mod virtual_bus;
 use indicatif::ProgressBar;
 
 use crate::bus;
-use crate::commands::ending::write_report;
 use crate::error::Error;
-use crate::output;
 use crate::verdict::Verdict;
-use judge::{Results, judge};
+use judge::judge;
 use options::HilOptions;
 use rig::MachineRig;
 
@@ -64,22 +62,7 @@ pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
         Error::new(cause, "see whether the interface is still there: ip -details link").in_option("--bus")
     })?;
     let results = judge(&options.setup, &outcome);
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::render(options, &outcome, &results))?),
-        None => None,
-    };
-    print(options, &results)?;
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
+    let text = table::text(&results);
+    options.destination.deliver(&results, &text, &text, || page::render(options, &outcome, &results))?;
     Ok(results.code())
-}
-
-fn print(options: &HilOptions, results: &Results) -> Result<(), Error> {
-    if !options.json {
-        return output::print(&table::text(results));
-    }
-    output::say(table::text(results).trim_end());
-    let json = serde_json::to_string(results).map_err(|error| Error::new(error.to_string(), "report this"))?;
-    output::print(&format!("{json}\n"))
 }

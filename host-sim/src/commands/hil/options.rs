@@ -1,14 +1,12 @@
 //! The command line of `hil` as it is meant: raw values enter, a checked setup leaves.
 
-use std::path::PathBuf;
-
 use super::arguments::HilArguments;
 use super::fault::{Fault, Kind};
 use super::session::Setup;
 use crate::commands::ecu::options::{file_of, scenario, unit};
+use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::Overrides;
-use crate::places::can_be_folder;
 use crate::sim::quantities::duration;
 
 /// A run with hardware in the loop.
@@ -24,10 +22,8 @@ pub struct HilOptions {
     pub lock_step: bool,
     /// The command that is the device.
     pub device: Option<String>,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
 impl HilOptions {
@@ -69,9 +65,7 @@ impl HilOptions {
             let cause = format!("{} begins at {} s, after the run", late.kind.name(), late.from_s);
             return refuse(&cause, &format!("give a time before {} s", scenario.duration_s));
         }
-        if let Some(folder) = &arguments.output {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(arguments.json, arguments.output)?;
         Ok(Self {
             bus: arguments.bus,
             setup: Setup {
@@ -84,8 +78,7 @@ impl HilOptions {
             name: arguments.scenario.display().to_string(),
             lock_step: arguments.lock_step,
             device: arguments.device,
-            json: arguments.json,
-            report: arguments.output,
+            destination,
         })
     }
 }

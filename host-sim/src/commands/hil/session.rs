@@ -29,6 +29,7 @@ use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
 use crate::input::scenario::Scenario;
 use crate::measure::paper_beside::PaperBeside;
+use crate::sim::stages::Stages;
 use crate::sim::station::station;
 use crate::sim::vehicle::Alias;
 use crate::sim::world::{Trace, World};
@@ -230,8 +231,9 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         if tick < 0 {
             world.answer(at_s)?
         } else {
-            paper.note(&world, at_s, &mut trace)?;
-            world.act(at_s, &mut trace)?
+            world.act(at_s)?;
+            world.note(at_s, &mut trace);
+            paper.note(&world, at_s, &mut trace)?
         }
         cut = gone(setup, &talk, &listener, rig, at_s);
         if tick % 100 == 0 {

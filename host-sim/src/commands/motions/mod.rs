@@ -23,9 +23,7 @@ pub use page::{largest, section};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use crate::commands::ending::write_report;
 use crate::error::Error;
-use crate::output;
 use crate::verdict::Verdict;
 use motion::TargetMotion;
 use options::MotionsOptions;
@@ -45,19 +43,7 @@ pub fn motions(options: &MotionsOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
     let rows = rows::run(options.seed, options.silences, || bar.inc(1))?;
     bar.finish_and_clear();
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::render(options, &rows))?),
-        None => None,
-    };
-    if options.json {
-        let json = serde_json::to_string(&Results { rows: &rows });
-        let json = json.map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&table::text(&rows))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
+    let page = || page::render(options, &rows);
+    options.destination.deliver(&Results { rows: &rows }, &table::text(&rows), "", page)?;
     Ok(Verdict::Pass)
 }

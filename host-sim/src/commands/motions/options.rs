@@ -1,10 +1,8 @@
 //! The command line of `motions` as it is meant: raw values enter, checked ones leave.
 
-use std::path::PathBuf;
-
 use super::arguments::MotionsArguments;
+use crate::commands::ending::Destination;
 use crate::error::Error;
-use crate::places::can_be_folder;
 use crate::seeds;
 
 /// The most silences of a motion: their errors are held at once.
@@ -17,10 +15,8 @@ pub struct MotionsOptions {
     pub silences: u32,
     /// Seed of the first; there are as many seeds.
     pub seed: u64,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
 impl MotionsOptions {
@@ -35,11 +31,8 @@ impl MotionsOptions {
             return Err(Error::new(format!("is {silences}"), remedy).in_option("--silences"));
         }
         seeds::from(seed, u64::from(silences))?;
-        let report = (!no_report).then_some(out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
-        Ok(Self { silences, seed, json, report })
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        Ok(Self { silences, seed, destination })
     }
 
     /// The same command again.

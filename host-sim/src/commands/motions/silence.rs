@@ -14,6 +14,7 @@ use crate::input::scenario::Scenario;
 use crate::measure::baseline::{self, Baseline, Estimate};
 use crate::measure::heard::Heard;
 use crate::measure::observer::Tap;
+use crate::sim::stages::Stages;
 use crate::sim::world::{Measured, Trace, WARM_UP_S, World};
 
 /// Ours and the baselines.
@@ -62,18 +63,19 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
     for tick in 0..world.ticks() {
         #[allow(clippy::cast_precision_loss)] // a few thousand
         let at_s = tick as f64 * scenario.period_s;
-        world.speak(at_s)?;
-        tap.hear(&world, at_s, |heard| {
-            let heard = with_law_only(heard);
-            baselines.iter_mut().for_each(|baseline| baseline.hear(&heard));
+        world.tick(at_s, |world| {
+            world.note(at_s, &mut trace);
+            tap.hear(world, at_s, |heard| {
+                let heard = with_law_only(heard);
+                baselines.iter_mut().for_each(|baseline| baseline.hear(&heard));
+            })?;
+            let since_s = at_s - from_s;
+            if since_s >= -1e-9 {
+                let beliefs = beliefs(&mut baselines, at_s, ours(&trace, by));
+                errors.extend(against(&trace, target, &beliefs, since_s.max(0.0)));
+            }
+            Ok(())
         })?;
-        world.act(at_s, &mut trace)?;
-        let since_s = at_s - from_s;
-        if since_s >= -1e-9 {
-            let beliefs = beliefs(&mut baselines, at_s, ours(&trace, by));
-            errors.extend(against(&trace, target, &beliefs, since_s.max(0.0)));
-        }
-        world.drive(at_s)?;
     }
     Ok(errors)
 }

@@ -24,6 +24,7 @@ use holdover::time::Instant;
 
 use crate::bus::Frame;
 use crate::bus::candump::{Interface, LogReader, LogWriter};
+use crate::commands::ending::json;
 use crate::error::{Error, quoted};
 use crate::output;
 use crate::verdict::Verdict;
@@ -79,10 +80,7 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
     match options.output {
         Output::Frames | Output::Bus(_) => {}
         Output::Summary => output::print(&summary.text())?,
-        Output::Json => {
-            let json = serde_json::to_string(&summary).map_err(|e| Error::new(e.to_string(), "report this"))?;
-            output::print(&format!("{json}\n"))?;
-        }
+        Output::Json => output::print(&format!("{}\n", json(&summary)?))?,
     }
     Ok(Verdict::Pass)
 }

@@ -35,7 +35,8 @@ pub struct RunSettings {
     pub vehicles: Option<Vec<usize>>,
 
     /// More traffic: so many vehicles a minute in all, each with the envelope and without it, by the scenario's link and by a
-    /// perfect one, instead of everything else; for a corridor
+    /// perfect one, instead of everything else; for a corridor. At the scenario's length that can take an hour; stderr
+    /// says after each run what is done and what is left
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub demand: Option<Vec<f64>>,
 

@@ -8,11 +8,9 @@ mod table;
 
 use indicatif::ProgressBar;
 
-use crate::commands::ending::write_report;
 use crate::error::Error;
 use crate::measure::figures::failures;
 use crate::measure::simulate::simulate;
-use crate::output;
 use crate::verdict::Verdict;
 use options::RunOptions;
 
@@ -35,19 +33,8 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     if let Some(candump) = &options.candump {
         files::write_log(&candump.file, &trace)?;
     }
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::report(options, &trace, &summary, &failures).render())?),
-        None => None,
-    };
-    if options.json {
-        output::say(table::text(scenario, &summary, &failures).trim_end());
-        let json = serde_json::to_string(&summary).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-    } else {
-        output::print(&table::text(scenario, &summary, &failures))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
-    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    let text = table::text(scenario, &summary, &failures);
+    let page = || page::report(options, &trace, &summary, &failures).render();
+    options.destination.deliver(&summary, &text, &text, page)?;
+    Ok(Verdict::of(&failures))
 }

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::arguments::RunArguments;
+use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
-use crate::places::{can_be_file, can_be_folder};
+use crate::places::can_be_file;
 
 /// A run and what becomes of its results.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,10 +17,8 @@ pub struct RunOptions {
     pub scenario_file: Option<PathBuf>,
     /// What else the command line says of the scenario, as it would have to be typed again.
     pub arguments: Vec<String>,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
     /// Where to write every tick.
     pub trace: Option<PathBuf>,
     /// Which bus to record.
@@ -67,10 +66,7 @@ impl RunOptions {
             let error = Error::new(format!("there is no vehicle {vehicle}"), format!("give an index from 0 to {last}"));
             return Err(error.in_option("--candump-vehicle"));
         }
-        let report = (!settings.no_report).then_some(settings.out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
         let inputs = [scenario_file.as_ref(), settings.leader_motion.as_ref(), settings.channel_trace.as_ref()];
         let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
@@ -81,7 +77,7 @@ impl RunOptions {
             }
         }
         let candump = settings.candump.map(|file| Candump { file, vehicle });
-        Ok(Self { scenario, scenario_file, arguments, json: settings.json, report, trace: settings.trace, candump })
+        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
     }
 }
 

@@ -16,7 +16,6 @@ pub mod uncompensated;
 
 use serde::Serialize;
 
-use crate::commands::ending::write_report;
 use crate::error::Error;
 use crate::output;
 use crate::verdict::Verdict;
@@ -46,23 +45,14 @@ pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
     let rows = rows::run(options, || bar.inc(1))?;
     bar.finish_and_clear();
     let failures = rows::failures(&rows);
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::render(options, &rows, &failures))?),
-        None => None,
+    let results = Results {
+        limit: rows::LIMIT,
+        shipped_time_gap_s: options::shipped_time_gap_s(),
+        smallest_time_gap_s: rows::smallest_time_gap_s(&rows),
+        seed: options.seed,
+        rows: &rows,
     };
-    if options.json {
-        let smallest_time_gap_s = rows::smallest_time_gap_s(&rows);
-        let shipped_time_gap_s = options::shipped_time_gap_s();
-        let results =
-            Results { limit: rows::LIMIT, shipped_time_gap_s, smallest_time_gap_s, seed: options.seed, rows: &rows };
-        let json = serde_json::to_string(&results).map_err(|error| Error::new(error.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-        output::say(&table::verdict(options, &rows, &failures));
-    } else {
-        output::print(&table::text(options, &rows, &failures))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
-    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    let (text, said) = (table::text(options, &rows, &failures), table::verdict(options, &rows, &failures));
+    options.destination.deliver(&results, &text, &said, || page::render(options, &rows, &failures))?;
+    Ok(Verdict::of(&failures))
 }

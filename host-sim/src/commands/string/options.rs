@@ -1,13 +1,11 @@
 //! The command line of `string` as it is meant: raw values enter, checked ones leave.
 
-use std::path::PathBuf;
-
 use holdover::parameters;
 
 use super::arguments::StringArguments;
 use super::disturbance::Disturbance;
+use crate::commands::ending::Destination;
 use crate::error::Error;
-use crate::places::can_be_folder;
 use crate::seeds;
 
 /// Seeds of a step unless said otherwise: at a step chance decides.
@@ -30,10 +28,8 @@ pub struct StringOptions {
     pub seed: u64,
     /// How many, if it is said: from 1 to [`seeds::MOST`].
     pub seeds: Option<u64>,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
 impl StringOptions {
@@ -50,13 +46,10 @@ impl StringOptions {
         within("--losses", &losses, "shares", (0.0, 0.9))?;
         within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
         seeds::checked(seed, seeds.unwrap_or(STEP_SEEDS))?;
-        let report = (!no_report).then_some(out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
         let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
-        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, json, report })
+        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, destination })
     }
 
     /// How many seeds of that disturbance are run where such a share is lost. Nothing else is drawn, so without a loss one

@@ -17,9 +17,7 @@ pub use timing::of_log;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use crate::commands::ending::write_report;
 use crate::error::Error;
-use crate::output;
 use crate::verdict::Verdict;
 use options::SweepOptions;
 use rows::{Failure, Row};
@@ -46,24 +44,13 @@ pub fn sweep(options: &SweepOptions) -> Result<Verdict, Error> {
         failures.extend(runs.failures);
     }
     bar.finish_and_clear();
-    let report = match &options.report {
-        Some(folder) => Some(write_report(folder, &page::report(options, &rows, &failures).render())?),
-        None => None,
+    let said = match &failures[..] {
+        [] => String::new(),
+        failures => format!("verdict: {}", verdict(options.runs(), failures)),
     };
-    if options.json {
-        let json =
-            serde_json::to_string(&Results { rows: &rows }).map_err(|e| Error::new(e.to_string(), "report this"))?;
-        output::print(&format!("{json}\n"))?;
-        if !failures.is_empty() {
-            output::say(&format!("verdict: {}", verdict(options.runs(), &failures)));
-        }
-    } else {
-        output::print(&table::text(options, &rows, &failures))?;
-    }
-    if let Some(report) = report {
-        output::say(&format!("report: {}", report.display()));
-    }
-    Ok(if failures.is_empty() { Verdict::Pass } else { Verdict::Failed })
+    let page = || page::report(options, &rows, &failures).render();
+    options.destination.deliver(&Results { rows: &rows }, &table::text(options, &rows, &failures), &said, page)?;
+    Ok(Verdict::of(&failures))
 }
 
 fn progress(options: &SweepOptions) -> ProgressBar {

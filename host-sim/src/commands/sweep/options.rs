@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::arguments::SweepArguments;
+use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
-use crate::places::can_be_folder;
 use crate::seeds;
 
 /// A sweep.
@@ -21,10 +21,8 @@ pub struct SweepOptions {
     pub seed: u64,
     /// How many; at least 1.
     pub seeds: u64,
-    /// Results as JSON.
-    pub json: bool,
-    /// Folder of the report; `None`: no report.
-    pub report: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
 }
 
 impl SweepOptions {
@@ -38,11 +36,8 @@ impl SweepOptions {
         let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
         let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
         seeds::checked(scenario.seed, seeds)?;
-        let report = (!no_report).then_some(out);
-        if let Some(folder) = &report {
-            can_be_folder(folder)?;
-        }
-        Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, json, report })
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, destination })
     }
 
     /// The last seed.

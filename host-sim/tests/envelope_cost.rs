@@ -1,13 +1,13 @@
-//! What `price` prints and writes, and how it ends.
+//! What `envelope-cost` prints and writes, and how it ends.
 
 use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn price(arguments: &str, threads: &str) -> Output {
+fn envelope_cost(arguments: &str, threads: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
         .env("RAYON_NUM_THREADS", threads)
-        .arg("price")
+        .arg("envelope-cost")
         .args(arguments.split_whitespace())
         .output()
         .unwrap()
@@ -18,7 +18,7 @@ fn text(bytes: Vec<u8>) -> String {
 }
 
 fn rows(arguments: &str) -> Vec<Value> {
-    let output = price(&format!("{arguments} --json --no-report"), "2");
+    let output = envelope_cost(&format!("{arguments} --json --no-report"), "2");
     assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
     let mut results: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(results.as_object().unwrap().len(), 1);
@@ -60,7 +60,7 @@ fn each_silence_is_a_row_without_and_with_the_envelope() {
 fn a_run_is_what_run_makes_of_the_same_scenario() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("s.toml");
-    // As long after the silence as `price` lets it go on.
+    // As long after the silence as `envelope-cost` lets it go on.
     std::fs::write(&file, "duration_s = 36\n[channel]\noutages = [[4, 6]]\n").unwrap();
     let row = &rows("--silences 2 --seed 7 --seeds 1")[0];
     for (side, options) in [("off", &[][..]), ("on", &["--envelope"][..])] {
@@ -80,7 +80,7 @@ fn a_run_is_what_run_makes_of_the_same_scenario() {
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    let of_threads = |threads| price("--silences 1,3 --seeds 4 --json --no-report", threads).stdout;
+    let of_threads = |threads| envelope_cost("--silences 1,3 --seeds 4 --json --no-report", threads).stdout;
     assert_eq!(of_threads("1"), of_threads("2"));
     assert_eq!(of_threads("1"), of_threads("5"));
 }
@@ -101,7 +101,7 @@ fn a_recorded_channel_is_taken_as_it_is() {
     let rows = rows(&format!("--channel-trace {} --seeds 1", file.display()));
     assert_eq!((rows.len(), &rows[0]["silence_s"]), (1, &Value::Null));
     assert!(rows[0]["on"]["limited_share"].as_f64().unwrap() > 0.0);
-    let output = price(&format!("--channel-trace {} --silences 1 --no-report", file.display()), "1");
+    let output = envelope_cost(&format!("--channel-trace {} --silences 1 --no-report", file.display()), "1");
     let message = "error: --silences: a recorded channel has the silences that it has; leave out --silences, or the \
                    recording\n";
     assert_eq!((output.status.code(), text(output.stderr).as_str()), (Some(2), message));
@@ -110,14 +110,14 @@ fn a_recorded_channel_is_taken_as_it_is() {
 #[test]
 fn the_table_and_the_report_stand_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
-    let output = price(&format!("--seeds 1 --silences 0.5,2 --out {}/report", folder.path().display()), "2");
+    let output = envelope_cost(&format!("--seeds 1 --silences 0.5,2 --out {}/report", folder.path().display()), "2");
     let (stdout, stderr) = (text(output.stdout), text(output.stderr));
     for wanted in ["1 seeds each; travel time over 200 m\n", "\n0.5 ", "\n2 ", " off ", " on ", "verdict: passed\n"] {
         assert!(stdout.contains(wanted), "{wanted}: {stdout}");
     }
     assert_eq!(stderr, format!("report: {}/report/index.html\n", folder.path().display()));
     let page = std::fs::read_to_string(folder.path().join("report/index.html")).unwrap();
-    assert!(page.contains("holdover-sim price --seed 1 --seeds 1 --silences 0.5,2 --distance 200"));
+    assert!(page.contains("holdover-sim envelope-cost --seed 1 --seeds 1 --silences 0.5,2 --distance 200"));
     assert_eq!((page.matches("<figure ").count(), page.matches("<svg ").count()), (3, 2 * 5));
     roxmltree::Document::parse_with_options(&page, roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() })
         .unwrap();
@@ -130,7 +130,7 @@ fn a_collision_with_the_envelope_fails_and_one_without_it_is_reported() {
         let file = folder.path().join("crash.toml");
         let crash = format!("ego = 1\n[[vehicle]]\nspeed_mps = 2\n[[vehicle]]\ngap_m = {gap_m}\nspeed_mps = 20\n");
         std::fs::write(&file, crash).unwrap();
-        price(&format!("{} --seeds 2 --silences 1 --no-report", file.display()), "2")
+        envelope_cost(&format!("{} --seeds 2 --silences 1 --no-report", file.display()), "2")
     };
     // Nobody can stop within 2 m of 20 m/s; within 45 m only emergency braking does.
     let output = start(2.0);
@@ -158,19 +158,27 @@ fn input_that_cannot_be_is_refused_with_its_cause_and_remedy() {
         ("--out Cargo.toml", "--out: \"Cargo.toml\" is a file; name a folder for the report, or give --no-report"),
     ];
     for (arguments, message) in cases {
-        let output = price(arguments, "1");
+        let output = envelope_cost(arguments, "1");
         assert_eq!(text(output.stderr), format!("error: {message}\n"), "{arguments}");
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments}");
     }
     for arguments in ["--silences x", "--silences", "--seeds -1", "--seeds 1.5"] {
-        assert_eq!(price(arguments, "1").status.code(), Some(2), "{arguments}");
+        assert_eq!(envelope_cost(arguments, "1").status.code(), Some(2), "{arguments}");
     }
 }
 
 #[test]
 fn help_gives_examples_and_says_what_the_figures_are() {
-    let help = text(price("--help", "1").stdout);
+    let help = text(envelope_cost("--help", "1").stdout);
     for wanted in ["Examples:", "Runs:", "Figures:", "--silences", "--seeds", "--distance", "Exit codes:"] {
         assert!(help.contains(wanted), "{wanted}");
     }
+}
+
+#[test]
+fn the_shorter_name_is_the_same_command() {
+    let named = |name: &str| {
+        Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args([name, "--help"]).output().map(|output| output.stdout)
+    };
+    assert_eq!(named("price").unwrap(), named("envelope-cost").unwrap());
 }
