@@ -23,7 +23,7 @@ use clap::{Parser, Subcommand};
 #[derive(Clone, Debug, Parser)]
 #[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
 pub struct Cli {
-    /// What to do; `run` if nothing is said.
+    /// What to do; `run` if no command is given.
     #[command(subcommand)]
     pub command: Option<Command>,
     /// The settings of `run`, which may stand without the command.

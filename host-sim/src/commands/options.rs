@@ -1,4 +1,4 @@
-//! The command line as it is meant: raw values enter; options that have been checked, with every input file read, or
+//! The command line as it is meant: typed values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
 use crate::commands::capture::CaptureOptions;

@@ -10,7 +10,7 @@
 //!   on its way when the outage begins arrives.
 //! - *Duplication* sends a second copy with a delay of its own.
 //! - *Reordering* is what delays do.
-//! - A *recording* replaces all of that ([`ChannelTrace::delay_at`] states how it is read).
+//! - A *recording* replaces all of that ([`ChannelTrace::delay_at`](crate::input::recording::ChannelTrace::delay_at) states how it is read).
 //! - The modem drops what is older than [`OLDEST_S`] on arrival: stamps repeat after 13.1 s, so a message a whole
 //!   period old would be taken for a new one.
 

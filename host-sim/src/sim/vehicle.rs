@@ -45,7 +45,7 @@ const LOCATE_EVERY_S: f64 = 0.1;
 /// What a unit outside said of its target is held for so long: the message's timeout.
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
 /// Cycle of the driver's request, in seconds.
-const WISH_EVERY_S: f64 = 0.1;
+const REQUEST_EVERY_S: f64 = 0.1;
 
 /// A vehicle of a run.
 pub struct Vehicle {
@@ -236,7 +236,7 @@ impl Vehicle {
         {
             self.put(at_s, &Message::Unserved(unserved))?;
         }
-        if is_due(at_s, WISH_EVERY_S, period_s) {
+        if is_due(at_s, REQUEST_EVERY_S, period_s) {
             self.request(at_s)?;
         }
         if is_due(at_s, SYNC_EVERY_S, period_s) {

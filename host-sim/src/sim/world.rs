@@ -119,7 +119,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// Runs it to its end; `progress` is told the share that is done, now and then.
+    /// Runs the world to its end. From time to time `progress` is told the share that is done.
     ///
     /// # Errors
     /// The buses'.
@@ -127,10 +127,10 @@ impl<'a> World<'a> {
         self.run_beside(|_, _, _| Ok(()), progress)
     }
 
-    /// The same, and shows every tick of it to somebody beside, before the bodies move on.
+    /// Runs the world to its end and shows every tick to `beside`, before the bodies move on.
     ///
     /// # Errors
-    /// The buses', and those of who is beside.
+    /// The buses', and those of `beside`.
     pub fn run_beside(
         mut self,
         mut beside: impl FnMut(&Self, f64, &mut Trace) -> io::Result<()>,
@@ -160,8 +160,8 @@ impl<'a> World<'a> {
         self.finish(trace)
     }
 
-    /// Gives a vehicle's unit's seat to a unit outside, which calls stations by the alias. What that one says up to a time
-    /// has to be on the bus before the world goes on from there.
+    /// Gives the place of a vehicle's unit on its bus to a unit outside, which calls stations by the alias. What the unit
+    /// outside says up to a time has to be on the bus before the world goes on from that time.
     pub fn give_seat(&mut self, vehicle: usize, alias: Alias) -> MemoryNode {
         self.vehicles[vehicle].give_seat(alias)
     }
@@ -208,8 +208,8 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The time before the run, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and has not engaged it yet, and nobody is within reach. `at_s` is
+    /// A tick before the run. As every real unit knows it, the units have power and tick, their time base and their sensors
+    /// speak, the drivers drive at constant speed and have not engaged them yet, and nobody is within reach. `at_s` is
     /// negative; [`answer`](Self::answer) follows.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The options of `run` for a corridor: raw values enter, checked options or an error leave.
+//! The options of `run` for a corridor: typed values enter, checked options or an error leave.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The command line of `ecu` as it is meant: raw values enter, a checked configuration of a unit leaves. The harness says
+//! The options of `ecu`: typed values enter, a checked configuration of a unit leaves. The harness says
 //! by the same words what its device is.
 
 use std::path::Path;

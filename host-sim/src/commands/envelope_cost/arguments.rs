@@ -1,4 +1,4 @@
-//! What can follow `envelope-cost` on the command line: arguments enter, raw values leave.
+//! The arguments of `envelope-cost`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The command line of `envelope-cost` as it is meant: raw values enter, a checked scenario for each silence leaves.
+//! The options of `envelope-cost`: typed values enter, a checked scenario for each silence leaves.
 
 use std::path::PathBuf;
 

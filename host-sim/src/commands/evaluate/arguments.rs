@@ -1,4 +1,4 @@
-//! What can follow `evaluate`: arguments enter, raw values leave.
+//! The arguments of `evaluate`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The options of `evaluate`: raw values enter; recordings that have been read and that belong together leave.
+//! The options of `evaluate`: typed values enter; recordings that have been read and that belong together leave.
 
 use super::arguments::EvaluateArguments;
 use crate::commands::ending::Destination;

@@ -1,4 +1,4 @@
-//! What can follow `gains` on the command line: arguments enter, raw values leave.
+//! The arguments of `gains`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What can follow `hil` on the command line: arguments enter, raw values leave.
+//! The arguments of `hil`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

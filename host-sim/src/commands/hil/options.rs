@@ -1,4 +1,4 @@
-//! The command line of `hil` as it is meant: raw values enter, a checked setup leaves.
+//! The options of `hil`: typed values enter, a checked setup leaves.
 
 use super::arguments::HilArguments;
 use super::fault::{Fault, Kind};

@@ -1,4 +1,4 @@
-//! What can follow `motions` on the command line: arguments enter, raw values leave.
+//! The arguments of `motions`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

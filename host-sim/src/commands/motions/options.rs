@@ -1,4 +1,4 @@
-//! The command line of `motions` as it is meant: raw values enter, checked ones leave.
+//! The options of `motions`: typed values enter, checked ones leave.
 
 use super::arguments::MotionsArguments;
 use crate::commands::ending::Destination;

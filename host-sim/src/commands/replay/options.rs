@@ -1,4 +1,4 @@
-//! The command line of `replay` as it is meant: raw values enter, a log to read and a checked configuration leave.
+//! The options of `replay`: typed values enter, a log to read and a checked configuration leave.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};

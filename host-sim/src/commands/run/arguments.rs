@@ -1,4 +1,4 @@
-//! The command line of `run` as it is typed.
+//! The arguments of `run`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ pub struct RunSettings {
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
-    /// So many seeds, from `--seed` on, on all cores; for a corridor
+    /// Number of seeds, from `--seed` on; they run on all cores. Corridors only
     #[arg(long, value_name = "N")]
     pub seeds: Option<u64>,
 
@@ -29,22 +29,22 @@ pub struct RunSettings {
     #[arg(long)]
     pub list: bool,
 
-    /// Measure how fast so many vehicles at once are simulated, in corridors side by side; for a corridor. A report says it of
-    /// 10,30,100,300
+    /// Measure how fast the program simulates these numbers of vehicles at once, in corridors side by side [with a report:
+    /// 10,30,100,300]. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub vehicles: Option<Vec<usize>>,
 
-    /// More traffic: so many vehicles a minute in all, each with the envelope and without it, by the scenario's link and by a
-    /// perfect one, instead of everything else; for a corridor. At the scenario's length that can take an hour; stderr
-    /// says after each run what is done and what is left
+    /// Try these amounts of traffic, in vehicles a minute, and nothing else. Each is run with and without the envelope, over
+    /// the scenario's link and over a perfect one. This can take an hour; stderr says after each run what is done and what
+    /// is left. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub demand: Option<Vec<f64>>,
 
-    /// How many peers every unit has slots for, instead of the scenario's; several numbers with `--demand`; for a corridor
+    /// Number of peers for which every unit has slots, instead of the scenario's; several with `--demand`. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub slots: Option<Vec<usize>>,
 
-    /// Draw a one-page picture, for a corridor: trajectories, errors, and ours beside seven other methods
+    /// Draw a picture of one page: trajectories, errors, and our method beside seven others. Corridors only
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
 
@@ -61,7 +61,7 @@ pub struct RunSettings {
     pub channel_trace: Option<PathBuf>,
 
     /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead.
-    /// The sides of a corridor are without and with it in any case; its excerpts and figures are then with it
+    /// A corridor is always run without and with it; with this option its excerpts and figures are those with it
     #[arg(long)]
     pub envelope: bool,
 

@@ -1,4 +1,4 @@
-//! The options of `run` for a string of vehicles: raw values enter, checked options or an error leave.
+//! The options of `run` for a string of vehicles: typed values enter, checked options or an error leave.
 
 use std::path::{Path, PathBuf};
 

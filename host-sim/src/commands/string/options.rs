@@ -1,4 +1,4 @@
-//! The command line of `string` as it is meant: raw values enter, checked ones leave.
+//! The options of `string`: typed values enter, checked ones leave.
 
 use holdover::parameters;
 

@@ -1,4 +1,4 @@
-//! What can follow `sweep` on the command line: arguments enter, raw values leave.
+//! The arguments of `sweep`, as they are typed.
 
 use clap::Args;
 use std::path::PathBuf;

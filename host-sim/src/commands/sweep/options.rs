@@ -1,4 +1,4 @@
-//! The command line of `sweep` as it is meant: raw values enter, a checked scenario for each step leaves.
+//! The options of `sweep`: typed values enter, a checked scenario for each step leaves.
 
 use std::path::PathBuf;
 

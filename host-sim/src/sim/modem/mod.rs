@@ -10,19 +10,19 @@
 //! but one in a slot that ceases to matter is until the unit has heard that. So is one that was put out of its slot, while nobody
 //! else has spoken there: to the unit it is still where it was, and may be waited for.
 //!
-//! *ParameterParts* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
-//! every [`INTENT_EVERY_S`], so that all of them fit the bus.
+//! *Driving parameters* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
+//! every [`PARAMETERS_EVERY_S`], so that all of them fit the bus.
 
 use holdover::wire::driving_parameters::DrivingParameters;
-use holdover::wire::horizon::Knots;
-use holdover::wire::motion::Motion;
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 mod relevance;
+mod transmitter;
 mod unserved;
 
 pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
+pub use transmitter::{Transmitter, V2xMessage};
 pub use unserved::UNSERVED_EVERY_S;
 
 /// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
@@ -39,7 +39,7 @@ const NEWS: u8 = 4;
 
 /// On a route a slot's first driving parameters are relayed with each message, so many of them, because the unit trusts an identifier from its
 /// second frame on, and a vehicle may fall silent before half a second has gone by.
-const FIRST_INTENTS: u8 = 3;
+const FIRST_PARAMETERS: u8 = 3;
 
 /// A station that has not been relayed for longer than this has paused.
 const PAUSE_S: f64 = 0.45;
@@ -57,51 +57,8 @@ const HEARD_S: f64 = 1.0;
 /// to the wrong station rests for longer than that before it can be another one's. Everyone says where it is five times a second.
 const LISTENS_S: f64 = 0.6;
 
-/// Time between two relays of driving parameters that does not change.
-pub const INTENT_EVERY_S: f64 = 0.5;
-
-/// What one vehicle broadcasts at once.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct V2xMessage {
-    /// Its state.
-    pub motion: Motion,
-    /// How it drives; `None` if it does not say.
-    pub parameters: Option<DrivingParameters>,
-    /// Its horizon from that state, if it computed one.
-    pub horizon: Option<Knots>,
-    /// Where it is on its route, if it has one.
-    pub route: Option<Route>,
-}
-
-/// What the unit said since the last broadcast.
-#[derive(Clone, Debug, Default)]
-pub struct Transmitter {
-    motion: Option<Motion>,
-    parameters: Option<DrivingParameters>,
-    horizon: Option<Knots>,
-    route: Option<Route>,
-}
-
-impl Transmitter {
-    /// Takes in one of the unit's own messages.
-    pub fn take(&mut self, said: &Said) {
-        match said {
-            Said::Motion(motion) => self.motion = Some(*motion),
-            Said::DrivingParameters(parameters) => self.parameters = Some(*parameters),
-            Said::Horizon(knots) => self.horizon = Some(*knots),
-            Said::Route(route) => self.route = Some(*route),
-            Said::Geo(_) => {}
-        }
-    }
-
-    /// What is to be broadcast now, if the unit has said where it is. An driving parameters holds until the next one.
-    pub fn broadcast(&mut self) -> Option<V2xMessage> {
-        let motion = self.motion.take()?;
-        let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
-        let route = self.route.take().filter(|route| route.tag == motion.tag);
-        Some(V2xMessage { motion, parameters: self.parameters, horizon, route })
-    }
-}
+/// Time between two relays of driving parameters that do not change.
+pub const PARAMETERS_EVERY_S: f64 = 0.5;
 
 /// A slot in use.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +70,7 @@ struct Tenant {
     from_s: f64,
     /// Whether it has been relayed.
     relayed: bool,
-    /// How many of its driving parameters have been relayed, up to [`FIRST_INTENTS`].
+    /// How many of its driving parameters have been relayed, up to [`FIRST_PARAMETERS`].
     parameter_messages: u8,
     /// How often it has been relayed since it ceased to matter.
     gone: u8,
@@ -388,13 +345,13 @@ impl Relay {
     fn is_parameters_due(&mut self, slot: usize, parameters: &DrivingParameters, at_s: f64) -> bool {
         let is_on_route = self.course.is_on_route();
         let Some(tenant) = &mut self.slots[slot] else { return false };
-        let is_due = is_on_route && tenant.parameter_messages < FIRST_INTENTS
+        let is_due = is_on_route && tenant.parameter_messages < FIRST_PARAMETERS
             || tenant
                 .parameters
-                .is_none_or(|(last, last_s)| last != *parameters || at_s - last_s >= INTENT_EVERY_S - 1e-9);
+                .is_none_or(|(last, last_s)| last != *parameters || at_s - last_s >= PARAMETERS_EVERY_S - 1e-9);
         if is_due {
             tenant.parameters = Some((*parameters, at_s));
-            tenant.parameter_messages = tenant.parameter_messages.saturating_add(1).min(FIRST_INTENTS);
+            tenant.parameter_messages = tenant.parameter_messages.saturating_add(1).min(FIRST_PARAMETERS);
         }
         is_due
     }

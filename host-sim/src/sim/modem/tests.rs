@@ -4,7 +4,8 @@ use super::*;
 use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
 use holdover::wire::driving_parameters::Limits;
-use holdover::wire::motion::WirePosition;
+use holdover::wire::horizon::Knots;
+use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::{Predecessor, Received, Receiver, Role};
 
 fn message(station: u8, parameters: Option<DrivingParameters>) -> V2xMessage {

@@ -5,12 +5,13 @@ use std::io;
 use super::Vehicle;
 use crate::sim::air::Arrived;
 
-/// For so long a unit has been engaged when its vehicle appears, so that its first message already says how it will drive.
+/// A unit is engaged for this time before its vehicle appears, in seconds, so that its first message already says how it
+/// will drive.
 const ENGAGED_S: f64 = 0.25;
 
 impl Vehicle {
-    /// A tick before it appears: it comes up at constant speed and will be `there_m` after `before_s`; its sensors and its
-    /// time base speak.
+    /// The sensors and the time base speak in a tick before the vehicle appears. It drives at constant speed, and will be at
+    /// `there_m` after `before_s`.
     ///
     /// # Errors
     /// The bus's.
@@ -19,9 +20,10 @@ impl Vehicle {
         self.speak(at_s, period_s, None)
     }
 
-    /// The time before it appears, as every real unit knows it: it has power and ticks, its time base and its sensors
-    /// speak, the driver drives at constant speed and engages it only a moment before the end, and it hears what arrives of the
-    /// others. It ends before the tick at `until_s`, with the vehicle where it was.
+    /// The ticks before the vehicle appears, as every real unit knows them: the unit has power and ticks, its time base and
+    /// its sensors speak, and it hears what arrives from the others. The driver drives at constant speed, and engages the
+    /// unit only a moment before the end. The last of these ticks is the one before `until_s`; the vehicle is then where it
+    /// was.
     ///
     /// # Errors
     /// The bus's.
