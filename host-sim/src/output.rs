@@ -5,7 +5,7 @@
 use crate::error::Error;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, Write};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Prints results on stdout. A reader that has gone has what it wanted: a broken pipe is no error.
@@ -46,7 +46,7 @@ pub struct LongRuns {
     bar: ProgressBar,
     since: Instant,
     runs: usize,
-    done: AtomicUsize,
+    done: Mutex<usize>,
 }
 
 impl LongRuns {
@@ -55,15 +55,17 @@ impl LongRuns {
     pub fn new(runs: usize) -> Self {
         let bar = progress(runs as u64);
         bar.enable_steady_tick(Duration::from_secs(1));
-        Self { bar, since: Instant::now(), runs, done: AtomicUsize::new(0) }
+        Self { bar, since: Instant::now(), runs, done: Mutex::new(0) }
     }
 
     /// One more is done.
     pub fn done(&self, which: &str) {
-        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        // Locked until the line is said, so that the lines come in order.
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        *done += 1;
         self.bar.inc(1);
         if self.bar.is_hidden() {
-            say(&line(done, self.runs, which, self.since.elapsed()));
+            say(&line(*done, self.runs, which, self.since.elapsed()));
         }
     }
 
