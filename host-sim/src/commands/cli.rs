@@ -1,13 +1,13 @@
 //! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
 //! decided in [`crate::commands::options`].
 
-use crate::commands::capture::{self, arguments::CaptureArguments};
 use crate::commands::ecu::{self, arguments::EcuArguments};
 use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
 use crate::commands::evaluate::{self, arguments::EvaluateArguments};
 use crate::commands::gains::{self, arguments::GainsArguments};
 use crate::commands::hil::{self, arguments::HilArguments};
 use crate::commands::motions::{self, arguments::MotionsArguments};
+use crate::commands::record::{self, arguments::RecordArguments};
 use crate::commands::replay::{self, arguments::ReplayArguments};
 use crate::commands::run::arguments::{AFTER_HELP, RunArguments, RunSettings};
 use crate::commands::string::{self, arguments::StringArguments};
@@ -59,8 +59,8 @@ pub enum Command {
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),
     /// Record the traffic of a CAN interface
-    #[command(after_help = capture::arguments::AFTER_HELP)]
-    Record(CaptureArguments),
+    #[command(after_help = record::arguments::AFTER_HELP)]
+    Record(RecordArguments),
     /// Be an onboard unit on a CAN interface
     #[command(after_help = ecu::arguments::AFTER_HELP)]
     Ecu(EcuArguments),

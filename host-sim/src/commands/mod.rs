@@ -4,7 +4,6 @@
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
 //! ```
 
-pub mod capture;
 pub mod cli;
 pub mod corridor;
 pub mod ecu;
@@ -15,6 +14,7 @@ pub mod gains;
 pub mod hil;
 pub mod motions;
 pub mod options;
+pub mod record;
 pub mod replay;
 pub mod run;
 pub mod string;

@@ -1,7 +1,6 @@
 //! The command line as it is meant: typed values enter; options that have been checked, with every input file read, or
 //! an error leave. After this only writing can fail.
 
-use crate::commands::capture::CaptureOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::ecu::options::EcuOptions;
@@ -10,13 +9,14 @@ use crate::commands::evaluate::options::EvaluateOptions;
 use crate::commands::gains::GainsOptions;
 use crate::commands::hil::options::HilOptions;
 use crate::commands::motions::options::MotionsOptions;
+use crate::commands::record::RecordOptions;
 use crate::commands::replay::options::ReplayOptions;
 use crate::commands::run::arguments::RunArguments;
 use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    capture, corridor, ecu, envelope_cost, evaluate, gains, hil, motions, replay, run, string, sweep,
+    corridor, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -47,7 +47,7 @@ pub enum Options {
     /// Replay a log.
     Replay(ReplayOptions),
     /// Record an interface.
-    Record(CaptureOptions),
+    Record(RecordOptions),
     /// Be a unit.
     Ecu(EcuOptions),
     /// Judge one.
@@ -69,7 +69,7 @@ impl Options {
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
             Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
-            Some(Command::Record(arguments)) => CaptureOptions::read(arguments).map(Self::Record),
+            Some(Command::Record(arguments)) => RecordOptions::read(arguments).map(Self::Record),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
             Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
             None => Self::of_run(RunArguments { scenario: None, settings: cli.run }),
@@ -99,14 +99,14 @@ impl Options {
             Self::Run(options) => run::run(options),
             Self::Corridor(options) => corridor::run(options),
             Self::List => output::print(&library::list()).map(|()| Verdict::Pass),
-            Self::Evaluate(options) => evaluate::evaluate(options),
-            Self::Sweep(options) => sweep::sweep(options),
-            Self::Gains(options) => gains::gains(options),
-            Self::String(options) => string::string(options),
-            Self::Motions(options) => motions::motions(options),
+            Self::Evaluate(options) => evaluate::run(options),
+            Self::Sweep(options) => sweep::run(options),
+            Self::Gains(options) => gains::run(options),
+            Self::String(options) => string::run(options),
+            Self::Motions(options) => motions::run(options),
             Self::EnvelopeCost(options) => envelope_cost::run(options),
-            Self::Replay(options) => replay::replay(options),
-            Self::Record(options) => capture::capture(options),
+            Self::Replay(options) => replay::run(options),
+            Self::Record(options) => record::run(options),
             Self::Ecu(options) => ecu::run(options),
             Self::Hil(options) => hil::run(options),
         }

@@ -35,7 +35,7 @@ use sample::Outcome;
 ///
 /// # Errors
 /// Places that cannot be written.
-pub fn evaluate(options: &EvaluateOptions) -> Result<Verdict, Error> {
+pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
     let start = Instant::now();
     let outcomes = outcomes(options)?;
     let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();

@@ -103,7 +103,7 @@ impl Table {
 ///
 /// # Errors
 /// Places that cannot be written.
-pub fn gains(options: &GainsOptions) -> Result<Verdict, Error> {
+pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
     let table = Table::made();
     if let Some(file) = &options.write {
         let text = source::text(&table.curve, &table.cells);

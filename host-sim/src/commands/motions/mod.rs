@@ -39,7 +39,7 @@ struct Results<'a> {
 ///
 /// # Errors
 /// A configuration that the units refuse, and places that cannot be written.
-pub fn motions(options: &MotionsOptions) -> Result<Verdict, Error> {
+pub fn run(options: &MotionsOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
     let rows = rows::run(options.seed, options.silences, || bar.inc(1))?;
     bar.finish_and_clear();

@@ -36,7 +36,7 @@ use summary::Summary;
 ///
 /// # Errors
 /// A log that cannot be read or replayed, and a standard output that cannot be written.
-pub fn replay(options: &ReplayOptions) -> Result<Verdict, Error> {
+pub fn run(options: &ReplayOptions) -> Result<Verdict, Error> {
     match &options.log {
         Some(file) => play(options, file, LogReader::open(file)?),
         None => play(options, Path::new(STDIN), LogReader::new(Path::new(STDIN), io::stdin().lock())),

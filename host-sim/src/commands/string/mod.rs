@@ -40,7 +40,7 @@ struct Results<'a> {
 ///
 /// # Errors
 /// A configuration that the units refuse, and places that cannot be written.
-pub fn string(options: &StringOptions) -> Result<Verdict, Error> {
+pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let bar = output::progress(rows::count(options));
     let rows = rows::run(options, || bar.inc(1))?;
     bar.finish_and_clear();

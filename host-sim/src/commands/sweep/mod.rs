@@ -32,7 +32,7 @@ struct Results<'a> {
 ///
 /// # Errors
 /// A scenario that the units refuse, and places that cannot be written.
-pub fn sweep(options: &SweepOptions) -> Result<Verdict, Error> {
+pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
     let bar = progress(options);
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
     for scenario in &options.scenarios {

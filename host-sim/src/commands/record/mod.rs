@@ -16,14 +16,14 @@ use crate::output;
 use crate::places::can_be_file;
 use crate::sim::quantities::duration;
 use crate::verdict::Verdict;
-use arguments::CaptureArguments;
+use arguments::RecordArguments;
 
 /// Between two looks at whether the time is up, and two flushes of the log.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// A recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CaptureOptions {
+pub struct RecordOptions {
     /// The interface.
     pub interface: String,
     /// The log; `None` is standard output.
@@ -32,13 +32,13 @@ pub struct CaptureOptions {
     pub length: Option<Duration>,
 }
 
-impl CaptureOptions {
+impl RecordOptions {
     /// Checks the arguments.
     ///
     /// # Errors
     /// Values that cannot be.
-    pub fn read(arguments: CaptureArguments) -> Result<Self, Error> {
-        let CaptureArguments { bus, output, duration: length_s } = arguments;
+    pub fn read(arguments: RecordArguments) -> Result<Self, Error> {
+        let RecordArguments { bus, output, duration: length_s } = arguments;
         if let Some(file) = &output {
             can_be_file("--output", file, &[])?;
         }
@@ -53,7 +53,7 @@ impl CaptureOptions {
 ///
 /// # Errors
 /// An interface that cannot be used, and a log that cannot be written.
-pub fn capture(options: &CaptureOptions) -> Result<Verdict, Error> {
+pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
     let mut port = bus::open(&options.interface)?;
     let (name, out): (&Path, Box<dyn Write>) = match &options.file {
         Some(file) => (file, Box::new(File::create(file).map_err(|error| Error::unwritable(file, &error))?)),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// The arguments of `record`.
 #[derive(Clone, Debug, Args)]
-pub struct CaptureArguments {
+pub struct RecordArguments {
     /// The CAN interface
     #[arg(long, value_name = "INTERFACE")]
     pub bus: String,
