@@ -1,42 +1,30 @@
 //! The host harness of holdover: scenario -> world of vehicles (plant + the same core as on the ECU) -> V2X channel
 //! -> CAN bus -> metrics -> report.
+//!
+//! The modules are floors of a house, and imports go down only (`tests/floors.rs` holds that):
+//!
+//! ```text
+//! commands     one for each command: its arguments, options, run, table and page
+//! report       pages and plots
+//! roads        the world of a corridor: roads that cross, and the vehicles on them
+//! measure      figures of a run, the methods that ours is compared with, and the reference in float64
+//! sim          the world of a string: vehicles, plants, sensors, modems and the air between them
+//! bus          CAN buses in memory and in Linux, their faults and their logs
+//! input        scenarios, recordings and the library of scenarios
+//! error, output, parallel, places, seeds, streams, verdict    what every floor stands on
+//! ```
 
-pub mod baseline;
 pub mod bus;
-pub mod candump;
-pub mod capture;
-pub mod channel;
-pub mod cli;
-pub mod corridor;
-pub mod ecu;
+pub mod commands;
 pub mod error;
-pub mod evaluate;
-pub mod figures;
-pub mod gains;
-pub mod ground;
-pub mod heard;
-pub mod hil;
-pub mod library;
-pub mod metrics;
-pub mod modem;
-pub mod motions;
-pub mod observer;
-pub mod options;
+pub mod input;
+pub mod measure;
 pub mod output;
 pub mod parallel;
-pub mod plant;
-pub mod price;
-pub mod recording;
-pub mod reference;
-pub mod replay;
+pub mod places;
 pub mod report;
-pub mod run;
-pub mod scenario;
+pub mod roads;
 pub mod seeds;
-pub mod sensors;
+pub mod sim;
 pub mod streams;
-pub mod string;
-pub mod sweep;
-pub mod vehicle;
 pub mod verdict;
-pub mod world;

@@ -5,6 +5,8 @@
 use crate::error::Error;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, Write};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Prints results on stdout. A reader that has gone has what it wanted: a broken pipe is no error.
 ///
@@ -39,6 +41,47 @@ pub fn progress(runs: u64) -> ProgressBar {
     bar
 }
 
+/// Long runs, of which each says when it is done: a bar on a terminal, and a line for each where there is none.
+pub struct LongRuns {
+    bar: ProgressBar,
+    since: Instant,
+    runs: usize,
+    done: Mutex<usize>,
+}
+
+impl LongRuns {
+    /// So many are to come.
+    #[must_use]
+    pub fn new(runs: usize) -> Self {
+        let bar = progress(runs as u64);
+        bar.enable_steady_tick(Duration::from_secs(1));
+        Self { bar, since: Instant::now(), runs, done: Mutex::new(0) }
+    }
+
+    /// One more is done.
+    pub fn done(&self, which: &str) {
+        // Locked until the line is said, so that the lines come in order.
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        *done += 1;
+        self.bar.inc(1);
+        if self.bar.is_hidden() {
+            say(&line(*done, self.runs, which, self.since.elapsed()));
+        }
+    }
+
+    /// All are done.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// What is done, and what is left if the runs to come take as long as those before them.
+fn line(done: usize, runs: usize, which: &str, spent: Duration) -> String {
+    let left = runs.saturating_sub(done);
+    let each_s = spent.as_secs_f64() / done.max(1) as f64;
+    format!("{done} of {runs} runs done ({which}); {left} left, about {:.0} s", each_s * left as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,6 +95,13 @@ mod tests {
         fn flush(&mut self) -> io::Result<()> {
             Ok(())
         }
+    }
+
+    #[test]
+    fn a_line_of_progress_says_what_is_done_and_what_is_left() {
+        let said = line(3, 8, "30 a minute", Duration::from_secs(60));
+        assert_eq!(said, "3 of 8 runs done (30 a minute); 5 left, about 100 s");
+        assert_eq!(line(8, 8, "x", Duration::from_secs(9)), "8 of 8 runs done (x); 0 left, about 0 s");
     }
 
     #[test]

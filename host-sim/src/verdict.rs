@@ -17,6 +17,12 @@ impl Verdict {
     /// Exit code of bad input; the same that the argument parser uses.
     pub const BAD_INPUT: u8 = 2;
 
+    /// Passed unless something failed.
+    #[must_use]
+    pub fn of<T>(failures: &[T]) -> Self {
+        if failures.is_empty() { Self::Pass } else { Self::Failed }
+    }
+
     /// The exit code of this verdict.
     #[must_use]
     pub const fn code(self) -> u8 {

@@ -14,10 +14,12 @@ use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover::{Config, OnboardUnit};
-use holdover_sim::baseline::Baseline;
-use holdover_sim::baseline::paper::Paper;
-use holdover_sim::observer::Observer;
-use holdover_sim::vehicle::{gnss, metres, speed, station};
+use holdover_sim::measure::baseline::Baseline;
+use holdover_sim::measure::baseline::paper::Paper;
+use holdover_sim::measure::observer::Observer;
+use holdover_sim::sim::quantities::{metres, speed};
+use holdover_sim::sim::station::station;
+use holdover_sim::sim::time::gnss;
 
 const VEHICLES: usize = 3;
 const TICKS: i64 = 900;

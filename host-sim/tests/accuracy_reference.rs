@@ -1,5 +1,5 @@
 //! The fixed-point core against the same discrete equations in float64: random chains enter by the unit's two doors, and
-//! every step of every horizon is within 1 mm and 1 mm/s of [`holdover_sim::reference`] on the same decoded inputs.
+//! every step of every horizon is within 1 mm and 1 mm/s of [`holdover_sim::measure::reference`] on the same decoded inputs.
 
 use std::cell::Cell;
 
@@ -12,8 +12,8 @@ use holdover::wire::quantity::Quantity;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover::{Config, OnboardUnit};
-use holdover_sim::heard::{Heard, HeardParameters};
-use holdover_sim::reference::{
+use holdover_sim::measure::heard::{Heard, HeardParameters};
+use holdover_sim::measure::reference::{
     Ahead, Parameters, PositionRule, State, actuated, demand_follow, demand_lead, faded, limited,
 };
 use proptest::prelude::*;

@@ -1,10 +1,10 @@
 //! The baselines against vectors that `tests/vectors/generate.py` computed independently: by matrix exponentials, by
 //! whole matrices, and by integer time.
 
-use holdover_sim::baseline::{
+use holdover_sim::measure::baseline::{
     Baseline, constant_acceleration::ConstantAcceleration, kalman::Kalman, paper::Paper, singer::Singer,
 };
-use holdover_sim::heard::{Heard, HeardParameters};
+use holdover_sim::measure::heard::{Heard, HeardParameters};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 

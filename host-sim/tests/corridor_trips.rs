@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use holdover_sim::corridor::trips::{HEARD_S, Trip, trips};
-use holdover_sim::corridor::{Corridor, Network, read};
-use holdover_sim::plant::Kind;
-use holdover_sim::scenario::Overrides;
+use holdover_sim::input::kind::Kind;
+use holdover_sim::input::scenario::Overrides;
+use holdover_sim::roads::trips::{HEARD_S, Trip, trips};
+use holdover_sim::roads::{Corridor, Network, read};
 
 /// The corridor with arrivals of a day, and whatever else is said.
 fn a_day(from: &str, to: &str) -> (Corridor, Network) {

@@ -1,10 +1,10 @@
 //! Nothing is ever outside what is certain of it: the paper's scenario over many seeds, with models that are right and
 //! wrong, with and without the envelope and the range sensor.
 
-use holdover_sim::figures::Summary;
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::measure::figures::Summary;
+use holdover_sim::measure::simulate::simulate;
 use holdover_sim::parallel;
-use holdover_sim::run::simulate;
-use holdover_sim::scenario::{Overrides, Scenario};
 use std::path::Path;
 
 /// What is promised of a hundred runs.

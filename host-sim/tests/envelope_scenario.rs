@@ -1,7 +1,7 @@
 //! What the keys of the envelope and of the sensors mean, and what is said of ones that cannot be.
 
 use holdover::config::Envelope;
-use holdover_sim::scenario::{Overrides, RangeSensor, Scenario};
+use holdover_sim::input::scenario::{Overrides, RangeSensor, Scenario};
 use std::path::Path;
 
 fn parse(text: &str) -> Result<Scenario, String> {

@@ -1,6 +1,6 @@
 //! The table of gains that the core ships is the one that the generator makes, and every limit holds.
 
-use holdover_sim::gains::{Table, source};
+use holdover_sim::commands::gains::{Table, source};
 
 #[test]
 fn the_committed_table_is_made_anew_byte_for_byte_and_every_limit_holds() {

@@ -4,7 +4,7 @@ use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use holdover::coordination::Path;
 use holdover::time::Stamp;
 use holdover::wire::geo::GeoPosition;
-use holdover_sim::ground::{Point, path, point_at};
+use holdover_sim::sim::ground::{Point, path, point_at};
 
 /// What a receiver would send: 1e-7°.
 fn geo(latitude: f64, longitude: f64, heading_deg: f64) -> GeoPosition {

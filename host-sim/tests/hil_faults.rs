@@ -3,13 +3,13 @@
 use holdover::time::{Duration, Instant};
 use holdover_sim::bus::Frame;
 use holdover_sim::bus::port::{BusError, Event, Port};
-use holdover_sim::hil::judge::{LATENCY_P99_MS, Results, judge};
-use holdover_sim::hil::outcome::Outcome;
-use holdover_sim::hil::rig::Rig;
-use holdover_sim::hil::session::{self, Setup};
-use holdover_sim::hil::virtual_bus::{Behaviour, VirtualPort, VirtualRig, bench};
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::world;
+use holdover_sim::commands::hil::judge::{LATENCY_P99_MS, Results, judge};
+use holdover_sim::commands::hil::outcome::Outcome;
+use holdover_sim::commands::hil::rig::Rig;
+use holdover_sim::commands::hil::session::{self, Setup};
+use holdover_sim::commands::hil::virtual_bus::{Behaviour, VirtualPort, VirtualRig, bench};
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::sim::world;
 use std::io;
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use embedded_can::{Frame as _, Id, StandardId};
 use holdover::time::Instant;
 use holdover_sim::bus::Frame;
-use holdover_sim::candump::{Content, Entry, LogReader, LogWriter};
+use holdover_sim::bus::candump::{Content, Entry, LogReader, LogWriter};
 use holdover_sim::error::Error;
 use proptest::prelude::*;
 use std::path::Path;

@@ -1,7 +1,8 @@
 //! Facts about the V2X channel, by seed and by recording.
 
-use holdover_sim::channel::{AppliesTo, Channel, ChannelModel, Impairment, Link, OLDEST_S, Window};
-use holdover_sim::recording::ChannelTrace;
+use holdover_sim::input::impairment::{AppliesTo, ChannelModel, Impairment, Link, Window};
+use holdover_sim::input::recording::ChannelTrace;
+use holdover_sim::sim::channel::{Channel, OLDEST_S};
 use std::path::Path;
 
 const LINK: Link = Link { from: 1, to: 2 };

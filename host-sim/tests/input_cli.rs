@@ -1,9 +1,10 @@
 //! What the command line means, and how the program ends when it means nothing.
 
 use clap::{CommandFactory, Parser};
-use holdover_sim::channel::Impairment;
-use holdover_sim::cli::Cli;
-use holdover_sim::options::{Candump, Options, RunOptions};
+use holdover_sim::commands::cli::Cli;
+use holdover_sim::commands::options::Options;
+use holdover_sim::commands::run::options::{Candump, RunOptions};
+use holdover_sim::input::impairment::Impairment;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -37,15 +38,18 @@ fn without_a_command_it_is_run_with_the_same_options() {
 #[test]
 fn the_defaults_are_the_papers_scenario_and_a_report() {
     let run = options("").unwrap();
-    assert_eq!((run.scenario.seed, run.scenario.step_s, run.json), (1, 0.01, false));
-    assert_eq!(run.report.as_deref(), Some(Path::new("holdover-report")));
+    assert_eq!((run.scenario.seed, run.scenario.step_s, run.destination.json), (1, 0.01, false));
+    assert_eq!(run.destination.report.as_deref(), Some(Path::new("holdover-report")));
     assert_eq!((run.scenario_file, run.trace, run.candump), (None, None, None));
 }
 
 #[test]
 fn the_report_can_be_put_elsewhere_or_left_out() {
-    assert_eq!(options("--out no/such/folder/yet").unwrap().report.as_deref(), Some(Path::new("no/such/folder/yet")));
-    assert_eq!(options("--no-report").unwrap().report, None);
+    assert_eq!(
+        options("--out no/such/folder/yet").unwrap().destination.report.as_deref(),
+        Some(Path::new("no/such/folder/yet"))
+    );
+    assert_eq!(options("--no-report").unwrap().destination.report, None);
     assert!(options("--no-report --out x").is_err());
 }
 

@@ -1,7 +1,7 @@
 //! What a recording must be, and what is said of one that is not.
 
 use holdover_sim::error::Error;
-use holdover_sim::recording::{ChannelTrace, Motion};
+use holdover_sim::input::recording::{ChannelTrace, Motion};
 use std::path::Path;
 
 fn motion(bytes: &[u8]) -> Result<Motion, Error> {

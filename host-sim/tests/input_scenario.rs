@@ -1,9 +1,9 @@
 //! What a scenario file means, and what is said of one that cannot be.
 
-use holdover_sim::channel::{AppliesTo, Impairment};
 use holdover_sim::error::Error;
-use holdover_sim::plant::{Difference, Kind};
-use holdover_sim::scenario::{Overrides, Scenario, Span, Start};
+use holdover_sim::input::impairment::{AppliesTo, Impairment};
+use holdover_sim::input::kind::{Difference, Kind};
+use holdover_sim::input::scenario::{Overrides, Scenario, Span, Start};
 use proptest::prelude::*;
 use std::fs;
 use std::path::Path;

@@ -6,7 +6,7 @@ use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
-use holdover_sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
+use holdover_sim::sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
 const WAY: [Ahead; 3] = [ahead(4, 180.0), ahead(5, 380.0), ahead(6, 580.0)];

@@ -3,9 +3,9 @@
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
-use holdover_sim::motions::motion::TargetMotion;
-use holdover_sim::motions::rows::{self, MethodFigures, Row, Standing};
-use holdover_sim::motions::table;
+use holdover_sim::commands::motions::motion::TargetMotion;
+use holdover_sim::commands::motions::rows::{self, MethodFigures, Row, Standing};
+use holdover_sim::commands::motions::table;
 use serde_json::Value;
 
 static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| rows::run(1, 50, || {}).unwrap());

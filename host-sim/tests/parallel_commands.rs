@@ -106,8 +106,8 @@ fn motions_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
-fn price_is_the_same_on_any_number_of_threads() {
-    is_the_same_on_all(folder().path(), "price paper.toml --silences 1 --seeds 2");
+fn envelope_cost_is_the_same_on_any_number_of_threads() {
+    is_the_same_on_all(folder().path(), "envelope-cost paper.toml --silences 1 --seeds 2");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The reference against strings of eight vehicles that `tests/vectors/generate.py` stepped independently.
 
-use holdover_sim::reference::horizon::chain;
-use holdover_sim::reference::{Parameters, PositionRule, State};
+use holdover_sim::measure::reference::horizon::chain;
+use holdover_sim::measure::reference::{Parameters, PositionRule, State};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! Facts about the figures of merit, with values dense around each boundary.
 
-use holdover_sim::metrics::*;
+use holdover_sim::measure::metrics::*;
 use proptest::prelude::*;
 
 /// Values at, just beside, and well beside a boundary.

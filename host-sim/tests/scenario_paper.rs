@@ -5,11 +5,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use holdover_sim::figures::{Errors, Summary, Timing};
+use holdover_sim::commands::sweep::rows;
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::measure::figures::{Errors, Summary, Timing};
+use holdover_sim::measure::simulate::simulate;
 use holdover_sim::parallel;
-use holdover_sim::run::simulate;
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::sweep::rows;
 
 const SEEDS: u64 = 100;
 /// The figures are deterministic; the documents give them to the millimetre.

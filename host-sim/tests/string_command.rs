@@ -3,10 +3,10 @@
 use std::process::{Command, Output};
 
 use clap::Parser;
-use holdover_sim::cli::Cli;
-use holdover_sim::options::Options;
-use holdover_sim::string::options::{StringOptions, shipped_time_gap_s};
-use holdover_sim::string::rows::{self, LIMIT, Row};
+use holdover_sim::commands::cli::Cli;
+use holdover_sim::commands::options::Options;
+use holdover_sim::commands::string::options::{StringOptions, shipped_time_gap_s};
+use holdover_sim::commands::string::rows::{self, LIMIT, Row};
 
 fn options(arguments: &str) -> StringOptions {
     let words = ["holdover-sim", "string"].into_iter().chain(arguments.split_whitespace());

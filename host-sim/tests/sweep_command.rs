@@ -2,7 +2,7 @@
 
 use std::process::{Command, Output};
 
-use holdover_sim::metrics::{max_abs, percentile_abs};
+use holdover_sim::measure::metrics::{max_abs, percentile_abs};
 use serde_json::Value;
 
 fn sweep(arguments: &str, threads: &str) -> Output {

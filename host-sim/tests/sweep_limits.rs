@@ -1,8 +1,8 @@
 //! The accuracy that the product claims: the worst of 100 seeds of the paper's scenario at each prediction step is what the
 //! documents say, of ours and of the literal paper.
 
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::sweep::rows::run;
+use holdover_sim::commands::sweep::rows::run;
+use holdover_sim::input::scenario::{Overrides, Scenario};
 
 /// Prediction step in seconds; largest error and 99th percentile of ours, and of the literal paper, in metres, as documented.
 const DOCUMENTED: [(f64, [f64; 2], [f64; 2]); 7] = [

@@ -3,6 +3,7 @@
 //! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are middleware
 //! that wraps a node of any bus. [`port`] is for those who live by the bus's time.
 
+pub mod candump;
 pub mod fault;
 pub mod frame;
 pub mod memory;

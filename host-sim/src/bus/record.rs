@@ -1,7 +1,7 @@
 //! Recording in front of a node of any bus: everything that it sends and receives is written to a candump log.
 
 use super::{Bus, Frame};
-use crate::candump::LogWriter;
+use crate::bus::candump::LogWriter;
 use holdover::time::Instant;
 use std::io::{self, Write};
 

@@ -8,12 +8,12 @@ use std::process::Command;
 
 use documented::{Documents, differences};
 use holdover::time::Duration;
-use holdover_sim::hil::judge::judge;
-use holdover_sim::hil::lock_step;
-use holdover_sim::hil::session::{self, Setup};
-use holdover_sim::hil::virtual_bus::{Behaviour, bench};
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::world;
+use holdover_sim::commands::hil::judge::judge;
+use holdover_sim::commands::hil::lock_step;
+use holdover_sim::commands::hil::session::{self, Setup};
+use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::sim::world;
 use serde_json::Value;
 
 fn run(folder: &Path, arguments: &str, threads: &str) -> Value {
@@ -132,7 +132,7 @@ fn the_keys_of_hil_are_the_documented_ones() {
     let scenario = Scenario::parse(Path::new("hil"), "duration_s = 4", &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = vec!["corrupt@1:1".parse().unwrap()];
-    let latency_p99_ms = holdover_sim::hil::judge::LATENCY_P99_MS;
+    let latency_p99_ms = holdover_sim::commands::hil::judge::LATENCY_P99_MS;
     let setup = Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms, faults };
     let json = |is_in_steps: bool| {
         let (port, mut rig) = bench(Behaviour::good(setup.config, is_in_steps));

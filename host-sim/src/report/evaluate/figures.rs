@@ -1,7 +1,7 @@
 //! The figures of an evaluation's report: series enter, figures with their captions leave onto the page.
 
 use super::{Classes, Drive, EvaluateReport, Method, spoken};
-use crate::metrics::max_abs;
+use crate::measure::metrics::max_abs;
 use crate::report::{
     page::Page,
     plot::{Axis, Bars, Chart, Figure, Guide, Interval, Layer, Series, Tone, cumulative},

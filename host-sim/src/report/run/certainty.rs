@@ -6,14 +6,10 @@ use super::{
     figures::unlabelled,
     prose::{NOTHING, plain},
 };
-use crate::{
-    metrics::percentile_abs,
-    report::{
-        markup::{count, quantity},
-        page::Page,
-        plot::{Axis, Guide, Layer, Series, Tone},
-    },
-};
+use crate::measure::metrics::percentile_abs;
+use crate::report::markup::{count, quantity};
+use crate::report::page::Page;
+use crate::report::plot::{Axis, Guide, Layer, Series, Tone};
 
 /// The panel that shows the usual width is cut off at this many times the usual distance from the estimate to an end.
 const CUT_AT: f64 = 4.0;

@@ -1,13 +1,9 @@
 //! The figures of a run's report: series enter, figures with their captions leave onto the page.
 
 use super::RunReport;
-use crate::{
-    metrics::{SETTLED_FROM_S, errors_since, max_abs},
-    report::{
-        page::Page,
-        plot::{Axis, Category, Chart, Guide, Interval, Layer, Series, Strip, StripRow, Tone, cumulative},
-    },
-};
+use crate::measure::metrics::{SETTLED_FROM_S, errors_since, max_abs};
+use crate::report::page::Page;
+use crate::report::plot::{Axis, Category, Chart, Guide, Interval, Layer, Series, Strip, StripRow, Tone, cumulative};
 
 /// The paper's own bound on its error, in metres.
 const PAPER_BOUND_M: f64 = 0.5;

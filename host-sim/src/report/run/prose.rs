@@ -1,13 +1,9 @@
 //! The captions of a run's report: series enter, a sentence or two with their numbers leave.
 
 use super::RunReport;
-use crate::{
-    metrics::{SETTLED_FROM_S, error_statistics_since, percentile_abs},
-    report::{
-        markup::{count, quantity, significant},
-        plot::{Series, StripRow},
-    },
-};
+use crate::measure::metrics::{SETTLED_FROM_S, error_statistics_since, percentile_abs};
+use crate::report::markup::{count, quantity, significant};
+use crate::report::plot::{Series, StripRow};
 
 pub(super) const NOTHING: &str = "There is nothing to show: the run has no samples of this kind.";
 
@@ -171,7 +167,7 @@ impl RunReport {
     }
 }
 
-fn settled(series: &Series) -> crate::metrics::ErrorStatistics {
+fn settled(series: &Series) -> crate::measure::metrics::ErrorStatistics {
     let points: Vec<(f64, f64)> = series.points.iter().copied().filter(|point| point.1.is_finite()).collect();
     error_statistics_since(&points, SETTLED_FROM_S)
 }

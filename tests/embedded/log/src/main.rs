@@ -18,8 +18,8 @@ use holdover_replay::{Event, Frame, RECORD, config, decode, encode, live, refusa
 use holdover_sim::bus::Bus;
 use holdover_sim::bus::fault::{FaultModel, Faults};
 use holdover_sim::bus::memory::MemoryBus;
-use holdover_sim::scenario::{Overrides, Scenario};
-use holdover_sim::world::World;
+use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::sim::world::World;
 
 /// The clock of the unit when the run begins.
 const START: Instant = Instant::from_micros(30_000_000);

@@ -1,0 +1,70 @@
+//! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
+//! decided in [`crate::commands::options`].
+
+use crate::commands::ecu::{self, arguments::EcuArguments};
+use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
+use crate::commands::evaluate::{self, arguments::EvaluateArguments};
+use crate::commands::gains::{self, arguments::GainsArguments};
+use crate::commands::hil::{self, arguments::HilArguments};
+use crate::commands::motions::{self, arguments::MotionsArguments};
+use crate::commands::record::{self, arguments::RecordArguments};
+use crate::commands::replay::{self, arguments::ReplayArguments};
+use crate::commands::run::arguments::{AFTER_HELP, RunArguments, RunSettings};
+use crate::commands::string::{self, arguments::StringArguments};
+use crate::commands::sweep::{self, arguments::SweepArguments};
+use clap::{Parser, Subcommand};
+
+/// Drives simulated vehicles, each with the onboard unit's own code, over an impaired V2X channel.
+///
+/// Without a command it does `run`, and without a scenario that is the paper's: five vehicles, the third of them (the
+/// ego) on a channel with delay, loss and a silence of four seconds. It prints how far from the truth the ego's
+/// follower believes the ego to be, beside what the literal paper makes of the same messages, and writes a report with
+/// plots.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
+pub struct Cli {
+    /// What to do; `run` if no command is given.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The settings of `run`, which may stand without the command.
+    #[command(flatten)]
+    pub run: RunSettings,
+}
+
+/// The commands.
+#[derive(Clone, Debug, Subcommand)]
+pub enum Command {
+    /// Run a scenario and report on it
+    #[command(after_help = AFTER_HELP)]
+    Run(RunArguments),
+    /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
+    #[command(after_help = evaluate::arguments::AFTER_HELP)]
+    Evaluate(EvaluateArguments),
+    /// Run a scenario at several prediction steps with many seeds, on all cores
+    #[command(after_help = sweep::arguments::AFTER_HELP)]
+    Sweep(SweepArguments),
+    /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
+    #[command(visible_alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
+    EnvelopeCost(EnvelopeCostArguments),
+    /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
+    #[command(after_help = gains::arguments::AFTER_HELP)]
+    Gains(GainsArguments),
+    /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
+    #[command(after_help = string::arguments::AFTER_HELP)]
+    String(StringArguments),
+    /// Measure the estimate of a target in a silence over five motions, beside seven other methods, on all cores
+    #[command(after_help = motions::arguments::AFTER_HELP)]
+    Motions(MotionsArguments),
+    /// Give a unit the traffic of a recorded CAN bus and print what it sends, or put that traffic on a bus
+    #[command(after_help = replay::arguments::AFTER_HELP)]
+    Replay(ReplayArguments),
+    /// Record the traffic of a CAN interface
+    #[command(after_help = record::arguments::AFTER_HELP)]
+    Record(RecordArguments),
+    /// Be an onboard unit on a CAN interface
+    #[command(after_help = ecu::arguments::AFTER_HELP)]
+    Ecu(EcuArguments),
+    /// Drive an onboard unit on a CAN interface through a scenario, and judge it
+    #[command(after_help = hil::arguments::AFTER_HELP)]
+    Hil(HilArguments),
+}

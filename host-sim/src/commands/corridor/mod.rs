@@ -1,0 +1,154 @@
+//! `run` on a corridor: checked options enter; a table or JSON on stdout, a report and a picture leave; and the verdict.
+
+pub mod cost;
+pub mod demand;
+pub mod options;
+mod page;
+mod picture;
+mod plots;
+pub mod scale;
+mod table;
+mod verdict;
+
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::commands::ending::json;
+use crate::commands::motions::rows::{self, Row};
+use crate::error::Error;
+use crate::output::{self, LongRuns};
+use crate::roads::experiment::{Experiment, STEPS_S, Sides};
+use crate::roads::figures::{StepRow, WrongRow};
+use crate::roads::journal::Journal;
+use crate::verdict::Verdict;
+use options::CorridorOptions;
+
+/// Runs besides those of the seeds: the table of what is wrong.
+const WRONGS: usize = 6;
+
+/// Silences of each motion in the report and the picture, as many as `motions` makes.
+const SILENCES: u32 = 50;
+
+/// Wall-clock figures; everything else is the same for the same seed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Timing {
+    /// How long the runs of all seeds took.
+    pub wall_s: f64,
+    /// Simulated vehicle seconds per second, of all threads together.
+    pub vehicle_seconds_per_s: f64,
+    /// What a tick of the ego's unit costs at each prediction step.
+    pub cost: Vec<cost::Cost>,
+    /// How fast so many vehicles at once are simulated; empty if it is not asked for.
+    pub scale: Vec<scale::Load>,
+}
+
+/// The results.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Results {
+    /// The scenario.
+    pub scenario: String,
+    /// The first seed.
+    pub seed: u64,
+    /// How many.
+    pub seeds: usize,
+    /// The figures of all seeds, beside the references.
+    #[serde(flatten)]
+    pub sides: Sides,
+    /// Whether what follows is with the envelope; the sides are without and with it in any case.
+    pub excerpts_with_envelope: bool,
+    /// How the errors grow with what is wrong.
+    pub wrong: Vec<WrongRow>,
+    /// How the errors grow with the prediction step; empty without a report and a picture.
+    pub steps: Vec<StepRow>,
+    /// What a target does in a silence, and who knows it; empty without a report and a picture.
+    pub motions: Vec<Row>,
+    /// Why it failed; empty if it passed.
+    pub failures: Vec<String>,
+    /// Wall-clock figures.
+    pub timing: Timing,
+}
+
+/// Runs the corridor of the options and writes all that they ask for.
+///
+/// # Errors
+/// A scenario that the units refuse, and places that cannot be written.
+pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
+    let experiment = Experiment::new(options.corridor.clone());
+    if !options.demand.is_empty() {
+        return run_demand(options, &experiment);
+    }
+    let is_drawn = options.destination.report.is_some() || options.picture.is_some();
+    let drawn = if is_drawn { STEPS_S.len() } else { 0 };
+    let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len()) as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
+        bar.set_style(style);
+    }
+    let done = || bar.inc(1);
+    let start = Instant::now();
+    let sides = experiment.sides(&options.seeds, done)?;
+    let wall_s = start.elapsed().as_secs_f64();
+    let first = options.seeds[0];
+    let wrong = experiment.wrong(first, done)?;
+    let steps: Vec<(StepRow, Journal)> = if is_drawn { experiment.steps(first, done)? } else { Vec::new() };
+    let costs: Vec<cost::Cost> = steps
+        .iter()
+        .filter_map(|(row, journal)| {
+            let (config, itinerary) = experiment.ego_unit(first, row.step_s)?;
+            cost::measure(row.step_s, &config, itinerary, &journal.log)
+        })
+        .collect();
+    let mut loads = Vec::new();
+    let engaged = options.corridor.envelope.engaged;
+    let timed = if engaged { &sides.envelope } else { &sides.holdover };
+    if let Some(travel_s) = timed.mean_travel_time_s {
+        for vehicles in &options.vehicles {
+            loads.push(scale::measure(&experiment, first, *vehicles, travel_s)?);
+            done();
+        }
+    }
+    bar.finish_and_clear();
+    let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
+
+    let failures = verdict::failures(&options.corridor.limits, &sides);
+    let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
+        .iter()
+        .map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64)
+        .sum::<f64>();
+    let results = Results {
+        scenario: options.name.clone(),
+        seed: first,
+        seeds: options.seeds.len(),
+        sides,
+        excerpts_with_envelope: engaged,
+        wrong,
+        steps: steps.iter().map(|(row, _)| row.clone()).collect(),
+        motions,
+        failures,
+        timing: Timing { wall_s, vehicle_seconds_per_s: driven_s / wall_s.max(1e-9), cost: costs, scale: loads },
+    };
+    let text = table::text(&results);
+    options.destination.deliver(&results, &text, &text, || page::render(options, &experiment, &results, &steps))?;
+    if let Some(file) = &options.picture {
+        let drawn = picture::draw(&experiment, &results, &steps);
+        std::fs::write(file, drawn).map_err(|error| Error::unwritable(file, &error))?;
+    }
+    Ok(Verdict::of(&results.failures))
+}
+
+/// Tries more traffic, and nothing else.
+fn run_demand(options: &CorridorOptions, experiment: &Experiment) -> Result<Verdict, Error> {
+    let runs = 4 * options.demand.len() * options.slots.len() * options.seeds.len();
+    let progress = LongRuns::new(runs);
+    let rows = demand::run(experiment, &options.demand, &options.slots, &options.seeds, |which| progress.done(which))?;
+    progress.finish();
+    let failures = demand::failures(&rows);
+    if options.destination.json {
+        output::print(&format!("{}\n", json(&rows)?))?;
+    } else {
+        output::print(&demand::text(&rows))?;
+    }
+    failures.iter().for_each(|failure| output::say(failure));
+    Ok(Verdict::of(&failures))
+}

@@ -1,0 +1,123 @@
+//! The options of `run` for a corridor: typed values enter, checked options or an error leave.
+
+use std::path::{Path, PathBuf};
+
+use super::scale::VEHICLES;
+use crate::commands::ending::Destination;
+use crate::commands::run::arguments::RunSettings;
+use crate::error::Error;
+use crate::input::scenario::Overrides;
+use crate::places::can_be_file;
+use crate::roads::description::Corridor;
+use crate::roads::read;
+use crate::seeds;
+use crate::sim::modem::PEERS;
+
+/// More vehicles at once would take gigabytes.
+const MOST_VEHICLES: usize = 10_000;
+
+/// A corridor and what becomes of its results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CorridorOptions {
+    /// The corridor, with what the command line says instead of its file.
+    pub corridor: Corridor,
+    /// What the report calls it.
+    pub name: String,
+    /// The command line that does this again.
+    pub command: String,
+    /// The seeds, from the first on.
+    pub seeds: Vec<u64>,
+    /// Where its results go.
+    pub destination: Destination,
+    /// How fast so many vehicles at once are simulated is to be measured.
+    pub vehicles: Vec<usize>,
+    /// So much traffic is to be tried instead of the scenario's; usually empty.
+    pub demand: Vec<f64>,
+    /// With so many slots.
+    pub slots: Vec<usize>,
+    /// Where to draw the one-page picture.
+    pub picture: Option<PathBuf>,
+}
+
+impl CorridorOptions {
+    /// Reads the corridor in the text of that file, which the user called `named`.
+    ///
+    /// # Errors
+    /// Whatever makes it unusable, options that are not for corridors, and places for output that cannot be written.
+    pub fn read(named: &Path, file: &Path, text: &str, settings: RunSettings) -> Result<Self, Error> {
+        let foreign = [
+            ("--leader-motion", settings.leader_motion.is_some()),
+            ("--channel-trace", settings.channel_trace.is_some()),
+            ("--trace", settings.trace.is_some()),
+            ("--candump", settings.candump.is_some()),
+        ];
+        if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
+            return Err(
+                Error::new("is for a string of vehicles, and this is a corridor", "leave it out").in_option(option)
+            );
+        }
+        let overrides = Overrides {
+            seed: settings.seed,
+            step_s: settings.step,
+            envelope: settings.envelope,
+            ..Overrides::default()
+        };
+        let mut corridor = read::corridor(file, text, &overrides)?;
+        let demand = settings.demand.clone().unwrap_or_default();
+        let most = corridor.most_per_min();
+        if let Some(beyond) = demand.iter().find(|per_min| !(**per_min > 0.0 && **per_min < most)) {
+            let remedy = format!("give numbers above 0 and below {most:.0}");
+            return Err(Error::new(format!("is {beyond}"), remedy).in_option("--demand"));
+        }
+        let slots = slots(settings.slots.clone(), &mut corridor, !demand.is_empty())?;
+        let count = settings.seeds.unwrap_or(1);
+        let seeds = seeds::checked(corridor.seed, count)?.collect();
+        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
+        if let Some(picture) = &settings.picture {
+            can_be_file("--picture", picture, &[named])?;
+        }
+        let usual = if destination.report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
+        let is_given = settings.vehicles.is_some();
+        let vehicles = settings.vehicles.unwrap_or(usual);
+        if let Some(beyond) = vehicles.iter().find(|number| !(1..=MOST_VEHICLES).contains(*number)) {
+            let remedy = format!("give numbers from 1 to {MOST_VEHICLES}");
+            return Err(Error::new(format!("is {beyond}"), remedy).in_option("--vehicles"));
+        }
+        let mut command = format!("holdover-sim run {} --seed {}", named.display(), corridor.seed);
+        if count > 1 {
+            command += &format!(" --seeds {count}");
+        }
+        if let Some(step_s) = settings.step {
+            command += &format!(" --step {step_s}");
+        }
+        if settings.envelope {
+            command += " --envelope";
+        }
+        let listed = |numbers: Vec<String>| numbers.join(",");
+        if !demand.is_empty() {
+            command += &format!(" --demand {}", listed(demand.iter().map(f64::to_string).collect()));
+        }
+        if settings.slots.is_some() {
+            command += &format!(" --slots {}", listed(slots.iter().map(usize::to_string).collect()));
+        }
+        if is_given {
+            command += &format!(" --vehicles {}", listed(vehicles.iter().map(usize::to_string).collect()));
+        }
+        let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
+        Ok(Self { corridor, name, command, seeds, destination, vehicles, demand, slots, picture: settings.picture })
+    }
+}
+
+/// How many slots: those of the command line, which then are the corridor's, or else the corridor's.
+fn slots(said: Option<Vec<usize>>, corridor: &mut Corridor, may_be_several: bool) -> Result<Vec<usize>, Error> {
+    let slots = said.unwrap_or_else(|| vec![corridor.slots]);
+    if let Some(beyond) = slots.iter().find(|slots| !(read::LEAST_SLOTS..=PEERS).contains(*slots)) {
+        let remedy = format!("give from {} to {PEERS}", read::LEAST_SLOTS);
+        return Err(Error::new(format!("is {beyond}"), remedy).in_option("--slots"));
+    }
+    if slots.len() > 1 && !may_be_several {
+        return Err(Error::new("has several numbers", "give one, or `--demand` too").in_option("--slots"));
+    }
+    corridor.slots = slots.first().copied().unwrap_or(corridor.slots);
+    Ok(slots)
+}

@@ -1,0 +1,50 @@
+//! The arguments of `ecu`, as they are typed.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// Which unit it is; also what a device under test is said to be.
+#[derive(Clone, Debug, Default, Args)]
+pub struct UnitArguments {
+    /// The unit's own station, 0 to 255, and otherwise that of a car as it is built into the firmware, which has station 1
+    #[arg(long, value_name = "N", conflicts_with = "vehicle")]
+    pub station: Option<u8>,
+
+    /// The unit of the vehicle with this index in the scenario; the ego's unless given
+    #[arg(long, value_name = "INDEX")]
+    pub vehicle: Option<usize>,
+}
+
+/// The arguments of `ecu`.
+#[derive(Clone, Debug, Args)]
+pub struct EcuArguments {
+    /// The scenario that the unit's vehicle stands in: a file, or `paper`
+    #[arg(value_name = "SCENARIO", default_value = "paper")]
+    pub scenario: PathBuf,
+
+    /// The CAN interface
+    #[arg(long, value_name = "INTERFACE")]
+    pub bus: String,
+
+    /// Tick by the bus's time synchronisation instead of by a clock
+    #[arg(long)]
+    pub lock_step: bool,
+
+    /// The unit.
+    #[command(flatten)]
+    pub unit: UnitArguments,
+}
+
+/// The end of `ecu --help`.
+pub const AFTER_HELP: &str = "\
+Examples:
+  holdover-sim ecu --bus vcan0 &           the unit as a process
+  holdover-sim hil --bus vcan0             and the harness that drives it
+  holdover-sim ecu --bus can0 --station 1  on a real bus, as the firmware would be
+
+It is the same core as on the ECU, behind a socket instead of a CAN controller.
+It runs until it is ended.
+
+Exit codes:
+  0  it was ended
+  2  bad input; one line on stderr names cause and remedy";

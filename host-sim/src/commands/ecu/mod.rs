@@ -1,0 +1,181 @@
+//! `ecu`: the onboard unit as a Linux process in a device's place. Frames of a CAN interface enter, what the unit answers
+//! leaves on it: by a clock every period, or in lock step with the bus's time synchronisation.
+
+pub mod arguments;
+pub mod options;
+
+use std::io::{self, ErrorKind};
+
+use holdover::health::Incident;
+use holdover::time::{Duration, Instant};
+use holdover::{Answer, Config, ConfigError, LockStep};
+
+use crate::bus;
+use crate::bus::port::{Event, Port};
+use crate::error::Error;
+use crate::output;
+use crate::sim::vehicle::Unit;
+use crate::verdict::Verdict;
+use options::{EcuOptions, identifiers};
+
+/// Its clock started so long before its first tick: what a message's stamp dates may lie before that.
+const POWERED_BEFORE: Duration = Duration::from_millis(60_000);
+
+/// Frames that it takes in, at most, before it looks at its clock.
+const AT_ONCE: usize = 256;
+/// Between two looks at the bus in lock step.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// Runs the unit of the options, for ever.
+///
+/// # Errors
+/// An interface that cannot be used, or that goes away.
+pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
+    let mut port = bus::open(&options.bus)?;
+    let failed = |error: &io::Error| {
+        let cause = format!("the interface failed: {error}");
+        Error::new(cause, "see whether it is still there: ip -details link").in_option("--bus")
+    };
+    #[cfg(target_os = "linux")]
+    port.hear_only(identifiers(options.config.base_id)).map_err(|error| failed(&error))?;
+    let mut ecu = Ecu::new(&options.config, options.lock_step).map_err(|cause| {
+        Error::new(format!("the unit refuses its configuration: {cause}"), "change the scenario accordingly")
+    })?;
+    output::say(&format!("a unit with station {} on {}", options.config.station.0, options.bus));
+    live(&mut ecu, &mut port).map_err(|error| failed(&error))?;
+    Ok(Verdict::Pass)
+}
+
+/// Lives on a port, for ever. As in the firmware, what has arrived is taken in before the unit ticks; but no flood of
+/// frames keeps it from ticking.
+fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
+    loop {
+        let wake = ecu.wakes().unwrap_or(port.now().plus(PATIENCE));
+        let mut until = if ecu.is_by_clock() && ecu.wakes().is_none() { port.now() } else { wake };
+        for _ in 0..AT_ONCE {
+            let Some((at, event)) = port.wait(until)? else { break };
+            if let Event::Received(frame) = event
+                && let Some(answer) = ecu.receive(at, &frame)
+            {
+                transmit(ecu, port, &answer)?;
+            }
+            until = wake;
+        }
+        if let Some(answer) = ecu.tick(port.now()) {
+            transmit(ecu, port, &answer)?;
+        }
+    }
+}
+
+/// An interface that is down may come up again, and a full queue may empty.
+fn transmit(ecu: &mut Ecu, port: &mut impl Port, answer: &Answer) -> io::Result<()> {
+    for frame in &answer.frames {
+        match port.send(frame.into()) {
+            Ok(()) => {}
+            Err(error) if matches!(error.kind(), ErrorKind::NetworkDown | ErrorKind::WouldBlock) => {
+                ecu.unit.note(Incident::TransmitOverflow, 1);
+            }
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// The shell around the unit: frames and the time enter, answers leave.
+#[derive(Clone, Debug)]
+pub struct Ecu {
+    unit: Unit,
+    pace: Pace,
+}
+
+/// What makes it tick.
+#[derive(Clone, Debug)]
+enum Pace {
+    /// Its clock; the first tick is at once.
+    Clock {
+        /// Its first tick and the next one.
+        ticks: Option<(Instant, Instant)>,
+    },
+    /// The bus.
+    LockStep(LockStep),
+}
+
+impl Ecu {
+    /// A unit that has just got power.
+    ///
+    /// # Errors
+    /// What the unit finds wrong with its configuration.
+    pub fn new(config: &Config, lock_step: bool) -> Result<Self, ConfigError> {
+        let pace = if lock_step { Pace::LockStep(LockStep::new()) } else { Pace::Clock { ticks: None } };
+        Ok(Self { unit: Unit::new(config)?, pace })
+    }
+
+    /// When it ticks next, by the bus's time; `None`: at once, or when the bus says so.
+    #[must_use]
+    pub fn wakes(&self) -> Option<Instant> {
+        match &self.pace {
+            Pace::Clock { ticks } => ticks.map(|(_, next)| next),
+            Pace::LockStep(_) => None,
+        }
+    }
+
+    /// Whether it ticks by a clock.
+    fn is_by_clock(&self) -> bool {
+        matches!(self.pace, Pace::Clock { .. })
+    }
+
+    /// Ticks if its clock says so. Periods that passed unseen are not made up for.
+    pub fn tick(&mut self, now: Instant) -> Option<Answer> {
+        let Pace::Clock { ticks } = &mut self.pace else { return None };
+        let (start, due) = ticks.unwrap_or((now, now));
+        if now < due {
+            return None;
+        }
+        let period = self.unit.config().period;
+        let passed = now.since(due).as_micros().div_euclid(period.as_micros());
+        *ticks = Some((start, due.plus(period.times(passed + 1))));
+        Some(self.unit.tick(local(start, now)))
+    }
+
+    /// Takes in a frame; in lock step it may make the unit tick.
+    pub fn receive(&mut self, at: Instant, frame: &bus::Frame) -> Option<Answer> {
+        match &mut self.pace {
+            Pace::LockStep(lock_step) => lock_step.receive(&mut self.unit, frame),
+            Pace::Clock { ticks } => {
+                let (start, _) = (*ticks)?;
+                let _ = self.unit.receive(local(start, at), frame); // a refusal is the unit's to count
+                None
+            }
+        }
+    }
+}
+
+/// The unit's own clock at a time of the bus.
+fn local(start: Instant, at: Instant) -> Instant {
+    Instant::from_micros(0).plus(POWERED_BEFORE).plus(at.since(start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use holdover::wire::StationHash;
+
+    fn at(millis: u64) -> Instant {
+        Instant::from_micros(1_700_000_000_000_000 + millis * 1000)
+    }
+
+    #[test]
+    fn it_ticks_every_period_from_its_first_look_at_the_clock_on() {
+        let mut ecu = Ecu::new(&Config::car(StationHash(1)), false).unwrap();
+        let ticked: Vec<u64> = (0..35).filter(|millis| ecu.tick(at(*millis)).is_some()).collect();
+        assert_eq!(ticked, [0, 10, 20, 30]);
+        assert_eq!(ecu.wakes(), Some(at(40)));
+    }
+
+    #[test]
+    fn periods_that_it_slept_through_are_left_out_and_the_beat_is_kept() {
+        let mut ecu = Ecu::new(&Config::car(StationHash(1)), false).unwrap();
+        assert!(ecu.tick(at(0)).is_some() && ecu.tick(at(37)).is_some() && ecu.tick(at(38)).is_none());
+        assert_eq!(ecu.wakes(), Some(at(40)));
+    }
+}

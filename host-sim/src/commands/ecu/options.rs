@@ -1,0 +1,105 @@
+//! The options of `ecu`: typed values enter, a checked configuration of a unit leaves. The harness says
+//! by the same words what its device is.
+
+use std::path::Path;
+
+use holdover::Config;
+use holdover::wire::catalogue::{CATALOGUE, Node, PEERS_OFFSET, SLOT_STRIDE};
+use holdover::wire::{BaseId, StationHash};
+
+use super::arguments::{EcuArguments, UnitArguments};
+use crate::error::Error;
+use crate::input::scenario::{Overrides, Scenario};
+use crate::sim::modem::PEERS;
+use crate::sim::vehicle::STEPS;
+use crate::sim::world;
+
+/// A unit as a process.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EcuOptions {
+    /// The interface.
+    pub bus: String,
+    /// The unit.
+    pub config: Config,
+    /// Whether it ticks by the bus.
+    pub lock_step: bool,
+}
+
+impl EcuOptions {
+    /// Reads what the arguments name and checks it.
+    ///
+    /// # Errors
+    /// Values that cannot be, and a scenario that cannot be used.
+    pub fn read(arguments: &EcuArguments) -> Result<Self, Error> {
+        let scenario = scenario(&arguments.scenario, &Overrides::default())?;
+        let config = unit(&scenario, &arguments.unit)?;
+        Ok(Self { bus: arguments.bus.clone(), config, lock_step: arguments.lock_step })
+    }
+}
+
+/// A scenario by its file, or `paper`.
+///
+/// # Errors
+/// As [`Scenario::read`].
+pub fn scenario(name: &Path, overrides: &Overrides) -> Result<Scenario, Error> {
+    Scenario::read(file_of(name), overrides)
+}
+
+/// The file of a scenario; `None`: it is built in.
+#[must_use]
+pub fn file_of(name: &Path) -> Option<&Path> {
+    (name != Path::new("paper") || name.exists()).then_some(name)
+}
+
+/// The configuration of the unit that the arguments name: of the scenario, or that of the firmware.
+///
+/// # Errors
+/// A vehicle that there is not, and a scenario that a unit refuses.
+pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
+    if let Some(station) = arguments.station {
+        return Ok(Config::car(StationHash(station)));
+    }
+    let vehicle = arguments.vehicle.unwrap_or(scenario.ego);
+    let last = scenario.vehicles.len() - 1;
+    if vehicle > last {
+        let remedy = format!("give an index from 0 to {last}");
+        return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
+    }
+    let config = world::config(scenario, vehicle);
+    config.check(STEPS).map_err(|cause| {
+        Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")
+    })?;
+    Ok(config)
+}
+
+/// The identifiers that a unit listens to.
+pub fn identifiers(base: BaseId) -> impl Iterator<Item = u16> {
+    let heard = CATALOGUE.iter().filter(|line| line.sender != Node::Unit);
+    heard.flat_map(move |line| {
+        let slots = if line.offset >= PEERS_OFFSET { PEERS } else { 1 };
+        (0..slots).map(move |slot| base.plus(line.offset + SLOT_STRIDE * u16::try_from(slot).unwrap_or(0)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_unit_listens_to_the_vehicle_the_modem_and_every_slot() {
+        let ids: Vec<u16> = identifiers(BaseId::DEFAULT).collect();
+        assert_eq!(ids.len(), 8 + 6 * PEERS);
+        assert!(ids.contains(&0x480) && ids.contains(&0x4C0) && ids.contains(&(0x4C0 + 8 * 7 + 5)));
+        assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * u16::try_from(PEERS).unwrap())));
+    }
+
+    #[test]
+    fn the_unit_is_the_scenarios_ego_unless_it_is_the_firmwares() {
+        let paper = scenario(Path::new("paper"), &Overrides::default()).unwrap();
+        assert_eq!(unit(&paper, &UnitArguments::default()).unwrap(), world::config(&paper, 2));
+        let firmware = unit(&paper, &UnitArguments { station: Some(1), vehicle: None }).unwrap();
+        assert_eq!(firmware, Config::car(StationHash(1)));
+        let beyond = unit(&paper, &UnitArguments { station: None, vehicle: Some(5) }).unwrap_err();
+        assert_eq!(beyond.to_string(), "--vehicle: there is no vehicle 5; give an index from 0 to 4");
+    }
+}

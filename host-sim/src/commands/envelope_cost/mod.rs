@@ -1,0 +1,43 @@
+//! `envelope-cost`: what the envelope costs. Checked options enter; a table or JSON on stdout and a report of runs without and
+//! with it leave; and the verdict.
+//!
+//! ```text
+//! scenario with each silence -> rows (all seeds, without and with, on all cores) -> table, JSON, report
+//! ```
+
+pub mod arguments;
+pub mod options;
+mod page;
+pub mod rows;
+pub mod table;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::output;
+use crate::verdict::Verdict;
+use options::EnvelopeCostOptions;
+use rows::Row;
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    rows: &'a [Row],
+}
+
+/// Runs everything and writes what the options ask for.
+///
+/// # Errors
+/// A scenario that the units refuse, and places that cannot be written.
+pub fn run(options: &EnvelopeCostOptions) -> Result<Verdict, Error> {
+    let bar = output::progress(2 * options.seeds * options.scenarios.len() as u64);
+    let seeds = (options.seed, options.seeds);
+    let run = |scenario| rows::run(scenario, seeds, options.distance_m, || bar.inc(1));
+    let rows = options.scenarios.iter().map(run).collect::<Result<Vec<Row>, Error>>()?;
+    bar.finish_and_clear();
+    let failures = rows::failures(&rows);
+    let said: String = failures.iter().map(|failure| format!("verdict: FAILED: {failure}\n")).collect();
+    let page = || page::render(options, &rows, &failures);
+    options.destination.deliver(&Results { rows: &rows }, &table::text(&rows, &failures), &said, page)?;
+    Ok(Verdict::of(&failures))
+}

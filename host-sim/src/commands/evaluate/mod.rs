@@ -1,0 +1,68 @@
+//! `evaluate`: recorded vehicles and a recorded link, or silences, enter; how far from the truth the unit and the
+//! baselines believe the vehicles to be leaves, as a table or JSON, a report and a trace.
+//!
+//! ```text
+//! recording -> publisher -> (link | silence) -> listener: bus -> unit      -> sample -> figures -> table, JSON
+//!                                                             -> baselines                      -> report, trace
+//! ```
+
+pub mod arguments;
+pub mod figures;
+pub mod in_silence;
+pub mod listener;
+pub mod options;
+pub mod over_link;
+mod page;
+pub mod publisher;
+pub mod sample;
+mod table;
+pub mod timeline;
+mod trace;
+
+use std::time::Instant;
+
+use holdover::ConfigError;
+use indicatif::ProgressBar;
+
+use crate::error::Error;
+use crate::parallel;
+use crate::verdict::Verdict;
+use figures::{Results, Timing};
+use options::{EvaluateOptions, Impairment};
+use sample::Outcome;
+
+/// Evaluates what the options name and writes all that they ask for.
+///
+/// # Errors
+/// Places that cannot be written.
+pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
+    let start = Instant::now();
+    let outcomes = outcomes(options)?;
+    let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();
+    let timing = Timing { ticks_per_s: (ticks as f64 / start.elapsed().as_secs_f64().max(1e-9)).round() };
+    let results = Results::pooled(&outcomes, options.lengths_s(), timing);
+    if let Some(file) = &options.trace {
+        trace::write(file, &outcomes)?;
+    }
+    let page = || page::report(options, &outcomes, &results).render();
+    options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page)?;
+    Ok(Verdict::Pass)
+}
+
+/// Every recording, in the order of the command line: in parallel over a link, one after the other with its silences in
+/// parallel.
+fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
+    let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
+    let bar = ProgressBar::new((total_s * 10.0) as u64);
+    let advance = |seconds: f64| bar.inc((seconds * 10.0) as u64);
+    let (recordings, step_s) = (&options.recordings, options.step_s);
+    let over_link = |link, recording| over_link::evaluate(recording, link, step_s, &advance);
+    let in_silence = |lengths_s, recording| in_silence::evaluate(recording, lengths_s, step_s, &advance);
+    let outcomes: Vec<Result<Outcome, ConfigError>> = match &options.impairment {
+        Impairment::Channel(_, link) => parallel::each(recordings, |recording| over_link(link, recording)),
+        Impairment::Outages(lengths_s) => recordings.iter().map(|recording| in_silence(lengths_s, recording)).collect(),
+    };
+    bar.finish_and_clear();
+    let refused = |cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step");
+    outcomes.into_iter().map(|outcome| outcome.map_err(refused)).collect()
+}

@@ -1,0 +1,68 @@
+//! What an evaluation collects: one recording's comparisons of beliefs with the truth.
+
+use holdover::health::Cause;
+
+use super::listener::{Beliefs, METHODS};
+use crate::measure::baseline::Estimate;
+
+/// The names of the methods, as they stand in results: ours, then the baselines.
+pub const NAMES: [&str; METHODS] =
+    ["holdover", "freeze", "constant_speed", "constant_acceleration", "singer", "kalman", "paper"];
+
+/// One instant at which beliefs are compared with the truth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time of the recording.
+    pub at_s: f64,
+    /// Time since the stamp of the newest delivered sample.
+    pub age_s: f64,
+    /// How long the silence has lasted, where silences are measured.
+    pub outage_s: Option<f64>,
+    /// The truth.
+    pub truth: Estimate,
+    /// What each method believes.
+    pub beliefs: Beliefs,
+}
+
+impl Sample {
+    /// The position error of a method.
+    #[must_use]
+    pub fn position_error(&self, method: usize) -> Option<f64> {
+        Some(self.beliefs[method]?.position_m - self.truth.position_m)
+    }
+
+    /// The speed error of a method.
+    #[must_use]
+    pub fn speed_error(&self, method: usize) -> Option<f64> {
+        Some(self.beliefs[method]?.speed_mps - self.truth.speed_mps)
+    }
+}
+
+/// All that one recording gave.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// The comparisons, in the order of time; silences one after the other.
+    pub samples: Vec<Sample>,
+    /// Messages sent.
+    pub sent: usize,
+    /// Messages that were not lost.
+    pub delivered: usize,
+    /// Each message: when it was sent and its delay, in seconds of the recording; `None`: lost.
+    pub messages: Vec<(f64, Option<f64>)>,
+    /// The last instant of the run.
+    pub end_s: f64,
+    /// What the unit refused, by cause.
+    pub refusals: Vec<(Cause, u64)>,
+    /// Ticks that the unit took, for the figure of speed.
+    pub unit_ticks: u64,
+}
+
+/// What the units refused in all outcomes together, by cause; causes that did not occur are left out.
+#[must_use]
+pub fn refusals(outcomes: &[Outcome]) -> Vec<(&'static str, u64)> {
+    let of = |cause: Cause| {
+        let counts = outcomes.iter().flat_map(|outcome| &outcome.refusals).filter(|(other, _)| *other == cause);
+        (cause.name(), counts.map(|(_, count)| count).sum())
+    };
+    Cause::ALL.iter().map(|cause| of(*cause)).filter(|(_, count)| *count > 0).collect()
+}

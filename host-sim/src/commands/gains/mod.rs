@@ -1,0 +1,147 @@
+//! `gains`: eq. 6. Nothing but options enters; the table of gains that the core ships leaves, with the proof of every cell at
+//! the time gap that it is made for and at the shipped one, a report with a picture of it, and the verdict.
+//!
+//! ```text
+//! sound pairs -> curve -> cells (on all cores) -> proofs -> source, JSON, report
+//! ```
+
+pub mod approach;
+pub mod arguments;
+pub mod cell;
+pub mod grid;
+pub mod linear;
+mod page;
+pub mod proof;
+pub mod source;
+
+use std::path::PathBuf;
+
+use holdover::parameters;
+use serde::Serialize;
+
+use crate::commands::ending::Destination;
+use crate::error::Error;
+use crate::output;
+use crate::places::can_be_file;
+use crate::verdict::Verdict;
+use arguments::GainsArguments;
+use cell::Cell;
+use proof::Proof;
+
+/// What becomes of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GainsOptions {
+    /// Where to write it.
+    pub write: Option<PathBuf>,
+    /// Where its results go.
+    pub destination: Destination,
+}
+
+impl GainsOptions {
+    /// Checks what the arguments say.
+    ///
+    /// # Errors
+    /// Places that cannot be written.
+    pub fn read(arguments: GainsArguments) -> Result<Self, Error> {
+        let GainsArguments { write, json, out, no_report } = arguments;
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        if let Some(file) = &write {
+            can_be_file("--write", file, &[])?;
+        }
+        Ok(Self { write, destination })
+    }
+}
+
+/// The table and its proofs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// `γ` in ms over `k`.
+    pub curve: Vec<u32>,
+    /// By own speed, target's speed and headway.
+    pub cells: Vec<Cell>,
+    /// At the time gap that it is made for, and at the shipped one.
+    pub proofs: [Proof; 2],
+    /// What does not hold.
+    pub failures: Vec<String>,
+}
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    cells: usize,
+    curve_gain_milli: Vec<u32>,
+    curve_damping_milli: &'a [u32],
+    proofs: &'a [Proof],
+    failures: &'a [String],
+}
+
+impl Table {
+    /// Searches and proves it.
+    #[must_use]
+    pub fn made() -> Self {
+        let curve = grid::curve();
+        let cells = grid::cells(&curve);
+        let shipped_s = f64::from(parameters::TIME_GAP.to_millis()) / 1e3;
+        let proofs = [linear::DESIGN_TIME_GAP_S, shipped_s].map(|time_gap_s| Proof::at(time_gap_s, &curve, &cells));
+        let failures = proofs.iter().flat_map(|proof| proof.failures.clone()).collect();
+        Self { curve, cells, proofs, failures }
+    }
+
+    fn results(&self) -> Results<'_> {
+        let gain = |point| grid::CURVE_FIRST_MILLI + point * grid::CURVE_STEP_MILLI;
+        Results {
+            cells: self.cells.len(),
+            curve_gain_milli: (0..).map(gain).take(self.curve.len()).collect(),
+            curve_damping_milli: &self.curve,
+            proofs: &self.proofs,
+            failures: &self.failures,
+        }
+    }
+}
+
+/// Makes and proves the table, and writes what the options ask for.
+///
+/// # Errors
+/// Places that cannot be written.
+pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
+    let table = Table::made();
+    if let Some(file) = &options.write {
+        let text = source::text(&table.curve, &table.cells);
+        std::fs::write(file, text).map_err(|error| Error::unwritable(file, &error))?;
+        output::say(&format!("table: {}", file.display()));
+    }
+    let results = table.results();
+    options.destination.deliver(&results, &text(&results), "", || page::render(&table))?;
+    Ok(Verdict::of(results.failures))
+}
+
+fn text(results: &Results) -> String {
+    let proofs: String = results.proofs.iter().map(of_proof).collect();
+    let verdict =
+        if results.failures.is_empty() { "passed".into() } else { format!("FAILED: {}", results.failures.join("; ")) };
+    format!(
+        "{} cells; curve: k {:?}/1000, damping {:?} ms\n{proofs}verdict: {verdict}\n",
+        results.cells, results.curve_gain_milli, results.curve_damping_milli,
+    )
+}
+
+fn of_proof(proof: &Proof) -> String {
+    let [none, car, lazy] = proof.largest_amplification;
+    let nearest = proof.smallest_gap_m.map_or(String::new(), |gap_m| format!("; no collision: {gap_m:.2} m left"));
+    format!(
+        "time gap {} s: everything is asked of {} cells, no collision of {}, nothing of {}\n  \
+         largest amplification: {none:.5} without lag, {car:.5} at 0.3 s, {lazy:.5} at 0.5 s\n  \
+         least margins: {:.1} degrees, {:.2} s\n  \
+         everything: settled in {:.1} s of {:.1} s, {:.2} m into the gap, braking {:.2} m/s²{nearest}\n",
+        proof.time_gap_s,
+        proof.everything_asked,
+        proof.no_collision_asked,
+        proof.nothing_asked,
+        proof.least_phase_margin_deg,
+        proof.least_delay_margin_s,
+        proof.longest_settling_s,
+        proof.settling_limit_s,
+        proof.largest_overshoot_m,
+        proof.hardest_braking_mps2,
+    )
+}

@@ -1,0 +1,279 @@
+//! A run in lock step: device and twin are given the same frames and the same time, step by step, and have to say the same,
+//! bit for bit. A setup, a port and a rig enter, what happened leaves.
+//!
+//! A step: what the world has to say to the device, then a `Sync` and a `FollowUp` that date the step, then the device's
+//! whole answer, as many frames as the twin's. The world goes on when it is there, as fast as the device is.
+
+use std::collections::VecDeque;
+use std::io;
+
+use embedded_can::Frame as _;
+use holdover::LockStep;
+use holdover::time::{Duration, Instant};
+use holdover::wire::catalogue::{Content, Node};
+use holdover::wire::command::Command;
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{BaseId, Message, Sender};
+
+use super::deviation::Deviation;
+use super::lateness::Lateness;
+use super::monitor::Monitor;
+use super::outcome::{Cut, Outcome, Steps};
+use super::rig::Rig;
+use super::session::Setup;
+use super::talk::{Talk, line_of, payload};
+use crate::bus::memory::MemoryNode;
+use crate::bus::port::{Event, Port};
+use crate::bus::{Bus, Frame};
+use crate::measure::paper_beside::PaperBeside;
+use crate::sim::stages::Stages;
+use crate::sim::time::{EPOCH_US, micros};
+use crate::sim::vehicle::Unit;
+use crate::sim::world::World;
+
+/// How long the world speaks before the run, in seconds.
+const WARM_UP_S: f64 = 1.0;
+/// How long an answer may take.
+const PATIENCE: Duration = Duration::from_millis(2000);
+/// Between two pairs that look for a device.
+const PROBE_EVERY: Duration = Duration::from_millis(200);
+
+/// The device's end of the run.
+struct Bench<P> {
+    talk: Talk<P>,
+    seat: MemoryNode,
+    base: BaseId,
+    sender: Sender<0>,
+    sequence: u8,
+    twin: (Unit, LockStep),
+    monitor: Monitor,
+    steps: Steps,
+    foreign: u64,
+    bus_errors: u64,
+    /// When the last step was on the bus.
+    asked: Option<Instant>,
+    answer: VecDeque<(Instant, Frame)>,
+}
+
+/// Runs it; `progress` is told the time of the run, now and then.
+///
+/// # Errors
+/// The port's; a configuration that the unit refuses counts as one.
+pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
+    let Setup { scenario, config, .. } = setup;
+    let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
+    let mut bench = Bench {
+        talk: Talk::new(port, config.base_id),
+        seat: world.give_seat(scenario.ego, setup.alias()),
+        base: config.base_id,
+        sender: Sender::new(config.base_id),
+        sequence: 0,
+        twin: (Unit::new(config).map_err(io::Error::other)?, LockStep::new()),
+        monitor: Monitor::new(config.base_id, config.period),
+        steps: Steps::default(),
+        foreign: 0,
+        bus_errors: 0,
+        asked: None,
+        answer: VecDeque::new(),
+    };
+    bench.talk.dates = false; // a step's time is the world's
+    let mut trace = world.trace();
+    let mut paper = PaperBeside::of(&world, scenario);
+    rig.power(true)?;
+    let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
+    let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
+    let time = |tick: i64| tick as f64 * scenario.period_s;
+    let mut cut = bench.find(setup, time(-warm_up - 1), rig)?;
+    let begun = bench.talk.now();
+    for tick in -warm_up..ticks {
+        if cut.is_some() {
+            break;
+        }
+        let at_s = time(tick);
+        if tick == 0 {
+            world.begin();
+        }
+        if tick < 0 {
+            world.approach(at_s)?
+        } else {
+            world.speak(at_s)?
+        }
+        let own = world.vehicles()[scenario.ego].instant(at_s);
+        let mut frames = Vec::new();
+        while let Some((_, frame)) = bench.seat.receive(own)? {
+            // The step's own pair takes the place of the vehicle's.
+            let content = line_of(bench.base, &frame).map(|line| line.content);
+            if !matches!(content, Some(Content::Sync | Content::FollowUp)) {
+                frames.push(frame);
+            }
+        }
+        let pair = bench.pair(at_s);
+        frames.extend(pair);
+        if !bench.step(at_s, &frames, own)? {
+            cut = Some(Cut::Gone { at_s, ended: rig.has_ended() });
+            break;
+        }
+        if tick < 0 {
+            world.answer(at_s)?;
+        } else {
+            world.act(at_s)?;
+            world.note(at_s, &mut trace);
+            paper.note(&world, at_s, &mut trace)?;
+            world.drive(at_s)?;
+        }
+        if tick % 100 == 0 {
+            progress(at_s);
+        }
+    }
+    let took_s = bench.talk.now().since(begun).as_micros() as f64 * 1e-6;
+    let realtime_factor = time(i64::try_from(trace.times_s.len()).unwrap_or(0)) / took_s.max(1e-6);
+    rig.power(false)?;
+    Ok(Outcome {
+        trace: world.finish(trace)?,
+        monitor: bench.monitor,
+        deviation: Deviation::default(),
+        steps: Some(bench.steps),
+        lateness: Lateness::default(),
+        counts: bench.talk.counts(),
+        foreign: bench.foreign,
+        bus_errors: bench.bus_errors,
+        origin: Instant::from_micros(0),
+        faults: Vec::new(),
+        realtime_factor,
+        cut,
+    })
+}
+
+impl<P: Port> Bench<P> {
+    /// The two frames that date a step.
+    fn pair(&mut self, at_s: f64) -> Vec<Frame> {
+        self.sequence = (self.sequence + 1) % 16;
+        let (sequence, time) = (self.sequence, EPOCH_US.saturating_add_signed(micros(at_s)));
+        let (seconds, micros) = ((time / 1_000_000) as u32, (time % 1_000_000) as u32);
+        let mut frames = Vec::new();
+        for message in [Message::Sync(Sync { sequence, seconds }), Message::FollowUp(FollowUp { sequence, micros })] {
+            let sent = self.sender.send(&message, &mut |frame| frames.push((&frame).into()));
+            debug_assert!(sent.is_ok(), "the catalogue has lines for the time synchronisation");
+        }
+        frames
+    }
+
+    /// Looks for a device by pairs of the same time. The count of its first answer says how many of them it has seen, and
+    /// its twin is given as many.
+    fn find(&mut self, setup: &Setup, at_s: f64, rig: &mut dyn Rig) -> io::Result<Option<Cut>> {
+        let end = self.talk.now().plus(setup.wait);
+        let mut probes: Vec<Vec<Frame>> = Vec::new();
+        while self.talk.now() < end {
+            let pair = self.pair(at_s);
+            probes.push(pair.clone());
+            pair.into_iter().for_each(|frame| self.talk.send(frame));
+            let until = self.talk.now().plus(PROBE_EVERY);
+            self.listen(until, usize::MAX)?;
+            if let Some(first) = self.answer.iter().find_map(|(_, frame)| command(self.base, frame)) {
+                let seen = usize::from(first.tick);
+                // An answer to each pair that it has seen is there, or on its way.
+                self.listen(self.talk.now().plus(PROBE_EVERY), usize::MAX)?;
+                let answers = self.answer.iter().filter_map(|(_, frame)| command(self.base, frame)).count();
+                let Some(unseen) = probes.len().checked_sub(seen + answers - 1).filter(|_| seen == 1) else {
+                    return Ok(Some(Cut::NotFresh { tick: first.tick }));
+                };
+                let probes: Vec<Frame> = probes.into_iter().skip(unseen).flatten().collect();
+                let expected = self.twin(&probes);
+                self.compare(at_s, &expected);
+                return Ok(None);
+            }
+            if let Some(ended) = rig.has_ended() {
+                return Ok(Some(Cut::Silent { waited: setup.wait, ended: Some(ended) }));
+            }
+        }
+        Ok(Some(Cut::Silent { waited: setup.wait, ended: None }))
+    }
+
+    /// One step; whether the device answered at all.
+    fn step(&mut self, at_s: f64, frames: &[Frame], own: Instant) -> io::Result<bool> {
+        frames.iter().for_each(|frame| self.talk.send(*frame));
+        let expected = self.twin(frames);
+        self.listen(self.talk.now().plus(PATIENCE), expected.len())?;
+        let has_answered = !self.answer.is_empty();
+        for (_, frame) in &self.answer {
+            self.seat.send(own, *frame)?;
+        }
+        self.steps.steps += 1;
+        self.compare(at_s, &expected);
+        Ok(has_answered)
+    }
+
+    /// What the twin says to these frames.
+    fn twin(&mut self, frames: &[Frame]) -> Vec<Frame> {
+        let (unit, shell) = &mut self.twin;
+        let answers = frames.iter().filter_map(|frame| shell.receive(unit, frame));
+        answers.flat_map(|answer| answer.frames.iter().map(Frame::from).collect::<Vec<_>>()).collect()
+    }
+
+    /// Listens until then, or until so many frames of the device are there and everything is sent.
+    fn listen(&mut self, until: Instant, enough: usize) -> io::Result<()> {
+        while self.talk.now() < until && (self.answer.len() < enough || !self.talk.is_idle()) {
+            let Self { talk, base, answer, monitor, foreign, bus_errors, asked, .. } = self;
+            let mut is_enough = false;
+            let pause = talk.now().plus(Duration::from_millis(if answer.len() + 1 >= enough { 1 } else { 5 }));
+            talk.pump_while(until.min(pause), |at, event| {
+                match event {
+                    Event::Sent(frame) => {
+                        if line_of(*base, &frame).is_some_and(|line| line.content == Content::FollowUp) {
+                            *asked = Some(at);
+                        }
+                    }
+                    Event::Received(frame) => match line_of(*base, &frame) {
+                        Some(line) if line.sender == Node::Unit => {
+                            if let Some(asked) = asked.take_if(|_| line.content == Content::Command) {
+                                monitor.ask(asked);
+                            }
+                            monitor.hear(at, &frame);
+                            answer.push_back((at, frame));
+                            is_enough = answer.len() >= enough;
+                        }
+                        line => *foreign += u64::from(line.is_some()),
+                    },
+                    Event::Error(_) => *bus_errors += 1,
+                    Event::Down => {}
+                }
+                !is_enough
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Holds the answer against what was expected, frame by frame, and forgets it.
+    fn compare(&mut self, at_s: f64, expected: &[Frame]) {
+        let mut got = self.answer.drain(..);
+        for expected in expected {
+            self.steps.frames += 1;
+            let got = got.next().map(|(_, frame)| frame);
+            if got != Some(*expected) {
+                self.steps.different += 1;
+                self.steps.first.get_or_insert_with(|| {
+                    (at_s, got.map_or("nothing".into(), |frame| spelled(&frame)), spelled(expected))
+                });
+            }
+        }
+        for (_, more) in got {
+            self.steps.frames += 1;
+            self.steps.different += 1;
+            self.steps.first.get_or_insert_with(|| (at_s, spelled(&more), "nothing".into()));
+        }
+    }
+}
+
+/// A command, taken at its word.
+fn command(base: BaseId, frame: &Frame) -> Option<Command> {
+    let line = line_of(base, frame)?;
+    (line.content == Content::Command).then(|| Command::decode(&[payload(frame)]))
+}
+
+fn spelled(frame: &Frame) -> String {
+    let id = match frame.id() {
+        embedded_can::Id::Standard(id) => format!("{:03X}", id.as_raw()),
+        embedded_can::Id::Extended(id) => format!("{:08X}", id.as_raw()),
+    };
+    frame.data().iter().fold(id + "#", |text, byte| text + &format!("{byte:02X}"))
+}

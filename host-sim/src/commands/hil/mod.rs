@@ -1,0 +1,67 @@
+//! `hil`: hardware in the loop. A scenario and a CAN interface with a device on it enter; a verdict on the device, a table
+//! or JSON on stdout and a report leave.
+//!
+//! ```text
+//! world -> talk -> port (SocketCAN) -> device
+//!   ^        `--------> twin            |
+//!   `--- seat <- session <- port <------+-> monitor, deviation -> judge -> table, JSON, report
+//! ```
+//! [`session`] is a run in real time and [`lock_step`] one step by step; [`fault_injector`] presses the fault buttons; a
+//! [`virtual_bus`] tries all of it out without CAN.
+
+pub mod arguments;
+pub mod deviation;
+pub mod fault;
+pub mod fault_injector;
+pub mod judge;
+pub mod lateness;
+pub mod lock_step;
+pub mod monitor;
+pub mod options;
+pub mod outcome;
+mod page;
+pub mod recovery;
+pub mod rig;
+pub mod said;
+pub mod session;
+pub mod spread;
+pub mod table;
+pub mod talk;
+pub mod twin;
+pub mod virtual_bus;
+
+use indicatif::ProgressBar;
+
+use crate::bus;
+use crate::error::Error;
+use crate::verdict::Verdict;
+use judge::judge;
+use options::HilOptions;
+use rig::MachineRig;
+
+/// Runs the setup of the options and writes all that they ask for.
+///
+/// # Errors
+/// An interface that cannot be used, and places that cannot be written.
+pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
+    let port = bus::open(&options.bus)?;
+    let mut rig = MachineRig::new(&options.bus, options.device.clone());
+    let bar = ProgressBar::new(1000);
+    let duration_s = options.setup.scenario.duration_s;
+    let progress = |at_s: f64| bar.set_position((at_s / duration_s * 1000.0).max(0.0) as u64);
+    let outcome = if options.lock_step {
+        lock_step::run(&options.setup, port, &mut rig, progress)
+    } else {
+        session::run(&options.setup, port, &mut rig, progress)
+    };
+    drop(rig);
+    bar.finish_and_clear();
+    let outcome = outcome.map_err(|error| {
+        let cause = format!("the run ended: {error}");
+        Error::new(cause, "see whether the interface is still there: ip -details link").in_option("--bus")
+    })?;
+    let results = judge(&options.setup, &outcome);
+    let text = table::text(&results);
+    options.destination.deliver(&results, &text, &text, || page::render(options, &outcome, &results))?;
+    Ok(results.code())
+}

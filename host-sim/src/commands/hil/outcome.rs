@@ -1,0 +1,91 @@
+//! What a bench run brought, before anybody judges it.
+
+use holdover::time::{Duration, Instant};
+
+use super::deviation::Deviation;
+use super::fault_injector::Played;
+use super::lateness::Lateness;
+use super::monitor::Monitor;
+use super::talk::Counts;
+use crate::sim::world::Trace;
+
+/// Why a run ended before its time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cut {
+    /// The device never said anything.
+    Silent {
+        /// How long it was waited for.
+        waited: Duration,
+        /// How its process ended, if it did.
+        ended: Option<String>,
+    },
+    /// The device fell silent and stayed so.
+    Gone {
+        /// Since when, in seconds of the run.
+        at_s: f64,
+        /// How its process ended, if it did.
+        ended: Option<String>,
+    },
+    /// In lock step, the device had ticked before, or ticks by itself.
+    NotFresh {
+        /// The count of its first answer.
+        tick: u8,
+    },
+}
+
+impl Cut {
+    /// Whether the device's process ended by itself.
+    #[must_use]
+    pub const fn has_ended(&self) -> bool {
+        matches!(self, Self::Silent { ended: Some(_), .. } | Self::Gone { ended: Some(_), .. })
+    }
+}
+
+/// The frames of lock step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Steps {
+    /// Steps that were taken.
+    pub steps: u64,
+    /// Frames that were compared.
+    pub frames: u64,
+    /// Frames that were not the same, or missing.
+    pub different: u64,
+    /// The first of them: time of the run, what the device sent, what its twin sent.
+    pub first: Option<(f64, String, String)>,
+}
+
+/// Everything.
+pub struct Outcome {
+    /// The world's trace.
+    pub trace: Trace,
+    /// The device.
+    pub monitor: Monitor,
+    /// The device beside its twin, in real time.
+    pub deviation: Deviation,
+    /// The device beside its twin, in lock step.
+    pub steps: Option<Steps>,
+    /// How much too late the harness was, tick by tick.
+    pub lateness: Lateness,
+    /// The frames of the harness.
+    pub counts: Counts,
+    /// Frames on the vehicle's or the modem's identifiers that are not the harness's.
+    pub foreign: u64,
+    /// Error frames.
+    pub bus_errors: u64,
+    /// The time of the bus at which the run began.
+    pub origin: Instant,
+    /// The faults that were played, and why one could not be.
+    pub faults: Vec<Played>,
+    /// Seconds of the run per second.
+    pub realtime_factor: f64,
+    /// Why it ended early.
+    pub cut: Option<Cut>,
+}
+
+impl Outcome {
+    /// A time of the bus as one of the run, in seconds.
+    #[must_use]
+    pub fn time_of(&self, at: Instant) -> f64 {
+        at.since(self.origin).as_micros() as f64 * 1e-6
+    }
+}

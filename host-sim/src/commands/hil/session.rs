@@ -1,0 +1,331 @@
+//! A run in real time: the world goes on by the bus's clock, frames go to the device and its twin, what the device commands
+//! moves the ego. A setup, a port and a rig enter, what happened leaves.
+//!
+//! Order within a tick: what the device said up to now has moved the ego; the world speaks at the tick's own time, however
+//! late the harness is, so that lateness makes messages older and never wrong; the others' units answer. Between ticks the
+//! bus is listened to. Every wait has an end, so a device that says nothing, or nothing more, ends the run.
+
+use std::io;
+
+use holdover::time::{Duration, Instant};
+use holdover::wire::BaseId;
+use holdover::wire::bits::Payload;
+use holdover::wire::catalogue::{About, Content, Node, Speaker};
+use holdover::wire::motion::Motion;
+use holdover::{Config, ConfigError};
+
+use super::deviation::Deviation;
+use super::fault::Fault;
+use super::fault_injector::{FaultInjector, Played};
+use super::lateness::Lateness;
+use super::monitor::{Monitor, News};
+use super::outcome::{Cut, Outcome};
+use super::rig::Rig;
+use super::said::Said;
+use super::talk::{Talk, line_of, payload};
+use super::twin::Twin;
+use crate::bus::memory::MemoryNode;
+use crate::bus::port::{Event, Port};
+use crate::bus::{Bus, Frame};
+use crate::input::scenario::Scenario;
+use crate::measure::paper_beside::PaperBeside;
+use crate::sim::stages::Stages;
+use crate::sim::station::station;
+use crate::sim::vehicle::Alias;
+use crate::sim::world::{Trace, World};
+
+/// How long the world speaks before the run, in seconds: a time base needs two synchronisations, half a second apart, that
+/// are trusted.
+const WARM_UP_S: f64 = 2.0;
+/// A device that is silent for longer, and not by a fault, has gone; in seconds.
+const GONE_S: f64 = 2.0;
+/// How long the echoes of the last frames are waited for.
+const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
+/// How long after a fault its effects are put down to it, in seconds.
+pub const AFTERMATH_S: f64 = 5.0;
+
+/// What is to be run with what.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// The world; its ego is the device's vehicle.
+    pub scenario: Scenario,
+    /// The device.
+    pub config: Config,
+    /// How long it may take to say its first word.
+    pub wait: Duration,
+    /// How long after its vehicle's motion its command may come, but for one of 100, in milliseconds.
+    pub latency_p99_ms: f64,
+    /// What is done to it.
+    pub faults: Vec<Fault>,
+}
+
+impl Setup {
+    /// The device's bus calls its vehicle by the device's own station.
+    #[must_use]
+    pub fn alias(&self) -> Alias {
+        Alias::between(station(self.scenario.ego), self.config.station)
+    }
+
+    /// Whether what happens then is put down to a fault.
+    #[must_use]
+    pub fn is_excused(&self, at_s: f64) -> bool {
+        self.faults.iter().any(|fault| (fault.from_s..fault.to_s + AFTERMATH_S).contains(&at_s))
+    }
+}
+
+/// What listens to the bus.
+pub(super) struct BusListener {
+    base: BaseId,
+    config: Config,
+    seat: MemoryNode,
+    pub monitor: Monitor,
+    twin: Twin,
+    told: Option<(Said, Duration)>,
+    pub deviation: Deviation,
+    pub foreign: u64,
+    pub bus_errors: u64,
+    last_beat: Option<Instant>,
+    /// Of the vehicle's motion.
+    first_half: Payload,
+}
+
+impl BusListener {
+    pub fn new(config: &Config, seat: MemoryNode) -> Result<Self, ConfigError> {
+        Ok(Self {
+            base: config.base_id,
+            config: *config,
+            seat,
+            monitor: Monitor::new(config.base_id, config.period),
+            twin: Twin::new(config)?,
+            told: None,
+            deviation: Deviation::default(),
+            foreign: 0,
+            bus_errors: 0,
+            last_beat: None,
+            first_half: Payload::EMPTY,
+        })
+    }
+
+    /// The device has got power anew, and so has its twin.
+    fn restart(&mut self) {
+        if let Ok(twin) = Twin::new(&self.config) {
+            self.twin = twin;
+        }
+    }
+
+    /// Something happened on the bus. `local` makes a time of the bus one of the run and one of the vehicle's own clock.
+    pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
+        match event {
+            Event::Sent(frame) => {
+                match line_of(self.base, &frame).map(|line| line.content) {
+                    Some(Content::Said(Speaker::Ego, About::MotionA)) => self.first_half = payload(&frame),
+                    Some(Content::Said(Speaker::Ego, About::MotionB)) => {
+                        let motion = Motion::decode(&[self.first_half, payload(&frame)]);
+                        self.monitor.input(at, motion.stamp);
+                    }
+                    _ => {}
+                }
+                self.twin.hear(at, frame);
+            }
+            Event::Received(frame) => match line_of(self.base, &frame) {
+                Some(line) if line.sender == Node::Unit => self.device(at, &frame, local)?,
+                line => {
+                    self.foreign += u64::from(line.is_some());
+                    self.twin.hear(at, frame);
+                }
+            },
+            Event::Error(_) => self.bus_errors += 1,
+            Event::Down => {}
+        }
+        Ok(())
+    }
+
+    fn device(&mut self, at: Instant, frame: &Frame, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
+        let (at_s, own) = local(at);
+        self.seat.send(own, *frame)?;
+        match self.monitor.hear(at, frame) {
+            News::Command(command, is_new) => {
+                if is_new {
+                    self.restart();
+                }
+                // Before the run the two may have been given power at different times.
+                let gap = self.last_beat.map_or(self.config.period, |last| at.since(last));
+                let window =
+                    gap.max(Duration::from_micros(self.config.period.as_micros() + self.monitor.lag().as_micros()));
+                self.last_beat = Some(at);
+                self.told = self.twin.tick(at).map(|said| (said, window));
+                if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0) {
+                    self.deviation.command(at_s, &command, &said, window);
+                }
+            }
+            News::Estimate(device) => {
+                if let Some((Said { command, estimate: Some(twin) }, window)) = self.told.filter(|_| at_s >= 0.0)
+                    && self.monitor.beats().last().is_some_and(|beat| beat.tick % 4 == device.tag)
+                    && command.tick % 4 == twin.tag
+                {
+                    self.deviation.estimate(at_s, &device, &twin, window);
+                }
+            }
+            News::Other => {}
+        }
+        Ok(())
+    }
+}
+
+/// Runs it; `progress` is told the time of the run, now and then.
+///
+/// # Errors
+/// The port's; a configuration that the unit refuses counts as one.
+pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
+    let Setup { scenario, config, .. } = setup;
+    let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
+    let seat = world.give_seat(scenario.ego, setup.alias());
+    let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
+    let mut talk = Talk::new(port, config.base_id);
+    let mut trace = world.trace();
+    let mut paper = PaperBeside::of(&world, scenario);
+    let mut injector = FaultInjector::new(&setup.faults, config.base_id);
+    rig.power(true)?;
+    let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
+    let period = config.period;
+    let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
+    talk.begin_at(talk.now().plus(period.times(warm_up + 2)));
+    let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
+    let mut lateness = Lateness::new(period, warm_up);
+    for tick in -warm_up..=ticks {
+        if cut.is_some() {
+            break;
+        }
+        let time = |tick: i64| tick as f64 * scenario.period_s;
+        let (at_s, due) = (time(tick), talk.instant(time(tick)));
+        while talk.now() < due {
+            let pause = injector.act(talk.time_of(talk.now()), rig);
+            let until = pause.map_or(due, |pause| due.min(talk.now().plus(pause)));
+            listen(&mut talk, &mut listener, &world, scenario.ego, until)?;
+        }
+        lateness.note(talk.now().since(due));
+        injector.note_altered(talk.altered());
+        if injector.switch(at_s, rig) {
+            listener.restart();
+        }
+        talk.clock_error_us = injector.clock_error_us(at_s);
+        talk.spoiled = injector.spoils();
+        if tick > 0 {
+            world.drive(time(tick - 1))?;
+        } else if tick == 0 {
+            world.begin();
+        }
+        if tick == ticks {
+            break;
+        }
+        if tick < 0 {
+            world.approach(at_s)?
+        } else {
+            world.speak(at_s)?
+        }
+        let own = world.vehicles()[scenario.ego].instant(at_s);
+        while let Some((_, frame)) = listener.seat.receive(own)? {
+            injector.overhear(&frame);
+            talk.send(frame);
+        }
+        if tick < 0 {
+            world.answer(at_s)?
+        } else {
+            world.act(at_s)?;
+            world.note(at_s, &mut trace);
+            paper.note(&world, at_s, &mut trace)?
+        }
+        cut = gone(setup, &talk, &listener, rig, at_s);
+        if tick % 100 == 0 {
+            progress(at_s);
+        }
+    }
+    // What was sent last comes back.
+    let end = talk.now().plus(ECHO_PATIENCE);
+    while talk.now() < end && !talk.counts().is_complete() {
+        let pause = talk.now().plus(Duration::from_millis(10));
+        listen(&mut talk, &mut listener, &world, scenario.ego, pause)?;
+    }
+    injector.note_altered(talk.altered());
+    injector.stop(rig);
+    let faults = injector.played(cut.is_none());
+    finished(world, trace, &talk, listener, lateness, faults, cut)
+}
+
+fn finished<P: Port>(
+    world: World<'_>,
+    trace: Trace,
+    talk: &Talk<P>,
+    listener: BusListener,
+    lateness: Lateness,
+    faults: Vec<Played>,
+    cut: Option<Cut>,
+) -> io::Result<Outcome> {
+    Ok(Outcome {
+        trace: world.finish(trace)?,
+        monitor: listener.monitor,
+        deviation: listener.deviation,
+        steps: None,
+        lateness,
+        counts: talk.counts(),
+        foreign: listener.foreign,
+        bus_errors: listener.bus_errors,
+        origin: talk.instant(0.0),
+        faults,
+        realtime_factor: 1.0,
+        cut,
+    })
+}
+
+fn listen<P: Port>(
+    talk: &mut Talk<P>,
+    listener: &mut BusListener,
+    world: &World<'_>,
+    ego: usize,
+    until: Instant,
+) -> io::Result<()> {
+    let mut heard = Ok(());
+    let origin = talk.instant(0.0);
+    let local = |at: Instant| {
+        let at_s = at.since(origin).as_micros() as f64 * 1e-6;
+        (at_s, world.vehicles()[ego].instant(at_s))
+    };
+    talk.pump(until, |at, event| {
+        if heard.is_ok() {
+            heard = listener.hear(at, event, local);
+        }
+    })?;
+    heard
+}
+
+/// Until its first word, which is sent without anybody's having spoken to it.
+fn wait_for_device<P: Port>(
+    setup: &Setup,
+    talk: &mut Talk<P>,
+    listener: &mut BusListener,
+    rig: &mut dyn Rig,
+) -> io::Result<Option<Cut>> {
+    let end = talk.now().plus(setup.wait);
+    while talk.now() < end {
+        let (mut heard, until) = (false, talk.now().plus(Duration::from_millis(20)).min(end));
+        let base = listener.base;
+        talk.pump(until, |_, event| {
+            heard |= matches!(event, Event::Received(frame)
+                if line_of(base, &frame).is_some_and(|line| line.sender == Node::Unit));
+        })?;
+        if heard {
+            return Ok(None);
+        }
+        if let Some(ended) = rig.has_ended() {
+            return Ok(Some(Cut::Silent { waited: setup.wait, ended: Some(ended) }));
+        }
+    }
+    Ok(Some(Cut::Silent { waited: setup.wait, ended: None }))
+}
+
+/// Whether the device has fallen silent for good, for no fault of ours.
+fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, listener: &BusListener, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
+    let last_s = talk.time_of(listener.monitor.beats().last()?.at);
+    let is_gone = at_s - last_s > GONE_S && !setup.is_excused(at_s);
+    is_gone.then(|| Cut::Gone { at_s: last_s, ended: rig.has_ended() })
+}

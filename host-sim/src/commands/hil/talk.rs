@@ -1,0 +1,250 @@
+//! The harness's side of the bus: frames of the vehicle and its modem enter, and leave on the port as fast as a bus takes
+//! them, with the time synchronisation dated as it really went out; what happens on the bus leaves in the order of time.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind};
+
+use embedded_can::{Frame as _, Id};
+use holdover::time::{Duration, Instant};
+use holdover::wire::bits::Payload;
+use holdover::wire::catalogue::{self, Content, Line};
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{BaseId, e2e};
+
+use super::fault::Kind;
+use crate::bus::Frame;
+use crate::bus::port::{Event, Port};
+use crate::sim::time::EPOCH_US;
+
+/// Frames sent at once, and how often: 4000 a second are a full bus at 500 kbit/s.
+const BURST: u32 = 4;
+const BURST_EVERY: Duration = Duration::from_millis(1);
+/// How long the mark of a time synchronisation is waited for.
+const MARK_PATIENCE: Duration = Duration::from_millis(50);
+
+/// What became of the frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Given to the port.
+    pub sent: u64,
+    /// Seen on the bus.
+    pub confirmed: u64,
+    /// Not taken, because the interface was down.
+    pub refused: u64,
+}
+
+impl Counts {
+    /// Whether nothing is on its way.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.sent <= self.confirmed + self.refused
+    }
+}
+
+/// What the harness has said otherwise than it was given, on purpose.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Altered {
+    /// Frames that were spoilt.
+    pub frames: u64,
+    /// Time synchronisations that were wrong.
+    pub times: u64,
+}
+
+/// The line of the catalogue that a frame stands on.
+#[must_use]
+pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
+    let Id::Standard(id) = frame.id() else { return None };
+    catalogue::find(base.offset_of(id.as_raw())?).map(|(_, line, _)| line)
+}
+
+/// The harness's side of the bus.
+pub struct Talk<P> {
+    port: P,
+    base: BaseId,
+    /// The time of the bus at which the run begins.
+    origin: Instant,
+    queue: VecDeque<Frame>,
+    /// When the next burst may begin, and what is left of this one.
+    burst: (Instant, u32),
+    /// The last `Sync` and when it was sent, and when it was on the bus.
+    mark: Option<(Sync, Instant, Option<Instant>)>,
+    /// Whether a follow-up is given the time at which its mark was on the bus; otherwise it says what it says.
+    pub dates: bool,
+    /// What the time synchronisation is wrong by, on purpose.
+    pub clock_error_us: i64,
+    /// How frames are spoiled, on purpose.
+    pub spoiled: Option<Kind>,
+    counts: Counts,
+    altered: Altered,
+}
+
+impl<P: Port> Talk<P> {
+    /// On a port; the catalogue begins at `base`.
+    pub fn new(port: P, base: BaseId) -> Self {
+        let now = port.now();
+        Self {
+            port,
+            base,
+            origin: now,
+            queue: VecDeque::new(),
+            burst: (now, BURST),
+            mark: None,
+            dates: true,
+            clock_error_us: 0,
+            spoiled: None,
+            counts: Counts::default(),
+            altered: Altered::default(),
+        }
+    }
+
+    /// The bus's time.
+    pub fn now(&self) -> Instant {
+        self.port.now()
+    }
+
+    /// The run begins then.
+    pub fn begin_at(&mut self, origin: Instant) {
+        self.origin = origin;
+    }
+
+    /// A time of the bus as one of the run, in seconds.
+    pub fn time_of(&self, at: Instant) -> f64 {
+        at.since(self.origin).as_micros() as f64 * 1e-6
+    }
+
+    /// A time of the run as one of the bus.
+    pub fn instant(&self, at_s: f64) -> Instant {
+        self.origin.plus(Duration::from_micros(crate::sim::time::micros(at_s)))
+    }
+
+    /// What became of the frames.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// What was said otherwise, on purpose.
+    pub fn altered(&self) -> Altered {
+        self.altered
+    }
+
+    /// A frame is to be sent, behind those that wait already.
+    pub fn send(&mut self, frame: Frame) {
+        self.queue.push_back(frame);
+    }
+
+    /// Whether everything was sent.
+    pub fn is_idle(&self) -> bool {
+        self.queue.is_empty()
+    }
+
+    /// Sends what waits, until then; what happens goes to `hear`.
+    ///
+    /// # Errors
+    /// The port's, but for an interface that is down.
+    pub fn pump(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event)) -> io::Result<()> {
+        self.pump_while(until, |at, event| {
+            hear(at, event);
+            true
+        })
+    }
+
+    /// The same, until `hear` has heard enough.
+    ///
+    /// # Errors
+    /// As [`Talk::pump`].
+    pub fn pump_while(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event) -> bool) -> io::Result<()> {
+        loop {
+            let wake = self.send_waiting()?.map_or(until, |next| next.min(until));
+            match self.port.wait(wake)? {
+                Some((at, event)) => {
+                    self.note(at, &event);
+                    if !hear(at, event) {
+                        return Ok(());
+                    }
+                    // A bus that never falls silent must not stop the clock.
+                    if self.port.now() >= until && at > until {
+                        return Ok(());
+                    }
+                }
+                None if wake >= until => return Ok(()),
+                None => {}
+            }
+        }
+    }
+
+    /// Sends what may be sent now; when there is more to send.
+    fn send_waiting(&mut self) -> io::Result<Option<Instant>> {
+        while let Some(frame) = self.queue.front().copied() {
+            let now = self.port.now();
+            let (next, left) = if now >= self.burst.0 { (now.plus(BURST_EVERY), BURST) } else { self.burst };
+            if left == 0 {
+                return Ok(Some(next));
+            }
+            let frame = match line_of(self.base, &frame).map(|line| line.content) {
+                Some(Content::Sync) => {
+                    self.mark = Some((Sync::decode(&[payload(&frame)]), now, None));
+                    frame
+                }
+                Some(Content::FollowUp) if self.dates => match self.mark {
+                    Some((sync, _, Some(marked))) => {
+                        self.altered.times += u64::from(self.clock_error_us != 0);
+                        self.dated(&frame, &sync, marked)
+                    }
+                    Some((_, sent, None)) if now.since(sent) < MARK_PATIENCE => {
+                        return Ok(Some(sent.plus(MARK_PATIENCE)));
+                    }
+                    _ => frame,
+                },
+                _ => frame,
+            };
+            self.queue.pop_front();
+            self.burst = (next, left - 1);
+            self.counts.sent += 1;
+            let spoilt = self.spoilt(frame);
+            match self.port.send(spoilt.unwrap_or(frame)) {
+                Ok(()) => self.altered.frames += u64::from(spoilt.is_some()),
+                Err(error) if error.kind() == ErrorKind::NetworkDown => self.counts.refused += 1,
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(None)
+    }
+
+    fn note(&mut self, at: Instant, event: &Event) {
+        let Event::Sent(frame) = event else { return };
+        self.counts.confirmed += 1;
+        if line_of(self.base, frame).is_some_and(|line| line.content == Content::Sync)
+            && let Some((_, _, marked)) = &mut self.mark
+        {
+            *marked = Some(at);
+        }
+    }
+
+    /// The follow-up says when its mark was on the bus.
+    fn dated(&self, frame: &Frame, sync: &Sync, marked: Instant) -> Frame {
+        let micros = marked.since(self.origin).as_micros().saturating_add(self.clock_error_us);
+        let time = EPOCH_US.saturating_add_signed(micros);
+        let micros = u32::try_from(time.saturating_sub(u64::from(sync.seconds) * 1_000_000)).unwrap_or(u32::MAX);
+        let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload(frame)]) };
+        let [dated] = follow_up.encode();
+        let counter = frame.data().get(1).map_or(0, |byte| byte & 15);
+        let (Id::Standard(id), Some(line)) = (frame.id(), line_of(self.base, frame)) else { return *frame };
+        let data = e2e::protect(dated.to_bytes(), catalogue::data_id(line.offset), counter);
+        Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
+    }
+
+    /// What is sent in a frame's place, if it is its turn to be spoilt.
+    fn spoilt(&self, frame: Frame) -> Option<Frame> {
+        let kind = self.spoiled.filter(|_| self.counts.sent.is_multiple_of(3))?;
+        match kind {
+            Kind::Corrupt => Some(frame.with_flipped_bit(usize::try_from(self.counts.sent).unwrap_or(0))),
+            Kind::Truncate => embedded_can::Frame::new(frame.id(), frame.data().get(..4).unwrap_or_default()),
+            _ => None,
+        }
+    }
+}
+
+/// The payload of a frame of 8 bytes; that of any other is empty.
+pub fn payload(frame: &Frame) -> Payload {
+    frame.data().try_into().map_or(Payload::EMPTY, Payload::from_bytes)
+}

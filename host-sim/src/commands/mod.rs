@@ -1,0 +1,21 @@
+//! The commands: what is typed enters; results on stdout, reports and a verdict leave.
+//!
+//! ```text
+//! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
+//! ```
+
+pub mod cli;
+pub mod corridor;
+pub mod ecu;
+pub mod ending;
+pub mod envelope_cost;
+pub mod evaluate;
+pub mod gains;
+pub mod hil;
+pub mod motions;
+pub mod options;
+pub mod record;
+pub mod replay;
+pub mod run;
+pub mod string;
+pub mod sweep;

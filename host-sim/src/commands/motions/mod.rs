@@ -1,0 +1,49 @@
+//! `motions`: what a target does in a silence, and who knows it. Checked options enter; a table or JSON on stdout and a
+//! report leave.
+//!
+//! ```text
+//! motion, phase -> scenario -> world: bus -> unit      -> errors in the silence -> rows -> table, JSON, report
+//!                                         -> baselines
+//! ```
+//!
+//! [`rows::run`] gives the figures, [`table::text`] their table and [`section`] and [`largest`] their part of a report and of a
+//! picture, for other commands.
+
+pub mod arguments;
+pub mod consensus;
+pub mod motion;
+pub mod options;
+mod page;
+pub mod rows;
+pub mod silence;
+pub mod table;
+
+pub use page::{largest, section};
+
+use indicatif::ProgressBar;
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::verdict::Verdict;
+use motion::TargetMotion;
+use options::MotionsOptions;
+use rows::Row;
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    rows: &'a [Row],
+}
+
+/// Runs everything and writes what the options ask for.
+///
+/// # Errors
+/// A configuration that the units refuse, and places that cannot be written.
+pub fn run(options: &MotionsOptions) -> Result<Verdict, Error> {
+    let bar = ProgressBar::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
+    let rows = rows::run(options.seed, options.silences, || bar.inc(1))?;
+    bar.finish_and_clear();
+    let page = || page::render(options, &rows);
+    options.destination.deliver(&Results { rows: &rows }, &table::text(&rows), "", page)?;
+    Ok(Verdict::Pass)
+}

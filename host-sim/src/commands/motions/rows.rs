@@ -1,0 +1,188 @@
+//! The figures: silences enter, for each motion and each method its errors leave.
+
+use serde::Serialize;
+
+use super::motion::{PHASES, SILENCE_S, TargetMotion};
+use super::silence::{self, Errors, METHODS, NAMES};
+use crate::error::Error;
+use crate::measure::metrics::{ErrorStatistics, rms};
+use crate::parallel;
+
+/// Width of a class of [`MethodFigures::growth`].
+const CLASS_S: f64 = 0.25;
+/// Ours is level with another whose rms is within this share of it.
+const LEVEL: f64 = 0.05;
+
+/// Rms this share apart are the same, and the simpler method is named: what is below is rounding.
+const SAME: f64 = 1e-6;
+
+/// The figures of one motion.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// What the target did.
+    #[serde(serialize_with = "key")]
+    pub motion: TargetMotion,
+    /// Whether it had said so.
+    pub published: bool,
+    /// Silences.
+    pub silences: u32,
+    /// Comparisons, every 10 ms of each silence.
+    pub comparisons: usize,
+    /// The baseline with the least rms of the position error.
+    pub best_baseline: &'static str,
+    /// Our rms over its.
+    pub ours_over_best: f64,
+    /// How ours stands to it.
+    pub standing: Standing,
+    /// Ours, then the baselines.
+    pub methods: Vec<MethodFigures>,
+}
+
+/// How ours stands to the best baseline by the rms of the position error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// More than 5 % smaller.
+    Wins,
+    /// Within 5 %.
+    Draws,
+    /// More than 5 % larger.
+    Loses,
+}
+
+/// The errors of one method.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MethodFigures {
+    /// Its name.
+    pub name: &'static str,
+    /// Root of the mean square of the position error.
+    pub rms_position_m: f64,
+    /// 99th percentile of its magnitude, by nearest rank.
+    pub p99_position_m: f64,
+    /// Its largest magnitude.
+    pub max_position_m: f64,
+    /// Root of the mean square of the speed error.
+    pub rms_speed_mps: f64,
+    /// `(end of a quarter of a second since the beginning of the silence, rms of the position error in it)`.
+    #[serde(skip)]
+    pub growth: Vec<(f64, f64)>,
+}
+
+fn key<S: serde::Serializer>(motion: &TargetMotion, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(motion.key())
+}
+
+/// Runs that many silences of each motion on all cores, each with a seed of its own from `seed` on; `done` is called after
+/// each.
+///
+/// # Errors
+/// Those of [`silence::run`].
+pub fn run(seed: u64, silences: u32, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
+    let one = |motion, number: u32| {
+        let errors = silence::run(motion, number % PHASES, seed.wrapping_add(u64::from(number)));
+        done();
+        errors
+    };
+    let of_motion = |motion| {
+        let errors = parallel::each(0..silences, |number| one(motion, number));
+        let errors: Vec<Vec<Errors>> = errors.into_iter().collect::<Result<_, _>>()?;
+        row(motion, silences, &errors.concat())
+            .ok_or_else(|| Error::new(format!("{motion}: nobody ever heard the target"), "report this"))
+    };
+    TargetMotion::ALL.into_iter().map(of_motion).collect()
+}
+
+fn row(motion: TargetMotion, silences: u32, errors: &[Errors]) -> Option<Row> {
+    let methods: Vec<MethodFigures> = (0..METHODS).map(|method| figures(method, errors)).collect::<Option<_>>()?;
+    let (ours, baselines) = methods.split_first()?;
+    let is_better = |a: &MethodFigures, b: &MethodFigures| a.rms_position_m < b.rms_position_m * (1.0 - SAME);
+    let best = baselines.iter().reduce(|best, other| if is_better(other, best) { other } else { best })?;
+    let ours_over_best = ours.rms_position_m / best.rms_position_m;
+    Some(Row {
+        motion,
+        published: motion.is_published(),
+        silences,
+        comparisons: errors.len(),
+        best_baseline: best.name,
+        ours_over_best,
+        standing: Standing::of(ours_over_best),
+        methods,
+    })
+}
+
+impl Standing {
+    fn of(ours_over_best: f64) -> Self {
+        if ours_over_best < 1.0 - LEVEL {
+            Self::Wins
+        } else if ours_over_best <= 1.0 + LEVEL {
+            Self::Draws
+        } else {
+            Self::Loses
+        }
+    }
+
+    /// In a word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Wins => "wins",
+            Self::Draws => "draws",
+            Self::Loses => "loses",
+        }
+    }
+}
+
+fn figures(method: usize, errors: &[Errors]) -> Option<MethodFigures> {
+    let positions: Vec<f64> = errors.iter().map(|errors| errors.position_m[method]).collect();
+    let speeds: Vec<f64> = errors.iter().map(|errors| errors.speed_mps[method]).collect();
+    let position = ErrorStatistics::of(&positions);
+    Some(MethodFigures {
+        name: NAMES[method],
+        rms_position_m: position.rms?,
+        p99_position_m: position.p99?,
+        max_position_m: position.max?,
+        rms_speed_mps: rms(&speeds)?,
+        growth: growth(method, errors),
+    })
+}
+
+fn growth(method: usize, errors: &[Errors]) -> Vec<(f64, f64)> {
+    let classes = (SILENCE_S / CLASS_S).round() as u32;
+    let class = |number: u32| {
+        let (from_s, to_s) = (f64::from(number) * CLASS_S, f64::from(number + 1) * CLASS_S);
+        let inside = errors.iter().filter(|errors| (from_s..to_s).contains(&errors.since_s));
+        Some((to_s, rms(&inside.map(|errors| errors.position_m[method]).collect::<Vec<_>>())?))
+    };
+    (0..classes).filter_map(class).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_rms_is_the_best_and_ours_stands_to_it() {
+        let mut errors = Errors { since_s: 0.1, position_m: [3.0; METHODS], speed_mps: [1.0; METHODS] };
+        for (singers, standing) in [(4.0, Standing::Wins), (3.1, Standing::Draws), (2.9, Standing::Draws)] {
+            errors.position_m = [9.0; METHODS];
+            (errors.position_m[0], errors.position_m[4]) = (-3.0, singers);
+            let row = row(TargetMotion::Sine, 1, &[errors; 2]).unwrap();
+            assert_eq!((row.best_baseline, row.standing, row.comparisons), ("singer", standing, 2));
+        }
+        errors.position_m[4] = 1.0;
+        let row = row(TargetMotion::Sine, 1, &[errors]).unwrap();
+        assert_eq!((row.standing, row.ours_over_best, row.methods[0].max_position_m), (Standing::Loses, 3.0, 3.0));
+    }
+
+    #[test]
+    fn of_those_that_are_alike_the_simplest_is_the_best() {
+        let mut errors = Errors { since_s: 0.1, position_m: [3.0; METHODS], speed_mps: [1.0; METHODS] };
+        (errors.position_m[1], errors.position_m[5]) = (9.0, 3.0 - 1e-8);
+        assert_eq!(row(TargetMotion::Braking, 1, &[errors]).unwrap().best_baseline, "constant_speed");
+    }
+
+    #[test]
+    fn without_comparisons_there_is_no_row() {
+        assert_eq!(row(TargetMotion::Sine, 1, &[]), None);
+    }
+}

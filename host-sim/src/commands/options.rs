@@ -1,0 +1,114 @@
+//! The command line as it is meant: typed values enter; options that have been checked, with every input file read, or
+//! an error leave. After this only writing can fail.
+
+use crate::commands::cli::{Cli, Command};
+use crate::commands::corridor::options::CorridorOptions;
+use crate::commands::ecu::options::EcuOptions;
+use crate::commands::envelope_cost::options::EnvelopeCostOptions;
+use crate::commands::evaluate::options::EvaluateOptions;
+use crate::commands::gains::GainsOptions;
+use crate::commands::hil::options::HilOptions;
+use crate::commands::motions::options::MotionsOptions;
+use crate::commands::record::RecordOptions;
+use crate::commands::replay::options::ReplayOptions;
+use crate::commands::run::arguments::RunArguments;
+use crate::commands::run::options::RunOptions;
+use crate::commands::string::options::StringOptions;
+use crate::commands::sweep::options::SweepOptions;
+use crate::commands::{
+    corridor, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
+};
+use crate::error::Error;
+use crate::input::library;
+use crate::output;
+use crate::verdict::Verdict;
+
+/// What to do.
+#[derive(Clone, Debug)]
+pub enum Options {
+    /// Run a string of vehicles.
+    Run(RunOptions),
+    /// Run a corridor.
+    Corridor(CorridorOptions),
+    /// List the scenarios that come with the program.
+    List,
+    /// Measure the estimate of a recorded vehicle.
+    Evaluate(EvaluateOptions),
+    /// Run a scenario at several steps with many seeds.
+    Sweep(SweepOptions),
+    /// Measure what the envelope costs.
+    EnvelopeCost(EnvelopeCostOptions),
+    /// Make and prove the table of gains.
+    Gains(GainsOptions),
+    /// Measure string stability.
+    String(StringOptions),
+    /// Measure the estimate over target motions.
+    Motions(MotionsOptions),
+    /// Replay a log.
+    Replay(ReplayOptions),
+    /// Record an interface.
+    Record(RecordOptions),
+    /// Be a unit.
+    Ecu(EcuOptions),
+    /// Judge one.
+    Hil(Box<HilOptions>),
+}
+
+impl Options {
+    /// Reads what the command line names and checks it.
+    ///
+    /// # Errors
+    /// Whatever makes the input unusable, and places for output that cannot be written.
+    pub fn read(cli: Cli) -> Result<Self, Error> {
+        match cli.command {
+            Some(Command::Run(arguments)) => Self::of_run(arguments),
+            Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
+            Some(Command::EnvelopeCost(arguments)) => EnvelopeCostOptions::read(arguments).map(Self::EnvelopeCost),
+            Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
+            Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
+            Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
+            Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
+            Some(Command::Record(arguments)) => RecordOptions::read(arguments).map(Self::Record),
+            Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
+            Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
+            None => Self::of_run(RunArguments { scenario: None, settings: cli.run }),
+        }
+    }
+
+    fn of_run(arguments: RunArguments) -> Result<Self, Error> {
+        if arguments.settings.list {
+            return Ok(Self::List);
+        }
+        let Some(named) = &arguments.scenario else { return RunOptions::read(arguments).map(Self::Run) };
+        let (file, text) = library::text(named)?;
+        match library::kind(&file, &text)? {
+            library::Kind::String => RunOptions::read(arguments).map(Self::Run),
+            library::Kind::Corridor => {
+                CorridorOptions::read(named, &file, &text, arguments.settings).map(Self::Corridor)
+            }
+        }
+    }
+
+    /// Does it.
+    ///
+    /// # Errors
+    /// What each command says.
+    pub fn run(&self) -> Result<Verdict, Error> {
+        match self {
+            Self::Run(options) => run::run(options),
+            Self::Corridor(options) => corridor::run(options),
+            Self::List => output::print(&library::list()).map(|()| Verdict::Pass),
+            Self::Evaluate(options) => evaluate::run(options),
+            Self::Sweep(options) => sweep::run(options),
+            Self::Gains(options) => gains::run(options),
+            Self::String(options) => string::run(options),
+            Self::Motions(options) => motions::run(options),
+            Self::EnvelopeCost(options) => envelope_cost::run(options),
+            Self::Replay(options) => replay::run(options),
+            Self::Record(options) => record::run(options),
+            Self::Ecu(options) => ecu::run(options),
+            Self::Hil(options) => hil::run(options),
+        }
+    }
+}

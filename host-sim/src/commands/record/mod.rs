@@ -1,0 +1,115 @@
+//! `record`: what happens on a CAN interface enters, a candump log with the kernel's time stamps leaves.
+
+pub mod arguments;
+
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use holdover::time::{Duration, Instant};
+
+use crate::bus;
+use crate::bus::candump::LogWriter;
+use crate::bus::port::{Event, Port};
+use crate::error::Error;
+use crate::output;
+use crate::places::can_be_file;
+use crate::sim::quantities::duration;
+use crate::verdict::Verdict;
+use arguments::RecordArguments;
+
+/// Between two looks at whether the time is up, and two flushes of the log.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// A recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordOptions {
+    /// The interface.
+    pub interface: String,
+    /// The log; `None` is standard output.
+    pub file: Option<PathBuf>,
+    /// Its length; `None`: until it is interrupted.
+    pub length: Option<Duration>,
+}
+
+impl RecordOptions {
+    /// Checks the arguments.
+    ///
+    /// # Errors
+    /// Values that cannot be.
+    pub fn read(arguments: RecordArguments) -> Result<Self, Error> {
+        let RecordArguments { bus, output, duration: length_s } = arguments;
+        if let Some(file) = &output {
+            can_be_file("--output", file, &[])?;
+        }
+        if let Some(length_s) = length_s.filter(|length_s| !(0.001..=1e6).contains(length_s)) {
+            return Err(Error::new(format!("is {length_s}"), "give seconds from 0.001 to 1e6").in_option("--duration"));
+        }
+        Ok(Self { interface: bus, file: output, length: length_s.map(duration) })
+    }
+}
+
+/// Records as the options say.
+///
+/// # Errors
+/// An interface that cannot be used, and a log that cannot be written.
+pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
+    let mut port = bus::open(&options.interface)?;
+    let (name, out): (&Path, Box<dyn Write>) = match &options.file {
+        Some(file) => (file, Box::new(File::create(file).map_err(|error| Error::unwritable(file, &error))?)),
+        None => (Path::new("standard output"), Box::new(io::stdout().lock())),
+    };
+    let log = LogWriter::new(BufWriter::new(out), &options.interface)
+        .ok_or_else(|| Error::new("is no name of an interface", "name one, such as vcan0").in_option("--bus"))?;
+    let until = options.length.map(|length| port.now().plus(length));
+    match record(&mut port, log, until) {
+        Ok(frames) => output::say(&format!("{frames} frames recorded")),
+        Err(Failure::Log(error)) if error.kind() == ErrorKind::BrokenPipe => {}
+        Err(Failure::Log(error)) => return Err(Error::unwritable(name, &error)),
+        Err(Failure::Port(error)) => {
+            let remedy = "see whether it is still there: ip -details link";
+            return Err(Error::new(format!("the interface failed: {error}"), remedy).in_option("--bus"));
+        }
+    }
+    Ok(Verdict::Pass)
+}
+
+/// What can end a recording before its time.
+#[derive(Debug)]
+pub enum Failure {
+    /// The interface has gone.
+    Port(io::Error),
+    /// The log cannot be written.
+    Log(io::Error),
+}
+
+/// Writes down what happens until then; how many frames that were. The log is whole up to a tenth of a second
+/// ago, however it ends.
+///
+/// # Errors
+/// The port's and the log's.
+pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> Result<u64, Failure> {
+    let (mut frames, mut flushed) = (0, port.now());
+    loop {
+        let now = port.now();
+        if now.since(flushed) >= PAUSE {
+            log.flush().map_err(Failure::Log)?;
+            flushed = now;
+        }
+        if until.is_some_and(|until| until <= now) {
+            log.finish().map_err(Failure::Log)?;
+            return Ok(frames);
+        }
+        let pause = now.plus(PAUSE);
+        match port.wait(until.map_or(pause, |until| until.min(pause))).map_err(Failure::Port)? {
+            Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame).map_err(Failure::Log)?,
+            Some((at, Event::Error(error))) => log.write_error(at, &error).map_err(Failure::Log)?,
+            Some((_, Event::Down)) => {
+                output::say("the interface is down; going on when it is up");
+                continue;
+            }
+            None => continue,
+        }
+        frames += 1;
+    }
+}

@@ -1,0 +1,94 @@
+//! The arguments of `replay`, as they are typed.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// The arguments of `replay`.
+#[derive(Clone, Debug, Args)]
+pub struct ReplayArguments {
+    /// The log, as `candump -l` or `candump -t a` writes it; - for standard input
+    #[arg(value_name = "LOG")]
+    pub log: PathBuf,
+
+    /// Put the log's frames on this CAN interface instead, with their timing
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["scenario", "vehicle", "station", "base_id", "period",
+        "step", "summary", "json"])]
+    pub bus: Option<String>,
+
+    /// Replay as a unit of this scenario; the paper's if only --vehicle is given
+    #[arg(long, value_name = "SCENARIO.toml")]
+    pub scenario: Option<PathBuf>,
+
+    /// As which vehicle's unit; the ego's unless given
+    #[arg(long, value_name = "INDEX")]
+    pub vehicle: Option<usize>,
+
+    /// The unit's own station, 0 to 255 [default: 1]
+    #[arg(long, value_name = "N", conflicts_with_all = ["scenario", "vehicle"])]
+    pub station: Option<u8>,
+
+    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
+    #[arg(long, value_name = "ID", value_parser = identifier)]
+    pub base_id: Option<u16>,
+
+    /// Period of the unit's task, 0.001 to 0.1 [default: 0.01]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, conflicts_with_all = ["scenario", "vehicle"])]
+    pub period: Option<f64>,
+
+    /// Prediction step, 0.001 to 1 [default: 0.01, or the scenario's]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+
+    /// Which interface of the log to replay; that of its first frame unless given
+    #[arg(long, value_name = "NAME")]
+    pub interface: Option<String>,
+
+    /// Print what was recognised, refused and ignored instead of the unit's frames
+    #[arg(long)]
+    pub summary: bool,
+
+    /// Print that summary as one JSON value
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A number, decimal or with 0x hexadecimal.
+fn identifier(text: &str) -> Result<u16, std::num::ParseIntError> {
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u16::from_str_radix(digits, 16),
+        None => text.parse(),
+    }
+}
+
+/// The end of `replay --help`.
+pub const AFTER_HELP: &str = "\
+Examples:
+  holdover-sim replay drive.log              what a unit on that bus would have sent
+  holdover-sim replay drive.log --summary    what it would have made of the traffic
+  candump -L can0 | holdover-sim replay - --base-id 0x500 --station 7
+  holdover-sim --candump ego.log && holdover-sim replay ego.log --vehicle 2
+                                             the ego's unit of a run once more
+  holdover-sim replay drive.log --bus vcan0  the same traffic on a CAN interface
+
+Time:
+  The unit lives by the log's clock: its first tick is at the time of the first
+  frame, every further one a period later, and before each it receives the
+  frames up to and including that time. The last tick is the first one at or
+  after the last frame. A line may lie up to 1 s before an earlier one, as in
+  logs merged of several; it is received late, at its own time. Beyond that,
+  after a gap of more than an hour, and without times the log is refused, by
+  line. Lines are read one by one, so frames may have been printed by then.
+
+  With --bus the first frame is sent at once and every further one as long after
+  it as the log says; error frames and CAN FD are left out. How late the latest
+  of them was is told at the end.
+
+What becomes of a frame:
+  recognised  a good frame of one of the catalogue's messages to the unit
+  refused     such a frame that is damaged, repeated, late, torn or implausible
+  ignored     any other: of other senders, the unit's own, CAN FD, error
+              frames, and other interfaces
+
+Exit codes:
+  0  the whole log was replayed
+  2  bad input; one line on stderr names file, line, cause and remedy";

@@ -1,0 +1,115 @@
+//! The arguments of `run`, as they are typed.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// What can follow `run`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RunArguments {
+    /// The scenario, a file or one of `--list`; the paper's if none is given (scenarios/paper.toml explains it)
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: Option<PathBuf>,
+    /// The rest.
+    #[command(flatten)]
+    pub settings: RunSettings,
+}
+
+/// The options of `run`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct RunSettings {
+    /// Seed of everything random, instead of the scenario's
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+
+    /// Number of seeds, from `--seed` on; they run on all cores. Corridors only
+    #[arg(long, value_name = "N")]
+    pub seeds: Option<u64>,
+
+    /// List the scenarios that come with the program
+    #[arg(long)]
+    pub list: bool,
+
+    /// Measure how fast the program simulates these numbers of vehicles at once, in corridors side by side [with a report:
+    /// 10,30,100,300]. Corridors only
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub vehicles: Option<Vec<usize>>,
+
+    /// Try these amounts of traffic, in vehicles a minute, and nothing else. Each is run with and without the envelope, over
+    /// the scenario's link and over a perfect one. This can take an hour; stderr says after each run what is done and what
+    /// is left. Corridors only
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub demand: Option<Vec<f64>>,
+
+    /// Number of peers for which every unit has slots, instead of the scenario's; several with `--demand`. Corridors only
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub slots: Option<Vec<usize>>,
+
+    /// Draw a picture of one page: trajectories, errors, and our method beside seven others. Corridors only
+    #[arg(long, value_name = "FILE.svg")]
+    pub picture: Option<PathBuf>,
+
+    /// Prediction step of the core, instead of the scenario's
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub step: Option<f64>,
+
+    /// Let the leader drive this recording: `t_s,position_m,speed_mps[,acceleration_mps2]`
+    #[arg(long, value_name = "FILE.csv")]
+    pub leader_motion: Option<PathBuf>,
+
+    /// Replace the random channel by this recording: `t_s,delay_s` (an empty delay is a lost message)
+    #[arg(long, value_name = "FILE.csv")]
+    pub channel_trace: Option<PathBuf>,
+
+    /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead.
+    /// A corridor is always run without and with it; with this option its excerpts and figures are those with it
+    #[arg(long)]
+    pub envelope: bool,
+
+    /// Print the results as one JSON value on stdout
+    #[arg(long)]
+    pub json: bool,
+
+    /// Folder for the HTML report; it is created
+    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
+    pub out: PathBuf,
+
+    /// Write no report
+    #[arg(long, conflicts_with = "out")]
+    pub no_report: bool,
+
+    /// Write every tick: time, truth, estimate and its bound, age, mode, command and whether the envelope changed it
+    #[arg(long, value_name = "FILE.csv")]
+    pub trace: Option<PathBuf>,
+
+    /// Write the traffic on one vehicle's bus as a candump log
+    #[arg(long, value_name = "FILE")]
+    pub candump: Option<PathBuf>,
+
+    /// Whose bus that is; the ego's unless given
+    #[arg(long, value_name = "INDEX", requires = "candump")]
+    pub candump_vehicle: Option<usize>,
+}
+
+/// Examples and what else there is to say.
+pub const AFTER_HELP: &str = "\
+Examples:
+  holdover-sim                           the paper's scenario
+  holdover-sim --seed 3 --json           with other random numbers, as JSON
+  holdover-sim run city.toml --out city  your scenario, its report in city/
+  holdover-sim run --list                the scenarios that come with it
+  holdover-sim run corridor --seeds 10   four intersections, ten seeds
+  holdover-sim --leader-motion drive.csv --channel-trace link.csv
+                                         your recordings of a drive and a link
+  holdover-sim --envelope                with every unit's last gate engaged
+  holdover-sim evaluate --help           measure the estimate on recordings
+
+Output:
+  Results go to stdout, as a table or with --json as one JSON value; progress
+  goes to stderr. The report is one HTML file in the folder of --out. Equal
+  seeds give equal bytes, but for what stands under \"timing\".
+
+Exit codes:
+  0  the verdict is: passed
+  1  the verdict is: failed
+  2  bad input; one line on stderr names file, line, cause and remedy
+  3  inconclusive: this program itself was late";

@@ -1,0 +1,73 @@
+//! The files of a run: its trace enters, a CSV of every tick and a candump log leave.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use holdover::time::Instant;
+
+use crate::bus::candump::LogWriter;
+use crate::error::Error;
+use crate::input::scenario::Scenario;
+use crate::measure::figures::{mode_name, papers};
+use crate::sim::time::{EPOCH_US, micros};
+use crate::sim::world::Trace;
+
+/// Writes every tick of the measured vehicle as its follower sees it, with the bound as it stands on the bus, and the
+/// follower's command; `limited` is 1 where the envelope changed that.
+pub fn write_trace(file: &Path, scenario: &Scenario, trace: &Trace) -> Result<(), Error> {
+    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
+    let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
+    write_rows(&mut out, scenario, trace).and_then(|()| out.flush()).map_err(|error| unwritable(&error))
+}
+
+fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::io::Result<()> {
+    writeln!(
+        out,
+        "t_s,true_position_m,true_speed_mps,true_acceleration_mps2,estimated_position_m,estimated_speed_mps,age_s,mode,\
+         command_mps2,paper_position_m,gap_m,lowest_position_m,highest_position_m,lowest_speed_mps,highest_speed_mps,\
+         limited"
+    )?;
+    let (measured, by) = (&trace.vehicles[trace.measured.vehicle], &trace.vehicles[trace.measured.by]);
+    let length_m = scenario.vehicles[trace.measured.vehicle].length_m;
+    let papers = papers(trace);
+    for (tick, at_s) in trace.times_s.iter().enumerate() {
+        let (truth, seen) = (&measured[tick], &by[tick]);
+        let field = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.6}"));
+        let bound = seen.target.and_then(|target| target.bound);
+        writeln!(
+            out,
+            "{at_s:.6},{:.6},{:.6},{:.6},{},{},{},{},{:.6},{},{:.6},{},{},{},{},{}",
+            truth.position_m,
+            truth.speed_mps,
+            truth.acceleration_mps2,
+            field(seen.target.map(|target| target.position_m)),
+            field(seen.target.map(|target| target.speed_mps)),
+            field(seen.target.map(|target| target.age_s)),
+            mode_name(seen.mode),
+            seen.command_mps2,
+            field(papers(tick)),
+            truth.position_m - length_m - seen.position_m,
+            field(bound.map(|bound| bound.lowest_position_m)),
+            field(bound.map(|bound| bound.highest_position_m)),
+            field(bound.map(|bound| bound.lowest_speed_mps)),
+            field(bound.map(|bound| bound.highest_speed_mps)),
+            u8::from(seen.limited),
+        )?;
+    }
+    Ok(())
+}
+
+/// Writes the bus that was kept, at the GNSS time of each frame.
+pub fn write_log(file: &Path, trace: &Trace) -> Result<(), Error> {
+    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
+    let out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
+    let Some(mut log) = LogWriter::new(out, "can0") else {
+        return Err(Error::new("the interface has no name", "report this").in_file(file));
+    };
+    for (at_s, frame) in &trace.log {
+        let at = Instant::from_micros(EPOCH_US.saturating_add_signed(micros(*at_s)));
+        log.write(at, frame).map_err(|error| unwritable(&error))?;
+    }
+    log.finish().map(|_| ()).map_err(|error| unwritable(&error))
+}

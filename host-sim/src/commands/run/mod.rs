@@ -1,0 +1,40 @@
+//! `run`: checked options enter; a table or JSON on stdout, a report, a trace and a candump log leave; and the verdict.
+
+pub mod arguments;
+mod files;
+pub mod options;
+mod page;
+mod table;
+
+use indicatif::ProgressBar;
+
+use crate::error::Error;
+use crate::measure::figures::failures;
+use crate::measure::simulate::simulate;
+use crate::verdict::Verdict;
+use options::RunOptions;
+
+/// Runs the scenario of the options and writes all that they ask for.
+///
+/// # Errors
+/// A scenario that the units refuse, and places that cannot be written.
+pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
+    let scenario = &options.scenario;
+    let bar = ProgressBar::new(1000);
+    let logged = options.candump.as_ref().map(|candump| candump.vehicle);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of 1000
+    let (trace, summary) =
+        simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
+    bar.finish_and_clear();
+    let failures = failures(scenario, &summary);
+    if let Some(file) = &options.trace {
+        files::write_trace(file, scenario, &trace)?;
+    }
+    if let Some(candump) = &options.candump {
+        files::write_log(&candump.file, &trace)?;
+    }
+    let text = table::text(scenario, &summary, &failures);
+    let page = || page::report(options, &trace, &summary, &failures).render();
+    options.destination.deliver(&summary, &text, &text, page)?;
+    Ok(Verdict::of(&failures))
+}

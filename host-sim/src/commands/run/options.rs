@@ -1,0 +1,92 @@
+//! The options of `run` for a string of vehicles: typed values enter, checked options or an error leave.
+
+use std::path::{Path, PathBuf};
+
+use super::arguments::RunArguments;
+use crate::commands::ending::Destination;
+use crate::error::Error;
+use crate::input::scenario::{Overrides, Scenario};
+use crate::places::can_be_file;
+
+/// A run and what becomes of its results.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunOptions {
+    /// The scenario, with what the command line says instead of its file.
+    pub scenario: Scenario,
+    /// The file that it came from; `None`: it is the paper's.
+    pub scenario_file: Option<PathBuf>,
+    /// What else the command line says of the scenario, as it would have to be typed again.
+    pub arguments: Vec<String>,
+    /// Where its results go.
+    pub destination: Destination,
+    /// Where to write every tick.
+    pub trace: Option<PathBuf>,
+    /// Which bus to record.
+    pub candump: Option<Candump>,
+}
+
+/// A bus to be recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Candump {
+    /// The log.
+    pub file: PathBuf,
+    /// Index of the vehicle whose bus it is.
+    pub vehicle: usize,
+}
+
+impl RunOptions {
+    /// Reads what the arguments name and checks it.
+    ///
+    /// # Errors
+    /// Options for a corridor, a scenario that cannot be used, and places that cannot be written.
+    pub fn read(RunArguments { scenario: scenario_file, settings }: RunArguments) -> Result<Self, Error> {
+        let foreign = [
+            ("--seeds", settings.seeds.is_some()),
+            ("--vehicles", settings.vehicles.is_some()),
+            ("--demand", settings.demand.is_some()),
+            ("--slots", settings.slots.is_some()),
+            ("--picture", settings.picture.is_some()),
+        ];
+        if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
+            let remedy = "leave it out; `sweep` runs a string with many seeds";
+            return Err(Error::new("is for a corridor, and this is a string of vehicles", remedy).in_option(option));
+        }
+        let overrides = Overrides {
+            seed: settings.seed,
+            step_s: settings.step,
+            leader_motion: settings.leader_motion.clone(),
+            channel_trace: settings.channel_trace.clone(),
+            envelope: settings.envelope,
+        };
+        let arguments = typed(&overrides);
+        let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
+        let vehicle = settings.candump_vehicle.unwrap_or(scenario.ego);
+        let last = scenario.vehicles.len() - 1;
+        if vehicle > last {
+            let error = Error::new(format!("there is no vehicle {vehicle}"), format!("give an index from 0 to {last}"));
+            return Err(error.in_option("--candump-vehicle"));
+        }
+        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
+        let inputs = [scenario_file.as_ref(), settings.leader_motion.as_ref(), settings.channel_trace.as_ref()];
+        let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
+        let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+        for (option, file) in outputs {
+            if let Some(file) = file {
+                can_be_file(option, file, &taken)?;
+                taken.push(file);
+            }
+        }
+        let candump = settings.candump.map(|file| Candump { file, vehicle });
+        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
+    }
+}
+
+/// The options that change the scenario, but for the seed.
+fn typed(overrides: &Overrides) -> Vec<String> {
+    let file = |option: &str, file: &Option<PathBuf>| file.as_ref().map(|file| format!("{option} {}", file.display()));
+    let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
+    let motion = file("--leader-motion", &overrides.leader_motion);
+    let trace = file("--channel-trace", &overrides.channel_trace);
+    let envelope = overrides.envelope.then(|| "--envelope".to_owned());
+    [step, motion, trace, envelope].into_iter().flatten().collect()
+}

@@ -1,0 +1,58 @@
+//! `string`: how a string of ten vehicles damps what its leader does. Checked options enter; a table or JSON on stdout and
+//! a report leave; and the verdict.
+//!
+//! ```text
+//! disturbance -> string of units, and strings without holdover -> speeds -> amplification -> rows -> table, JSON, report
+//! ```
+
+pub mod amplification;
+pub mod arguments;
+pub mod disturbance;
+pub mod options;
+mod page;
+pub mod rows;
+pub mod table;
+pub mod uncompensated;
+
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::output;
+use crate::verdict::Verdict;
+use options::StringOptions;
+use rows::Row;
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    /// The largest ratio allowed.
+    limit: f64,
+    /// The time gap that is shipped.
+    shipped_time_gap_s: f64,
+    /// The smallest of the time gaps at and above which it holds; none if it does not hold at the largest.
+    smallest_time_gap_s: Option<f64>,
+    /// The first seed.
+    seed: u64,
+    rows: &'a [Row],
+}
+
+/// Runs everything and writes what the options ask for.
+///
+/// # Errors
+/// A configuration that the units refuse, and places that cannot be written.
+pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
+    let bar = output::progress(rows::count(options));
+    let rows = rows::run(options, || bar.inc(1))?;
+    bar.finish_and_clear();
+    let failures = rows::failures(&rows);
+    let results = Results {
+        limit: rows::LIMIT,
+        shipped_time_gap_s: options::shipped_time_gap_s(),
+        smallest_time_gap_s: rows::smallest_time_gap_s(&rows),
+        seed: options.seed,
+        rows: &rows,
+    };
+    let (text, said) = (table::text(options, &rows, &failures), table::verdict(options, &rows, &failures));
+    options.destination.deliver(&results, &text, &said, || page::render(options, &rows, &failures))?;
+    Ok(Verdict::of(&failures))
+}

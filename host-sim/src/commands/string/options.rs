@@ -1,0 +1,94 @@
+//! The options of `string`: typed values enter, checked ones leave.
+
+use holdover::parameters;
+
+use super::arguments::StringArguments;
+use super::disturbance::Disturbance;
+use crate::commands::ending::Destination;
+use crate::error::Error;
+use crate::seeds;
+
+/// Seeds of a step unless said otherwise: at a step chance decides.
+const STEP_SEEDS: u64 = 40;
+/// Seeds of a sine unless said otherwise: over whole periods chance averages out.
+const SINE_SEEDS: u64 = 1;
+
+/// What is to be measured and what becomes of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StringOptions {
+    /// Time gaps, in seconds; at least one.
+    pub time_gaps_s: Vec<f64>,
+    /// Delays of every message, in seconds; at least one.
+    pub delays_s: Vec<f64>,
+    /// Shares lost; at least one.
+    pub losses: Vec<f64>,
+    /// What the leader does.
+    pub disturbances: Vec<Disturbance>,
+    /// The first seed of what is lost.
+    pub seed: u64,
+    /// How many, if it is said: from 1 to [`seeds::MOST`].
+    pub seeds: Option<u64>,
+    /// Where its results go.
+    pub destination: Destination,
+}
+
+impl StringOptions {
+    /// Checks what the arguments say.
+    ///
+    /// # Errors
+    /// Values that cannot be, and a folder that cannot be written.
+    pub fn read(arguments: StringArguments) -> Result<Self, Error> {
+        let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, json, out, no_report } =
+            arguments;
+        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
+        within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
+        within("--delays", &delays, "seconds", (0.0, 1.0))?;
+        within("--losses", &losses, "shares", (0.0, 0.9))?;
+        within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
+        seeds::checked(seed, seeds.unwrap_or(STEP_SEEDS))?;
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
+        let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
+        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, destination })
+    }
+
+    /// How many seeds of that disturbance are run where such a share is lost. Nothing else is drawn, so without a loss one
+    /// of them is all.
+    #[must_use]
+    pub fn seeds_of(&self, disturbance: Disturbance, loss: f64) -> u64 {
+        let usual = if disturbance == Disturbance::Step { STEP_SEEDS } else { SINE_SEEDS };
+        if loss > 0.0 { self.seeds.unwrap_or(usual) } else { 1 }
+    }
+
+    /// The same command again.
+    #[must_use]
+    pub fn command(&self) -> String {
+        let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+        let frequencies: Vec<f64> =
+            self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
+        let sines =
+            if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
+        let seeds = self.seeds.map_or(String::new(), |seeds| format!(" --seeds {seeds}"));
+        format!(
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --seed {}{seeds}",
+            list(&self.time_gaps_s),
+            list(&self.delays_s),
+            list(&self.losses),
+            self.seed
+        )
+    }
+}
+
+/// The time gap that a unit keeps where nobody asks for another.
+#[must_use]
+pub fn shipped_time_gap_s() -> f64 {
+    f64::from(parameters::TIME_GAP.to_millis()) / 1e3
+}
+
+fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {
+    let remedy = format!("give {unit} from {low} to {high}");
+    match values.iter().find(|value| !(low..=high).contains(*value)) {
+        Some(value) => Err(Error::new(format!("is {value}"), remedy).in_option(option)),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,237 @@
+//! The runs: options enter; for each time gap, delay and loss the largest ratio of all disturbances leaves, with holdover
+//! and without.
+
+use std::path::Path;
+
+use holdover::wire::command::ModeCode;
+use serde::Serialize;
+
+use super::amplification::{Speeds, Worst};
+use super::disturbance::{CRUISE_MPS, Disturbance};
+use super::options::StringOptions;
+use super::uncompensated::{self, Reading};
+use crate::error::Error;
+use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario};
+use crate::measure::simulate::simulate;
+use crate::parallel;
+use crate::sim::world::{Tick, Trace};
+
+/// The largest ratio that is allowed.
+pub const LIMIT: f64 = 1.01;
+
+/// The figures of one time gap, delay and loss; `None`: nothing was passed on that could be measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Time gap of the followers.
+    pub time_gap_s: f64,
+    /// Delay of every message.
+    pub delay_s: f64,
+    /// Share of messages lost.
+    pub loss: f64,
+    /// With holdover.
+    pub holdover: Option<Worst>,
+    /// By the newest message as it stands.
+    pub as_it_stands: Option<Worst>,
+    /// By the newest message and its age times its speed.
+    pub age_times_speed: Option<Worst>,
+    /// Of each disturbance the largest ratio with holdover.
+    pub by_disturbance: Vec<Option<Worst>>,
+    /// Runs with holdover, one for each disturbance and seed.
+    pub runs: usize,
+    /// Those of them in which the ratio is above the limit.
+    pub runs_above: usize,
+    /// Collisions with holdover.
+    pub collisions: usize,
+    /// Followers whose units did not always drive by their law while it was measured, of all runs.
+    pub not_following: usize,
+}
+
+/// A place of the table: time gap, delay and loss.
+type Place = (f64, f64, f64);
+
+/// The outcome of one run.
+struct Outcome {
+    holdover: Option<Worst>,
+    as_it_stands: Option<Worst>,
+    age_times_speed: Option<Worst>,
+    collisions: usize,
+    not_following: usize,
+}
+
+/// What is run at each place, in the order of the rows: each disturbance as often as it has seeds.
+fn places(options: &StringOptions) -> Vec<(Place, Vec<(Disturbance, u64)>)> {
+    let mut places = Vec::new();
+    for &time_gap_s in &options.time_gaps_s {
+        for &delay_s in &options.delays_s {
+            for &loss in &options.losses {
+                let of = |&disturbance| (disturbance, options.seeds_of(disturbance, loss));
+                places.push(((time_gap_s, delay_s, loss), options.disturbances.iter().map(of).collect()));
+            }
+        }
+    }
+    places
+}
+
+/// How many runs there are.
+#[must_use]
+pub fn count(options: &StringOptions) -> u64 {
+    places(options).iter().flat_map(|(_, disturbances)| disturbances).map(|(_, seeds)| seeds).sum()
+}
+
+/// Runs all of it on all cores; `done` is called after each run.
+///
+/// # Errors
+/// What a unit finds wrong with the configuration.
+pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
+    let places = places(options);
+    let mut jobs = Vec::new();
+    for (place, disturbances) in &places {
+        for &(disturbance, seeds) in disturbances {
+            jobs.extend((options.seed..=options.seed + (seeds - 1)).map(|seed| (*place, disturbance, seed)));
+        }
+    }
+    let one = |&(place, disturbance, seed)| {
+        let outcome = outcome(place, disturbance, seed);
+        done();
+        outcome
+    };
+    let outcomes: Vec<Outcome> = parallel::each(&jobs, one).into_iter().collect::<Result<_, _>>()?;
+    let mut outcomes = outcomes.into_iter();
+    let mut all_seeds = |&(_, seeds): &(_, u64)| (0..seeds).filter_map(|_| outcomes.next()).collect();
+    let of_place = |(place, disturbances): &(Place, Vec<_>)| {
+        row(*place, &disturbances.iter().map(&mut all_seeds).collect::<Vec<_>>())
+    };
+    Ok(places.iter().map(of_place).collect())
+}
+
+/// The outcomes of each disturbance with all its seeds.
+fn row((time_gap_s, delay_s, loss): Place, outcomes: &[Vec<Outcome>]) -> Row {
+    let largest = |outcomes: &mut dyn Iterator<Item = &Outcome>, of: fn(&Outcome) -> &Option<Worst>| {
+        outcomes.filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
+    };
+    let all = || outcomes.iter().flatten();
+    let worst = |of| largest(&mut all(), of);
+    Row {
+        time_gap_s,
+        delay_s,
+        loss,
+        holdover: worst(|outcome| &outcome.holdover),
+        as_it_stands: worst(|outcome| &outcome.as_it_stands),
+        age_times_speed: worst(|outcome| &outcome.age_times_speed),
+        by_disturbance: outcomes.iter().map(|of| largest(&mut of.iter(), |outcome| &outcome.holdover)).collect(),
+        runs: all().count(),
+        runs_above: all().filter(|outcome| is_above(&outcome.holdover)).count(),
+        collisions: all().map(|outcome| outcome.collisions).sum(),
+        not_following: all().map(|outcome| outcome.not_following).sum(),
+    }
+}
+
+fn is_above(worst: &Option<Worst>) -> bool {
+    worst.as_ref().is_some_and(|worst| worst.ratio > LIMIT)
+}
+
+fn outcome((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, seed: u64) -> Result<Outcome, Error> {
+    let scenario = scenario(time_gap_s, delay_s, loss, disturbance)?;
+    let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
+    let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
+    let units = Speeds { period_s: scenario.period_s, vehicles: trace.vehicles.iter().map(speeds).collect() };
+    let without = |reading| uncompensated::run(&scenario, seed, reading).worst(disturbance);
+    Ok(Outcome {
+        holdover: units.worst(disturbance),
+        as_it_stands: without(Reading::AsItStands),
+        age_times_speed: without(Reading::AgeTimesSpeed),
+        collisions: summary.collisions,
+        not_following: not_following(&trace, disturbance.measured_from_s()),
+    })
+}
+
+/// How many followers' units did not always drive by their law from that time on.
+fn not_following(trace: &Trace, from_s: f64) -> usize {
+    let begins = trace.times_s.partition_point(|at_s| *at_s < from_s - 1e-9);
+    let follows = |tick: &Tick| matches!(tick.mode, ModeCode::Cooperative | ModeCode::Holdover);
+    trace.vehicles.iter().skip(1).filter(|ticks| !ticks.iter().skip(begins).all(follows)).count()
+}
+
+/// The string: everybody at the gap and the speed that are wanted.
+///
+/// # Errors
+/// None that values within the options' limits make.
+fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
+    let duration_s = disturbance.duration_s();
+    let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
+    let vehicle = |gap: &str| {
+        format!(
+            "[[vehicle]]\n{gap}speed_mps = {CRUISE_MPS}\ntime_gap_s = {time_gap_s}\nposition_accuracy_m = 0.05\n\
+             speed_accuracy_mps = 0.02\n"
+        )
+    };
+    let followers = vehicle(&format!("gap_m = {gap_m}\n")).repeat(MAX_VEHICLES - 1);
+    let text = format!(
+        "duration_s = {duration_s}\nego = 1\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n{}{followers}[channel]\n\
+         applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
+        vehicle(""),
+    );
+    let mut scenario = Scenario::parse(Path::new("string"), &text, &Overrides::default())?;
+    scenario.leader.motion = Some(disturbance.motion(scenario.period_s));
+    Ok(scenario)
+}
+
+/// The largest ratio with holdover, if it is above the limit.
+#[must_use]
+pub fn failures(rows: &[Row]) -> Vec<String> {
+    let above = |row: &Row| {
+        let worst = row.holdover.as_ref().filter(|worst| worst.ratio > LIMIT)?;
+        Some(format!(
+            "a ratio of {:.4} at a time gap of {} s, a delay of {} s and a loss of {} ({}, vehicle {})",
+            worst.ratio, row.time_gap_s, row.delay_s, row.loss, worst.disturbance, worst.vehicle
+        ))
+    };
+    let crashed = |row: &Row| {
+        (row.collisions > 0).then(|| format!("{} collisions at a delay of {} s", row.collisions, row.delay_s))
+    };
+    // One that stands passes nothing on, so no ratio tells.
+    let lost = |row: &Row| {
+        (row.not_following > 0).then(|| {
+            let Row { time_gap_s, delay_s, loss, not_following, .. } = row;
+            format!(
+                "{not_following} vehicles that did not follow at a time gap of {time_gap_s} s, a delay of {delay_s} s and a \
+                 loss of {loss}"
+            )
+        })
+    };
+    let each = |of: &dyn Fn(&Row) -> Option<String>| rows.iter().filter_map(of).collect::<Vec<_>>();
+    [each(&above), each(&crashed), each(&lost)].concat()
+}
+
+/// The smallest time gap for which the limit holds there and at every larger one that was tried.
+#[must_use]
+pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
+    let holds = |gap: f64| {
+        rows.iter().filter(|row| row.time_gap_s == gap).all(|row| failures(std::slice::from_ref(row)).is_empty())
+    };
+    let mut gaps: Vec<f64> = rows.iter().map(|row| row.time_gap_s).collect();
+    gaps.sort_by(|a, b| b.total_cmp(a));
+    gaps.into_iter().take_while(|gap| holds(*gap)).last()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn outcome(ratio: f64, disturbance: &str) -> Outcome {
+        let worst = Some(Worst { ratio, disturbance: disturbance.into(), vehicle: 1 });
+        Outcome { holdover: worst.clone(), as_it_stands: worst, age_times_speed: None, collisions: 1, not_following: 0 }
+    }
+
+    #[test]
+    fn the_largest_of_all_seeds_counts_for_each_disturbance_and_for_all() {
+        let outcomes = [vec![outcome(0.9, "step"), outcome(1.1, "step")], vec![outcome(0.7, "1 Hz")]];
+        let row = row((1.0, 0.1, 0.2), &outcomes);
+        let ratios: Vec<f64> = row.by_disturbance.iter().flatten().map(|worst| worst.ratio).collect();
+        assert_eq!(ratios, [1.1, 0.7]);
+        assert_eq!(
+            (row.holdover.unwrap().ratio, row.age_times_speed, row.runs, row.runs_above, row.collisions),
+            (1.1, None, 3, 1, 3)
+        );
+    }
+}

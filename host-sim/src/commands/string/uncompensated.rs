@@ -1,0 +1,114 @@
+//! The same string without holdover: a leader's drive, a channel and the same law enter, speeds leave. Each vehicle drives
+//! by the newest message of the one ahead as it stands, or moved on by its age times its speed, as platoon simulators do.
+
+use holdover::model::Body;
+use holdover::units::Acceleration;
+
+use super::amplification::Speeds;
+use crate::input::impairment::Link;
+use crate::input::scenario::Scenario;
+use crate::sim::channel::Channel;
+use crate::sim::plant::Plant;
+use crate::sim::quantities::speed;
+use crate::sim::world::{config, machine};
+
+/// What a vehicle makes of a message that is some time old.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// It takes it as it stands.
+    AsItStands,
+    /// It adds age times speed to the position.
+    AgeTimesSpeed,
+}
+
+/// A message: when it was sent, position and speed then.
+#[derive(Clone, Copy)]
+struct Sample {
+    at_s: f64,
+    position_m: f64,
+    speed_mps: f64,
+}
+
+/// A follower.
+struct Follower {
+    plant: Plant,
+    demand_mps2: f64,
+    newest: Option<Sample>,
+    coming: Vec<(f64, Sample)>,
+}
+
+/// Drives the string of a scenario whose leader has a motion. Messages go from each vehicle to the next one only.
+#[must_use]
+pub fn run(scenario: &Scenario, seed: u64, reading: Reading) -> Speeds {
+    let period_s = scenario.period_s;
+    let Some(motion) = &scenario.leader.motion else { return Speeds { period_s, vehicles: Vec::new() } };
+    let mut channel = Channel::new(&scenario.channel, seed);
+    let starts = scenario.initial_states(seed);
+    let mut followers: Vec<Follower> = starts
+        .iter()
+        .enumerate()
+        .skip(1)
+        .map(|(index, start)| Follower {
+            plant: Plant::cruising(machine(scenario, index), start.position_m, start.speed_mps),
+            demand_mps2: 0.0,
+            newest: None,
+            coming: Vec::new(),
+        })
+        .collect();
+    let origin_m = starts[0].position_m - motion.at(0.0).position_m;
+    let (ticks, every) = (
+        (scenario.duration_s / period_s).round() as usize,
+        (1.0 / scenario.message_rate_hz / period_s).round().max(1.0) as usize,
+    );
+    let mut vehicles = vec![Vec::with_capacity(ticks); starts.len()];
+    for tick in 0..ticks {
+        let at_s = tick as f64 * period_s;
+        let leader = motion.at(at_s);
+        let mut ahead = Sample { at_s, position_m: origin_m + leader.position_m, speed_mps: leader.speed_mps };
+        vehicles[0].push(ahead.speed_mps);
+        for (index, follower) in (1..).zip(&mut followers) {
+            if tick % every == 0 {
+                let arrivals = channel.send(Link { from: index - 1, to: index }, at_s);
+                follower.coming.extend(arrivals.into_iter().map(|arrives_s| (arrives_s, ahead)));
+            }
+            follower.hear(at_s);
+            ahead = Sample { at_s, position_m: follower.plant.position_m, speed_mps: follower.plant.speed_mps };
+            vehicles[index].push(ahead.speed_mps);
+            follower.drive(scenario, index, at_s, reading);
+        }
+    }
+    Speeds { period_s, vehicles }
+}
+
+impl Follower {
+    fn hear(&mut self, at_s: f64) {
+        let arrived = self.coming.iter().filter(|(arrives_s, _)| *arrives_s <= at_s).map(|(_, sample)| *sample);
+        self.newest = arrived.chain(self.newest).max_by(|a, b| a.at_s.total_cmp(&b.at_s));
+        self.coming.retain(|(arrives_s, _)| *arrives_s > at_s);
+    }
+
+    /// Eq. 5, within the limits that the units have too.
+    fn drive(&mut self, scenario: &Scenario, index: usize, at_s: f64, reading: Reading) {
+        let config = config(scenario, index);
+        let number = |thousandths: i32| f64::from(thousandths) / 1e3;
+        let (k, damping) = (number(config.law.gain.to_milli()), number(config.law.damping.to_millis()));
+        let described = &scenario.vehicles[index];
+        let spacing = scenario.vehicles[index - 1].length_m + described.standstill_m;
+        let Plant { position_m, speed_mps, .. } = self.plant;
+        let desired = self.newest.map_or(0.0, |sample| {
+            let moved = match reading {
+                Reading::AsItStands => 0.0,
+                Reading::AgeTimesSpeed => sample.speed_mps * (at_s - sample.at_s),
+            };
+            let error = position_m - sample.position_m - moved + spacing + speed_mps * described.time_gap_s;
+            -k * (error + damping * (speed_mps - sample.speed_mps))
+        });
+        let limits = config.limits;
+        let slew = number(limits.jerk.to_mm_per_s3()) * scenario.period_s;
+        let (lowest, highest) = (-number(limits.braking.to_mm_per_s2()), number(limits.acceleration.to_mm_per_s2()));
+        self.demand_mps2 = desired.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
+        let demand = Acceleration::from_bits((self.demand_mps2 * f64::from(1 << 25)).round() as i32);
+        let body: Body = config.body;
+        self.plant.drive(body.effort(demand, speed(speed_mps)), scenario.period_s);
+    }
+}

@@ -1,0 +1,73 @@
+//! `sweep`: checked options enter; a table or JSON on stdout and a report of errors and cost over the prediction step
+//! leave; and the verdict.
+//!
+//! ```text
+//! scenario at each step -> rows (runs of all seeds, on all cores) -> timing (alone) -> table, JSON, report
+//! ```
+
+pub mod arguments;
+pub mod options;
+mod page;
+pub mod rows;
+pub mod table;
+pub mod timing;
+
+pub use timing::of_log;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::error::Error;
+use crate::verdict::Verdict;
+use options::SweepOptions;
+use rows::{Failure, Row};
+
+/// The results, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct Results<'a> {
+    rows: &'a [Row],
+}
+
+/// Runs the scenario at all steps with all seeds and writes what the options ask for.
+///
+/// # Errors
+/// A scenario that the units refuse, and places that cannot be written.
+pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
+    let bar = progress(options);
+    let (mut rows, mut failures) = (Vec::new(), Vec::new());
+    for scenario in &options.scenarios {
+        bar.set_message(format!("step {} s", scenario.step_s));
+        let runs = rows::run(scenario, options.seed, options.seeds, || bar.inc(1))?;
+        let timing = timing::measure(scenario, options.seed)?;
+        let (step_s, seeds) = (scenario.step_s, options.seeds);
+        rows.push(Row { step_s, seeds, ours: runs.ours, paper: runs.paper, timing });
+        failures.extend(runs.failures);
+    }
+    bar.finish_and_clear();
+    let said = match &failures[..] {
+        [] => String::new(),
+        failures => format!("verdict: {}", verdict(options.runs(), failures)),
+    };
+    let page = || page::report(options, &rows, &failures).render();
+    options.destination.deliver(&Results { rows: &rows }, &table::text(options, &rows, &failures), &said, page)?;
+    Ok(Verdict::of(&failures))
+}
+
+fn progress(options: &SweepOptions) -> ProgressBar {
+    let bar = ProgressBar::new(options.runs());
+    // The template is a constant; should it ever be wrong, the usual bar does.
+    if let Ok(style) = ProgressStyle::with_template("{msg:>12} {wide_bar} {pos}/{len} runs, {eta} to go") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The verdict in words.
+fn verdict(runs: u64, failures: &[Failure]) -> String {
+    let Some(first) = failures.first() else { return "passed".into() };
+    let (count, causes) = (failures.len(), first.causes.join("; "));
+    format!(
+        "FAILED: {count} of {runs} runs, the first at a step of {} s with seed {}: {causes}",
+        first.step, first.seed
+    )
+}

@@ -1,0 +1,54 @@
+//! The options of `sweep`: typed values enter, a checked scenario for each step leaves.
+
+use std::path::PathBuf;
+
+use super::arguments::SweepArguments;
+use crate::commands::ending::Destination;
+use crate::error::Error;
+use crate::input::scenario::{Overrides, Scenario};
+use crate::seeds;
+
+/// A sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweepOptions {
+    /// The scenario.
+    pub base: Scenario,
+    /// The same at each step, in the order given; at least one.
+    pub scenarios: Vec<Scenario>,
+    /// The file that it came from; `None`: it is the paper's.
+    pub scenario_file: Option<PathBuf>,
+    /// The first seed.
+    pub seed: u64,
+    /// How many; at least 1.
+    pub seeds: u64,
+    /// Where its results go.
+    pub destination: Destination,
+}
+
+impl SweepOptions {
+    /// Reads what the arguments name and checks it.
+    ///
+    /// # Errors
+    /// Values that cannot be, a scenario that cannot be used, and a folder that cannot be written.
+    pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
+        let SweepArguments { scenario: scenario_file, steps, seeds, seed, json, out, no_report } = arguments;
+        let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
+        let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
+        let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
+        seeds::checked(scenario.seed, seeds)?;
+        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, destination })
+    }
+
+    /// The last seed.
+    #[must_use]
+    pub fn last_seed(&self) -> u64 {
+        self.seed + (self.seeds - 1)
+    }
+
+    /// Runs of all steps and seeds.
+    #[must_use]
+    pub fn runs(&self) -> u64 {
+        self.scenarios.len() as u64 * self.seeds
+    }
+}

@@ -1,0 +1,101 @@
+//! The runs of one step: a scenario and seeds enter, the figures of all of them together leave.
+
+use serde::Serialize;
+
+use super::timing::Timing;
+use crate::error::Error;
+use crate::input::scenario::Scenario;
+use crate::measure::figures::{errors, failures, ours, papers};
+use crate::measure::metrics::{max_abs, percentile_abs};
+use crate::measure::simulate::simulate;
+use crate::parallel;
+
+/// The figures of one step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Prediction step, `δt`.
+    pub step_s: f64,
+    /// Runs.
+    pub seeds: u64,
+    /// Ours.
+    pub ours: Errors,
+    /// The literal paper's, on the same messages.
+    pub paper: Errors,
+    /// Wall-clock figures; everything else is the same for the same seeds.
+    pub timing: Timing,
+}
+
+/// The position errors of one estimator over all seeds; `None` if it never had an estimate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Largest magnitude, in metres.
+    pub max_position_error_m: Option<f64>,
+    /// 99th percentile of the magnitudes of all runs together, by nearest rank, in metres.
+    pub p99_position_error_m: Option<f64>,
+}
+
+impl Errors {
+    fn of(errors: &[f64]) -> Self {
+        Self { max_position_error_m: max_abs(errors), p99_position_error_m: percentile_abs(errors, 99.0) }
+    }
+}
+
+/// A run that failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// Its seed.
+    pub seed: u64,
+    /// Its step, as it is spelled.
+    pub step: String,
+    /// Why.
+    pub causes: Vec<String>,
+}
+
+/// All runs of one step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Runs {
+    /// Ours.
+    pub ours: Errors,
+    /// The literal paper's.
+    pub paper: Errors,
+    /// Those that failed, by seed.
+    pub failures: Vec<Failure>,
+}
+
+struct Outcome {
+    ours: Vec<f64>,
+    paper: Vec<f64>,
+    causes: Vec<String>,
+}
+
+/// Runs the scenario with every seed on all cores; `done` is called after each run.
+///
+/// # Errors
+/// What a unit finds wrong with the configuration that the scenario gives it.
+pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -> Result<Runs, Error> {
+    let one = |seed: u64| {
+        let outcome = outcome(scenario, seed);
+        done();
+        outcome.map(|outcome| (seed, outcome))
+    };
+    let (mut ours, mut paper, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+    for outcome in parallel::each(seed..=seed + (seeds - 1), one) {
+        let (seed, outcome) = outcome?;
+        ours.extend(outcome.ours);
+        paper.extend(outcome.paper);
+        if !outcome.causes.is_empty() {
+            failures.push(Failure { seed, step: scenario.step_s.to_string(), causes: outcome.causes });
+        }
+    }
+    Ok(Runs { ours: Errors::of(&ours), paper: Errors::of(&paper), failures })
+}
+
+fn outcome(scenario: &Scenario, seed: u64) -> Result<Outcome, Error> {
+    let (trace, summary) = simulate(scenario, seed, None, |_| {})?;
+    let values = |errors: Vec<(f64, f64)>| errors.into_iter().map(|(_, error)| error).collect();
+    Ok(Outcome {
+        ours: values(errors(&trace, ours(&trace))),
+        paper: values(errors(&trace, papers(&trace))),
+        causes: failures(scenario, &summary),
+    })
+}

@@ -1,0 +1,106 @@
+//! The scenarios that come with the program: a name or a path enters, the text of a scenario and what kind it is leave.
+
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{Error, quoted};
+
+/// A scenario that comes with the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// What `run` calls it.
+    pub name: &'static str,
+    /// Its file.
+    pub text: &'static str,
+}
+
+macro_rules! entries {
+    ($($name:literal),+ $(,)?) => {
+        &[$(Entry { name: $name, text: include_str!(concat!("../../scenarios/", $name, ".toml")) }),+]
+    };
+}
+
+/// All of them; the files are in `scenarios/`.
+pub const LIBRARY: &[Entry] = entries!["paper", "corridor", "motorway", "merge", "stop-and-go", "storm"];
+
+/// What a scenario is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Vehicles in one string.
+    String,
+    /// Roads that cross.
+    Corridor,
+}
+
+/// The file of that path, or the scenario of that name: where it is, as errors name it, and its text.
+///
+/// # Errors
+/// Neither is there, or the file is not text.
+pub fn text(named: &Path) -> Result<(PathBuf, String), Error> {
+    match std::fs::read(named) {
+        Ok(bytes) => {
+            let text = String::from_utf8(bytes).map_err(|_| {
+                let remedy = "give a scenario in TOML, such as scenarios/paper.toml";
+                Error::new("is not a text file", remedy).in_file(named)
+            })?;
+            Ok((named.to_owned(), text))
+        }
+        Err(error) => match LIBRARY.iter().find(|entry| named.to_str() == Some(entry.name)) {
+            Some(entry) => Ok((PathBuf::from(format!("scenarios/{}.toml", entry.name)), entry.text.to_owned())),
+            None => Err(Error::unreadable(named, &error)),
+        },
+    }
+}
+
+/// What kind of scenario that text is; that of a string unless it says otherwise.
+///
+/// # Errors
+/// It says something else.
+pub fn kind(file: &Path, text: &str) -> Result<Kind, Error> {
+    // What is not TOML at all is left to the reader of the scenario, who says where.
+    let Ok(table) = DeTable::parse(text) else { return Ok(Kind::String) };
+    let Some((key, value)) = table.get_ref().get_key_value("kind") else { return Ok(Kind::String) };
+    match value.get_ref() {
+        DeValue::String(word) if word == "string" => Ok(Kind::String),
+        DeValue::String(word) if word == "corridor" => Ok(Kind::Corridor),
+        other => {
+            let found = other.as_str().map_or("something else".into(), quoted);
+            let line = 1 + text.as_bytes()[..key.span().start].iter().filter(|byte| **byte == b'\n').count() as u64;
+            let error = Error::new(format!("`kind` is {found}"), "give \"string\" or \"corridor\"");
+            Err(error.in_file(file).at_line(line))
+        }
+    }
+}
+
+/// The list of the scenarios, a line each.
+#[must_use]
+pub fn list() -> String {
+    let about = |text: &str| {
+        let table = DeTable::parse(text).ok();
+        let about = table.as_ref().and_then(|table| table.get_ref().get("about")?.get_ref().as_str());
+        about.unwrap_or_default().to_owned()
+    };
+    let width = LIBRARY.iter().map(|entry| entry.name.len()).max().unwrap_or(0);
+    LIBRARY.iter().map(|entry| format!("{:width$}  {}\n", entry.name, about(entry.text))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scenario_of_the_library_has_a_line_that_says_what_it_is() {
+        assert_eq!(list().lines().count(), LIBRARY.len());
+        assert!(list().lines().all(|line| line.split_whitespace().count() > 4), "{}", list());
+    }
+
+    #[test]
+    fn a_kind_that_is_none_is_refused_in_its_line() {
+        let file = Path::new("x.toml");
+        assert_eq!(kind(file, "seed = 1"), Ok(Kind::String));
+        assert_eq!(kind(file, "kind = \"corridor\""), Ok(Kind::Corridor));
+        let error = kind(file, "seed = 1\nkind = \"ring\"").unwrap_err();
+        assert_eq!(error.to_string(), "x.toml:2: `kind` is \"ring\"; give \"string\" or \"corridor\"");
+    }
+}

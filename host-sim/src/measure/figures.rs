@@ -1,0 +1,184 @@
+//! The figures of a run: a trace enters, the figures of merit and why it failed, if it did, leave.
+
+use holdover::wire::command::ModeCode;
+use serde::Serialize;
+
+use crate::input::impairment::Link;
+use crate::input::scenario::Scenario;
+use crate::measure::metrics::{
+    ErrorStatistics, SETTLED_FROM_S, STANDING_BELOW_MPS, collisions, full_stops, lowest_speed, smallest_gap,
+};
+use crate::sim::world::{Tick, Trace};
+
+mod bound;
+
+pub use bound::{BoundFigures, bounds};
+
+/// The position errors of one estimator, in metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Largest magnitude.
+    pub max_position_error_m: Option<f64>,
+    /// 99th percentile of the magnitude, by nearest rank.
+    pub p99_position_error_m: Option<f64>,
+    /// Root of the mean square.
+    pub rms_position_error_m: Option<f64>,
+}
+
+impl Errors {
+    fn of(errors: &[f64]) -> Self {
+        let figures = ErrorStatistics::of(errors);
+        Self { max_position_error_m: figures.max, p99_position_error_m: figures.p99, rms_position_error_m: figures.rms }
+    }
+}
+
+/// The last gate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EnvelopeFigures {
+    /// Whether it was engaged.
+    pub engaged: bool,
+    /// Share of time in which it changed the command of a vehicle whose link to the one ahead is impaired, 0 to 1.
+    pub limited_share: f64,
+}
+
+/// Wall-clock figures; everything else is the same for the same seed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Timing {
+    /// Simulated seconds per second.
+    pub realtime_factor: f64,
+}
+
+/// The figures of one run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Ours.
+    #[serde(flatten)]
+    pub ours: Errors,
+    /// The literal paper's, on the same messages.
+    pub paper: Errors,
+    /// Smallest bumper gap along the virtual lane.
+    pub min_gap_m: Option<f64>,
+    /// Lowest speed of any vehicle.
+    pub min_speed_mps: Option<f64>,
+    /// Full stops of vehicles that a unit drives.
+    pub full_stops: usize,
+    /// Episodes of a bumper gap below 0.
+    pub collisions: usize,
+    /// Wall-clock figures.
+    pub timing: Timing,
+    /// What was certain of the targets.
+    pub bound: BoundFigures,
+    /// The last gate.
+    pub envelope: EnvelopeFigures,
+}
+
+/// The errors over time, from when they count on: `(time, error)`.
+#[must_use]
+pub fn errors(trace: &Trace, estimates: impl Fn(usize) -> Option<f64>) -> Vec<(f64, f64)> {
+    let truth = &trace.vehicles[trace.measured.vehicle];
+    let settled = trace.times_s.iter().enumerate().filter(|(_, at_s)| **at_s >= SETTLED_FROM_S - 1e-9);
+    settled.filter_map(|(tick, at_s)| Some((*at_s, estimates(tick)? - truth[tick].position_m))).collect()
+}
+
+/// Where the follower's unit believes the measured vehicle is, at that tick.
+pub fn ours(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
+    |tick| trace.vehicles[trace.measured.by][tick].target.map(|belief| belief.position_m)
+}
+
+/// Where the literal paper believes it is, at that tick.
+pub fn papers(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
+    |tick| trace.paper.get(tick).copied().flatten()
+}
+
+/// The bumper gap of each vehicle but the first to the one ahead, over time.
+#[must_use]
+pub fn gaps(scenario: &Scenario, trace: &Trace) -> Vec<Vec<(f64, f64)>> {
+    let gap = |follower: usize| {
+        let (ahead, behind) = (&trace.vehicles[follower - 1], &trace.vehicles[follower]);
+        let length_m = scenario.vehicles[follower - 1].length_m;
+        let gap = move |tick: usize| ahead[tick].position_m - length_m - behind[tick].position_m;
+        trace.times_s.iter().enumerate().map(|(tick, at_s)| (*at_s, gap(tick))).collect()
+    };
+    (1..trace.vehicles.len()).map(gap).collect()
+}
+
+/// The speed of each vehicle over time.
+#[must_use]
+pub fn speeds(trace: &Trace) -> Vec<Vec<(f64, f64)>> {
+    let speeds =
+        |ticks: &Vec<Tick>| trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.speed_mps)).collect();
+    trace.vehicles.iter().map(speeds).collect()
+}
+
+/// The followers whose link to the vehicle ahead is impaired; all, if that is nobody's.
+#[must_use]
+pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
+    let followers = 1..scenario.vehicles.len();
+    let impaired = |index: &usize| scenario.channel.impairs(Link { from: index - 1, to: *index });
+    let found: Vec<usize> = followers.clone().filter(impaired).collect();
+    if found.is_empty() { followers.collect() } else { found }
+}
+
+/// Share of time in which the envelope changed the command of one of these vehicles, 0 to 1.
+#[must_use]
+pub fn limited_share(trace: &Trace, vehicles: &[usize]) -> f64 {
+    let ticks = || vehicles.iter().flat_map(|index| &trace.vehicles[*index]);
+    ticks().filter(|tick| tick.limited).count() as f64 / ticks().count().max(1) as f64
+}
+
+/// The figures of a trace.
+#[must_use]
+pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Summary {
+    let values = |series: Vec<(f64, f64)>| series.into_iter().map(|(_, error)| error).collect::<Vec<f64>>();
+    let (gaps, speeds) = (gaps(scenario, trace), speeds(trace));
+    let driven = usize::from(scenario.leader.motion.is_some());
+    Summary {
+        ours: Errors::of(&values(errors(trace, ours(trace)))),
+        paper: Errors::of(&values(errors(trace, papers(trace)))),
+        min_gap_m: gaps.iter().filter_map(|gap| smallest_gap(gap)).reduce(f64::min),
+        min_speed_mps: speeds.iter().filter_map(|speed| lowest_speed(speed)).reduce(f64::min),
+        full_stops: speeds.iter().skip(driven).map(|speed| full_stops(speed)).sum(),
+        collisions: gaps.iter().map(|gap| collisions(gap)).sum(),
+        timing: Timing { realtime_factor },
+        bound: BoundFigures::of(scenario, trace),
+        envelope: EnvelopeFigures {
+            engaged: scenario.envelope.engaged,
+            limited_share: limited_share(trace, &impaired_followers(scenario)),
+        },
+    }
+}
+
+/// Why a run failed; empty if it passed.
+#[must_use]
+pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
+    let mut failures = Vec::new();
+    if summary.collisions > 0 {
+        failures.push(format!("{} collision(s): a bumper gap fell below 0", summary.collisions));
+    }
+    if summary.bound.violations > 0 {
+        failures.push(format!("{} tick(s) at which a target was outside its bound", summary.bound.violations));
+    }
+    // A recorded or programmed leader may stop, and everyone behind it then has to; and stopping in a silence is what the envelope is
+    // for.
+    let stops = scenario.leader.program.iter().any(|(_, speed_mps)| *speed_mps < STANDING_BELOW_MPS);
+    let may_stop = scenario.leader.motion.is_some() || stops || scenario.envelope.engaged;
+    if summary.full_stops > 0 && !may_stop {
+        failures.push(format!("{} full stop(s)", summary.full_stops));
+    }
+    if summary.ours.max_position_error_m.is_none() {
+        failures.push("the target was never estimated".into());
+    }
+    failures
+}
+
+/// The name of a mode, as reports spell it.
+#[must_use]
+pub const fn mode_name(mode: ModeCode) -> &'static str {
+    match mode {
+        ModeCode::Standby => "standby",
+        ModeCode::Cooperative => "cooperative",
+        ModeCode::Holdover => "holdover",
+        ModeCode::Fallback => "fallback",
+        ModeCode::Fault => "fault",
+    }
+}

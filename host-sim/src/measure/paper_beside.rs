@@ -1,0 +1,35 @@
+//! The literal paper beside a unit: what that unit receives enters; where the paper believes that the measured vehicle is
+//! goes into the trace.
+
+use std::io;
+
+use super::baseline::Baseline;
+use super::baseline::paper::Paper;
+use super::observer::Tap;
+use crate::input::scenario::Scenario;
+use crate::sim::world::{Trace, World};
+
+/// The paper, and its ear on the bus of the measuring vehicle.
+pub struct PaperBeside {
+    tap: Tap,
+    paper: Paper,
+}
+
+impl PaperBeside {
+    /// Listens from now on.
+    #[must_use]
+    pub fn of(world: &World<'_>, scenario: &Scenario) -> Self {
+        let tap = Tap::of(world);
+        Self { paper: Paper::new(tap.measured().vehicle, scenario.step_s), tap }
+    }
+
+    /// Notes what it believes in a tick; after the units have acted in it.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn note(&mut self, world: &World<'_>, at_s: f64, trace: &mut Trace) -> io::Result<()> {
+        self.tap.hear(world, at_s, |heard| self.paper.hear(&heard))?;
+        trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
+        Ok(())
+    }
+}

@@ -1,0 +1,136 @@
+//! The reference that drives alone when the link to its target is lost: what is on the roads enters, the acceleration leaves.
+//!
+//! On its own road it has an ideal range sensor and an adaptive cruise control, the Intelligent Driver Model with the traffic's
+//! time gap. Nobody can be seen on a crossing road, so it stops before the conflict area of the next intersection and waits
+//! there until it hears again; unless it can no longer stop there.
+//!
+//! It minds whoever is just ahead of it in the order and whoever is just ahead on its leg, followed or not: far behind both it
+//! follows nobody, and would still have to give way to one that it does not hear. If only the link to the one on its leg is
+//! lost, it gives way to the other as its unit does, which also follows the estimate of the one that it does not hear: that can
+//! only slow it down.
+
+use holdover::controller::Mode;
+use holdover::coordination::Choice;
+use holdover::time::Instant;
+
+use super::description::Traffic;
+use super::network::Network;
+use super::watch::Sighting;
+use crate::input::kind::Kind;
+use crate::sim::vehicle::Unit;
+
+/// Largest acceleration of the model.
+const ACCELERATION_MPS2: f64 = 1.5;
+/// Comfortable braking of the model.
+const BRAKING_MPS2: f64 = 2.0;
+/// Who would have to brake harder than this to stop before the conflict area goes on.
+const HARDEST_MPS2: f64 = 4.0;
+/// Nobody brakes harder than a bus can.
+const EMERGENCY_MPS2: f64 = 6.0;
+/// How far before the conflict area the stop line is.
+const LINE_M: f64 = 1.0;
+
+/// To whom the link is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// Whoever is just ahead on the same leg.
+    pub lane: bool,
+    /// Whoever is just ahead in the order, and comes by a crossing leg.
+    pub crossing: bool,
+}
+
+impl Lost {
+    /// By what a unit knows; `None` while it hears both.
+    #[must_use]
+    pub fn of(unit: &Unit, now: Instant) -> Option<Self> {
+        let (choice, limits) = (unit.coordination().choice(), &unit.config().link);
+        let is_off = |slot: u8| unit.peers().get(slot.into()).is_some_and(|track| !track.link().is_on(now, limits));
+        let lane = choice.lane.is_some_and(is_off);
+        let crossing = choice.order.filter(|order| choice.lane != Some(*order)).is_some_and(is_off);
+        // Whatever else keeps a unit from cooperating, nothing is known then of those who cross.
+        let crossing = crossing || !lane && unit.mode() != Mode::Cooperative;
+        (lane || crossing).then_some(Self { lane, crossing })
+    }
+}
+
+/// The acceleration that it wants, on its own leg by sight; it stops at the line if it `waits` for those who cross.
+#[must_use]
+pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic, waits: bool) -> f64 {
+    let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
+    let ahead = all.iter().filter(|other| other.road == own.road && other.way_m > own.way_m);
+    let ahead = ahead.min_by(|a, b| a.way_m.total_cmp(&b.way_m));
+    let behind = |gap_m: f64, speed_mps: f64, standstill_m: f64| {
+        let closing = own.speed_mps * (own.speed_mps - speed_mps) / (2.0 * (ACCELERATION_MPS2 * BRAKING_MPS2).sqrt());
+        let wanted_m = standstill_m + (own.speed_mps * traffic.time_gap_s + closing).max(0.0);
+        (wanted_m / gap_m.max(0.1)).powi(2)
+    };
+    let mut presses: f64 = 0.0;
+    if let Some(ahead) = ahead {
+        let gap_m = ahead.way_m - ahead.length_m - own.way_m;
+        presses = presses.max(behind(gap_m, ahead.speed_mps, traffic.standstill_m));
+    }
+    if let Some(gap_m) = to_stop_line(own, network).filter(|_| waits) {
+        presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
+    }
+    (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
+}
+
+/// The acceleration of one that drives by sight, but where it hears one that it gives way to no more than its unit asks for.
+#[must_use]
+pub fn still_given_way(lost: Lost, choice: &Choice, by_sight: f64, by_unit: f64) -> f64 {
+    let hears_one_that_crosses = !lost.crossing && choice.order.is_some() && choice.order != choice.lane;
+    if hears_one_that_crosses { by_sight.min(by_unit) } else { by_sight }
+}
+
+/// The same within what a vehicle has published that it can do, by which others know what is certain of it.
+#[must_use]
+pub fn published(wanted_mps2: f64, kind: Kind) -> f64 {
+    let [braking, acceleration] =
+        [kind.limits().braking, kind.limits().acceleration].map(|limit| limit.get().to_num::<f64>());
+    wanted_mps2.clamp(-braking, acceleration)
+}
+
+/// The way to the stop line of the next intersection, if it can still stop there.
+fn to_stop_line(own: &Sighting, network: &Network) -> Option<f64> {
+    let lines = network.lanes[own.road]
+        .stops
+        .iter()
+        .map(|stop| stop.at_m - network.junctions[stop.intersection].half_m - LINE_M - own.way_m);
+    let gap_m = lines.filter(|gap_m| *gap_m >= 0.0).min_by(f64::total_cmp)?;
+    (own.speed_mps * own.speed_mps <= 2.0 * HARDEST_MPS2 * gap_m).then_some(gap_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::example;
+    use super::*;
+
+    #[test]
+    fn it_gives_way_to_one_that_crosses_and_is_heard_and_does_not_follow_an_estimate_else() {
+        let [lane, crossing, both] =
+            [(true, false), (false, true), (true, true)].map(|(lane, crossing)| Lost { lane, crossing });
+        let choice = |order, lane| Choice { target: lane, order, lane, ..Choice::default() };
+        let wanted = |lost, choice: Choice| still_given_way(lost, &choice, 0.5, -2.0);
+        assert_eq!(wanted(lane, choice(Some(1), Some(0))), -2.0);
+        assert_eq!(wanted(lane, choice(None, Some(0))), 0.5);
+        assert_eq!(wanted(lane, choice(Some(0), Some(0))), 0.5);
+        assert_eq!(wanted(crossing, choice(Some(1), None)), 0.5);
+        assert_eq!(wanted(both, choice(Some(1), Some(0))), 0.5);
+    }
+
+    #[test]
+    fn it_stops_at_the_line_for_those_who_cross_and_for_nobody_else() {
+        let corridor = example::corridor();
+        let network = Network::of(&corridor);
+        let stop = network.lanes[0].stops[0];
+        let line_m = stop.at_m - network.junctions[stop.intersection].half_m - LINE_M;
+        let own = |before_m: f64| example::sighting(0, 0, line_m - before_m);
+        let wanted = |before_m, waits| demand(&own(before_m), &[], &network, &corridor.traffic, waits);
+        assert!(wanted(30.0, true) < -1.0 && wanted(30.0, false) > 0.0, "{}", wanted(30.0, true));
+        // From 10 m/s with 4 m/s² it takes 12.5 m to stop.
+        assert!(wanted(12.6, true) < -3.0);
+        assert_eq!(wanted(12.4, true), wanted(12.4, false));
+        let ahead = Sighting { way_m: line_m - 10.0, speed_mps: 0.0, trip: 1, ..own(0.0) };
+        assert!(demand(&own(30.0), &[ahead], &network, &corridor.traffic, false) < -3.0);
+    }
+}

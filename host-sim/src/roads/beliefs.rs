@@ -1,0 +1,297 @@
+//! How right the units are about their targets: who is where and what the units believe enter, tick by tick; position errors
+//! on the virtual lane leave, in two classes.
+//!
+//! A target's true place on the virtual lane is its own bumper if it drives on the same road, and otherwise as far before the
+//! crossing point as it is on its road. When a target's own association changes, what it will do changes with it, and
+//! who heard it before knows only what it has announced: for [`CHANGED_S`] from then on the errors stand apart. Those later on of a
+//! unit that has still heard nothing from the target since count, and are shown apart besides.
+
+use std::collections::BTreeMap;
+
+use holdover::wire::StationHash;
+
+use super::network::Network;
+use super::watch::{Sighting, Watch};
+
+/// For so long after a target's own association has changed, errors stand apart.
+pub const CHANGED_S: f64 = 1.0;
+
+/// An error that is worth a second look, in metres.
+pub const BEYOND_M: f64 = 0.2;
+
+/// Errors of one class.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Class {
+    /// Ticks.
+    pub count: u64,
+    /// Largest magnitude, and when and whose it was.
+    pub worst: Option<Worst>,
+    /// Sum of the squares.
+    pub squares: f64,
+}
+
+/// The largest error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// With its sign: believed minus true.
+    pub error_m: f64,
+    /// When.
+    pub at_s: f64,
+    /// Whose unit believed so.
+    pub by: usize,
+    /// Of whom.
+    pub target: usize,
+    /// How old what it had heard was.
+    pub age_s: f64,
+}
+
+impl Class {
+    fn add(&mut self, worst: Worst) {
+        self.count += 1;
+        self.squares += worst.error_m * worst.error_m;
+        if self.worst.is_none_or(|held| held.error_m.abs() < worst.error_m.abs()) {
+            self.worst = Some(worst);
+        }
+    }
+
+    /// The largest magnitude.
+    #[must_use]
+    pub fn max_m(&self) -> Option<f64> {
+        self.worst.map(|worst| worst.error_m.abs())
+    }
+
+    /// Root of the mean square.
+    #[must_use]
+    pub fn rms_m(&self) -> Option<f64> {
+        (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
+    }
+
+    /// Two classes together.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let worst = [self.worst, other.worst].into_iter().flatten();
+        Self {
+            count: self.count + other.count,
+            squares: self.squares + other.squares,
+            worst: worst.reduce(|a, b| if b.error_m.abs() > a.error_m.abs() { b } else { a }),
+        }
+    }
+}
+
+/// The classes.
+pub struct Beliefs<'a> {
+    network: &'a Network,
+    /// The target's own association has not changed of late.
+    pub settled: Class,
+    /// It has changed within the last [`CHANGED_S`].
+    pub changing: Class,
+    /// Of the first class: it has changed before that, and nothing has been heard from the target since.
+    pub unheard: Class,
+    /// For each unit and target whose error was in the first class and beyond [`BEYOND_M`], the largest.
+    pub beyond: BTreeMap<(usize, usize), Worst>,
+    /// Changes of whom somebody follows.
+    pub changes: u64,
+    /// Ticks at which what is certain did not hold the truth; in the first of the classes.
+    pub violations: u64,
+    /// Errors over time of the unit that is watched: `(time, error)`.
+    pub watched: Vec<(f64, f64)>,
+    watch: Option<usize>,
+    associations: BTreeMap<usize, (Option<StationHash>, f64)>,
+}
+
+impl<'a> Beliefs<'a> {
+    /// Nothing is known yet; errors over time are kept of the unit of that trip.
+    #[must_use]
+    pub fn new(network: &'a Network, watch: Option<usize>) -> Self {
+        Self {
+            network,
+            settled: Class::default(),
+            changing: Class::default(),
+            unheard: Class::default(),
+            beyond: BTreeMap::new(),
+            changes: 0,
+            violations: 0,
+            watched: Vec::new(),
+            watch,
+            associations: BTreeMap::new(),
+        }
+    }
+
+    /// Where a target truly is, on the axis of the way of the one that follows it.
+    fn truth(&self, own: &Sighting, target: &Sighting) -> Option<f64> {
+        if own.road == target.road {
+            return Some(target.way_m);
+        }
+        let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
+        // The two directions of a street share several intersections, and so several virtual lanes: it is about that of the
+        // one that the ego's unit takes for its next.
+        let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
+        let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
+        Some(here.at_m - there.at_m + target.way_m)
+    }
+}
+
+impl Watch for Beliefs<'_> {
+    fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+        for own in sightings {
+            let known = self.associations.entry(own.trip).or_insert((own.followed, f64::NEG_INFINITY));
+            if known.0 != own.followed {
+                *known = (own.followed, at_s);
+                self.changes += 1;
+            }
+        }
+        for own in sightings {
+            let (Some(belief), Some(followed)) = (own.belief, own.followed) else { continue };
+            // A target that has left is not looked at any more.
+            let Some(target) = sightings.iter().find(|other| other.station == followed) else { continue };
+            let Some(truth_m) = self.truth(own, target) else { continue };
+            let error_m = belief.position_m - own.odometer_m - truth_m;
+            let worst = Worst { error_m, at_s, by: own.trip, target: target.trip, age_s: belief.age_s };
+            let changed_s = self.associations.get(&target.trip).map_or(f64::NEG_INFINITY, |known| known.1);
+            if at_s - changed_s < CHANGED_S {
+                self.changing.add(worst);
+            } else {
+                if at_s - belief.age_s < changed_s {
+                    self.unheard.add(worst);
+                }
+                self.settled.add(worst);
+                if error_m.abs() > BEYOND_M {
+                    let held = self.beyond.entry((own.trip, target.trip)).or_insert(worst);
+                    if held.error_m.abs() < error_m.abs() {
+                        *held = worst;
+                    }
+                }
+            }
+            let truth_m = truth_m + own.odometer_m;
+            if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
+                self.violations += 1;
+            }
+            if self.watch == Some(own.trip) {
+                self.watched.push((at_s, error_m));
+            }
+        }
+    }
+
+    fn left(&mut self, _: f64, trip: usize) {
+        self.associations.remove(&trip);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::example;
+    use super::*;
+    use crate::sim::station::station;
+    use crate::sim::world::{Bounds, TargetBelief};
+
+    fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
+        Sighting { odometer_m: 500.0, ..example::sighting(trip, road, way_m) }
+    }
+
+    /// Ticks at which the bound did not hold the truth, of a unit on the one direction of a street that takes its stop of that
+    /// number for the next, while its rear has just left the third; it follows one that comes the other way and is 10 m
+    /// before the third, and is right about that.
+    fn violations_with_next(stop: usize) -> u64 {
+        let network = Network::of(&example::corridor());
+        let (own_lane, lane) = (&network.lanes[0], &network.lanes[1]);
+        let left = own_lane.stops[2];
+        let met = lane.stops.iter().find(|stop| stop.intersection == left.intersection).unwrap();
+        let position_m = 500.0 + left.at_m - 10.0;
+        let bound = Bounds {
+            lowest_position_m: position_m - 0.1,
+            highest_position_m: position_m + 0.1,
+            lowest_speed_mps: 9.9,
+            highest_speed_mps: 10.1,
+        };
+        let own = Sighting {
+            next: Some(own_lane.stops[stop].intersection),
+            followed: Some(station(1)),
+            belief: Some(TargetBelief { position_m, speed_mps: 10.0, age_s: 0.05, bound: Some(bound) }),
+            ..sighting(0, 0, left.at_m + network.junctions[left.intersection].half_m + 4.9)
+        };
+        let mut beliefs = Beliefs::new(&network, None);
+        beliefs.tick(1.0, &[own, sighting(1, 1, met.at_m - 10.0)]);
+        beliefs.violations
+    }
+
+    #[test]
+    fn between_two_reviews_the_virtual_lane_is_that_of_the_intersection_just_left() {
+        assert_eq!(violations_with_next(2), 0);
+        assert_eq!(violations_with_next(3), 1);
+    }
+
+    /// What becomes of an error at that time, in metres, about a target that began to follow somebody else at 10 s, by a unit
+    /// on the same road that heard from it so long before.
+    fn judged(errors: &[(f64, f64, f64)]) -> Judged {
+        let network = Network::of(&example::corridor());
+        let mut beliefs = Beliefs::new(&network, Some(0));
+        let see = |beliefs: &mut Beliefs, at_s: f64, believed: Option<(f64, f64)>| {
+            let target_m = 100.0 + 10.0 * at_s;
+            let of = |(error_m, age_s)| TargetBelief {
+                position_m: 500.0 + target_m + error_m,
+                speed_mps: 10.0,
+                age_s,
+                bound: None,
+            };
+            let own =
+                Sighting { followed: Some(station(1)), belief: believed.map(of), ..sighting(0, 0, target_m - 20.0) };
+            let target = Sighting { followed: (at_s >= 10.0).then(|| station(2)), ..sighting(1, 0, target_m) };
+            beliefs.tick(at_s, &[own, target]);
+        };
+        see(&mut beliefs, 9.0, None);
+        see(&mut beliefs, 10.0, None);
+        for (at_s, error_m, age_s) in errors {
+            see(&mut beliefs, *at_s, Some((*error_m, *age_s)));
+        }
+        assert_eq!(beliefs.changes, 1);
+        assert_eq!(beliefs.watched.len(), errors.len());
+        Judged {
+            counts: [beliefs.settled, beliefs.changing, beliefs.unheard].map(|class| class.count),
+            beyond: beliefs.beyond.iter().map(|(pair, worst)| (*pair, worst.error_m)).collect(),
+            settled: beliefs.settled,
+        }
+    }
+
+    struct Judged {
+        /// Settled, changing, unheard.
+        counts: [u64; 3],
+        beyond: Vec<((usize, usize), f64)>,
+        settled: Class,
+    }
+
+    #[test]
+    fn for_a_second_after_the_target_has_changed_whom_it_follows_errors_stand_apart() {
+        assert_eq!(judged(&[(10.01, 0.1, 0.05), (10.99, 0.1, 0.05)]).counts, [0, 2, 0]);
+        assert_eq!(judged(&[(11.0, 0.1, 0.05), (60.0, 0.1, 0.05)]).counts, [2, 0, 0]);
+    }
+
+    #[test]
+    fn later_errors_count_and_are_shown_apart_while_nothing_has_been_heard_since() {
+        assert_eq!(judged(&[(11.2, 0.1, 1.3)]).counts, [1, 0, 1]);
+        assert_eq!(judged(&[(11.2, 0.1, 1.1)]).counts, [1, 0, 0]);
+        assert_eq!(judged(&[(10.5, 0.1, 1.3)]).counts, [0, 1, 0]);
+    }
+
+    #[test]
+    fn a_pair_is_beyond_once_by_its_largest_error_of_the_first_class() {
+        let errors = [(10.5, 3.0, 0.05), (11.5, 0.19, 0.05), (12.0, 0.25, 0.05), (12.5, -0.5, 0.05), (13.0, 0.3, 0.05)];
+        let judged = judged(&errors);
+        assert_eq!(judged.beyond.len(), 1);
+        let (pair, error_m) = judged.beyond[0];
+        assert!(pair == (0, 1) && (error_m + 0.5).abs() < 1e-9, "{pair:?} {error_m}");
+        assert_eq!(super::tests::judged(&[(12.0, 0.19, 0.05)]).beyond, []);
+    }
+
+    #[test]
+    fn the_figures_of_a_class_are_its_largest_magnitude_and_the_root_of_its_mean_square() {
+        let settled = judged(&[(12.0, 0.3, 0.05), (13.0, -0.4, 0.05)]).settled;
+        assert!(
+            (settled.max_m().unwrap() - 0.4).abs() < 1e-9 && (settled.rms_m().unwrap() - 0.125_f64.sqrt()).abs() < 1e-9
+        );
+        let worst = settled.worst.unwrap();
+        assert_eq!((worst.at_s, worst.by, worst.target, worst.age_s), (13.0, 0, 1, 0.05));
+        let of_both = judged(&[(12.0, 0.3, 0.05)]).settled.with(judged(&[(13.0, -0.4, 0.05)]).settled);
+        assert_eq!((of_both.count, of_both.worst), (2, settled.worst));
+        assert_eq!((Class::default().max_m(), Class::default().rms_m()), (None, None));
+    }
+}

@@ -1,0 +1,116 @@
+//! What is varied between runs of the same trips: a description enters; the conditions of a run, and under them the
+//! configuration of a vehicle's unit, leave.
+
+use holdover::Config;
+
+use super::description::{Corridor, Radio, Wrong};
+use crate::input::kind::Kind;
+use crate::input::scenario::Envelope;
+use crate::sim::quantities::{distance, duration, fine_seconds, seconds, speed};
+use crate::sim::station::station;
+use crate::sim::world::horizon;
+
+/// What is done when the link to whoever is just ahead is lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WhenLost {
+    /// What the unit does: it goes by its estimate.
+    Holdover,
+    /// The vehicle drives alone, [`alone`](super::alone).
+    Alone,
+}
+
+/// What is varied between runs of the same trips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// The links.
+    pub radio: Radio,
+    /// How vehicles differ from what they publish.
+    pub wrong: Wrong,
+    /// The last gate.
+    pub envelope: Envelope,
+    /// The reference drives otherwise.
+    pub when_lost: WhenLost,
+    /// Prediction step.
+    pub step_s: f64,
+    /// How many peers a unit has slots for.
+    pub slots: usize,
+}
+
+impl Conditions {
+    /// As the scenario says.
+    #[must_use]
+    pub fn of(corridor: &Corridor) -> Self {
+        Self {
+            radio: corridor.radio,
+            wrong: corridor.wrong,
+            envelope: corridor.envelope,
+            when_lost: WhenLost::Holdover,
+            step_s: corridor.step_s,
+            slots: corridor.slots,
+        }
+    }
+}
+
+/// The configuration of the unit of the vehicle with that station's number.
+#[must_use]
+pub fn config(corridor: &Corridor, conditions: &Conditions, number: usize, kind: Kind) -> Config {
+    let traffic = &corridor.traffic;
+    let mut config = Config::car(station(number));
+    config.period = duration(corridor.period_s);
+    config.length = distance(kind.length_m());
+    config.lag = fine_seconds(kind.lag_s());
+    config.body = kind.body();
+    config.limits = kind.limits();
+    config.law.time_gap = seconds(traffic.time_gap_s);
+    config.law.standstill = distance(traffic.standstill_m);
+    config.law.target_speed = speed(traffic.target_speed_mps);
+    config.link.period = duration(1.0 / corridor.message_rate_hz);
+    config.prediction.step = duration(conditions.step_s);
+    config.prediction.horizon = horizon(corridor.horizon_s, conditions.step_s);
+    let capable = config.limits.emergency_braking;
+    let limits = conditions.envelope.limits();
+    config.envelope =
+        limits.map(|limits| holdover::config::Envelope { braking: limits.braking.min(capable), ..limits });
+    config
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roads::example;
+    use crate::sim::vehicle::STEPS;
+
+    #[test]
+    fn whatever_a_file_may_say_the_units_take() {
+        let extremes: [(&str, &[&str]); 13] = [
+            ("period_s = 0.01 ", &["period_s = 0.001", "period_s = 0.1"]),
+            ("step_s = 0.01 ", &["step_s = 0.001", "step_s = 1"]),
+            ("horizon_s = 10.7", &["horizon_s = 0.5"]),
+            ("message_rate_hz = 10.0", &["message_rate_hz = 1", "message_rate_hz = 100"]),
+            ("target_speed_mps = 11.0", &["target_speed_mps = 1", "target_speed_mps = 50"]),
+            ("time_gap_s = 1.0", &["time_gap_s = 0.1", "time_gap_s = 3.995"]),
+            ("standstill_m = 2.0", &["standstill_m = 0", "standstill_m = 10.23"]),
+            ("engaged = false", &["engaged = true"]),
+            ("acceleration_mps2 = 3.0", &["acceleration_mps2 = 0.1", "acceleration_mps2 = 20.46"]),
+            ("braking_mps2 = 8.0", &["braking_mps2 = 0.5"]),
+            ("jerk_mps3 = 25.0", &["jerk_mps3 = 1", "jerk_mps3 = 51.15"]),
+            ("speed_mps = 50.0", &["speed_mps = 1", "speed_mps = 65.534"]),
+            ("margin_m = 0.5", &["margin_m = 0", "margin_m = 10"]),
+        ];
+        let text = example::TEXT.replacen("engaged = false", "engaged = true", 1);
+        for (from, tos) in extremes {
+            for to in tos {
+                let text = text.replacen(from, to, 1);
+                let corridor = example::of(&text);
+                for kind in [Kind::Car, Kind::Van, Kind::Bus] {
+                    let config = config(&corridor, &Conditions::of(&corridor), 0, kind);
+                    assert_eq!(config.check(STEPS), Ok(()), "{to}");
+                }
+            }
+        }
+        // A coarse step and a short horizon at once.
+        let text = text.replacen("step_s = 0.01 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
+        let corridor = example::of(&text);
+        assert_eq!(config(&corridor, &Conditions::of(&corridor), 0, Kind::Car).check(STEPS), Ok(()));
+    }
+}

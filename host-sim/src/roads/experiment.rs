@@ -1,0 +1,218 @@
+//! What is run on a corridor: a description and seeds enter; the runs of every seed under every condition leave, in parallel
+//! and in an order that does not depend on how many threads there are.
+
+use std::io;
+
+use holdover::coordination::Itinerary;
+
+use super::beliefs::Beliefs;
+use super::conditions::{Conditions, WhenLost};
+use super::description::{Corridor, Wrong};
+use super::figures::{Outcome, Side, StepRow, WrongRow};
+use super::journal::Journal;
+use super::map::itineraries;
+use super::network::Network;
+use super::referee::Referee;
+use super::traffic::Traffic;
+use super::trips::{Trip, trips};
+use super::watch::Watch;
+use crate::error::Error;
+use crate::input::scenario::Envelope;
+use crate::parallel;
+
+/// Prediction steps of the figures over `δt`.
+pub const STEPS_S: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
+
+/// The figures over `δt` and over what is wrong are of so many seconds of arrivals of the first seed.
+pub const EXCERPT_S: f64 = 180.0;
+
+/// The figures of all seeds, beside the references. Each side is what it is called, whether the scenario engages the envelope
+/// or not.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Sides {
+    /// As the scenario says, without the envelope.
+    pub holdover: Side,
+    /// The same with a link without delay, loss and silence.
+    pub perfect_link: Side,
+    /// The same with vehicles that drive alone while the link to whoever is just ahead is lost.
+    pub alone: Side,
+    /// As the scenario says, with the envelope.
+    pub envelope: Side,
+}
+
+/// A corridor with its map.
+pub struct Experiment {
+    /// The description.
+    pub corridor: Corridor,
+    /// Its roads.
+    pub network: Network,
+    /// The way of each road through its intersections, as the units have it.
+    pub itineraries: Vec<&'static Itinerary>,
+}
+
+impl Experiment {
+    /// Of a description that was checked.
+    #[must_use]
+    pub fn new(corridor: Corridor) -> Self {
+        let network = Network::of(&corridor);
+        let itineraries = itineraries(&network);
+        Self { corridor, network, itineraries }
+    }
+
+    /// The trips of a seed, and the ego's among them.
+    #[must_use]
+    pub fn trips(&self, seed: u64) -> (Vec<Trip>, Option<usize>) {
+        let trips = trips(&self.corridor, &self.network, seed);
+        let is_ego = |trip: &Trip| trip.road == self.corridor.ego_road && trip.at_s >= self.corridor.ego_after_s;
+        let ego = trips.iter().position(is_ego);
+        (trips, ego)
+    }
+
+    /// One run.
+    ///
+    /// # Errors
+    /// A scenario that the units refuse.
+    pub fn run(&self, seed: u64, conditions: Conditions, journal: Option<&mut Journal>) -> Result<Outcome, Error> {
+        let (trips, _) = self.trips(seed);
+        let logged = journal.as_ref().and_then(|journal| journal.ego);
+        let (mut referee, mut beliefs) = (Referee::new(&self.network, &trips), Beliefs::new(&self.network, logged));
+        let mut traffic = Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
+        traffic.log(logged);
+        let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs];
+        let mut log = Vec::new();
+        let remains = match journal {
+            Some(journal) => {
+                watches.push(journal);
+                let remains = traffic.run(&mut watches, &mut log).map_err(refused)?;
+                journal.log = log;
+                journal.errors.clone_from(&beliefs.watched);
+                remains
+            }
+            None => traffic.run(&mut watches, &mut log).map_err(refused)?,
+        };
+        Ok(Outcome::of(seed, &referee, &beliefs, remains))
+    }
+
+    /// The runs of all seeds, beside the references; `done` is called after each.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn sides(&self, seeds: &[u64], done: impl Fn() + Sync) -> Result<Sides, Error> {
+        let conditions = four(&self.corridor);
+        let jobs: Vec<(u64, Conditions)> =
+            seeds.iter().flat_map(|seed| conditions.map(|conditions| (*seed, conditions))).collect();
+        let outcomes = self.all(&jobs, done)?;
+        let side = |which: usize| Side::of(&outcomes.iter().skip(which).step_by(conditions.len()).collect::<Vec<_>>());
+        Ok(Sides { holdover: side(0), perfect_link: side(1), alone: side(2), envelope: side(3) })
+    }
+
+    /// How the errors grow with what is wrong.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn wrong(&self, seed: u64, done: impl Fn() + Sync) -> Result<Vec<WrongRow>, Error> {
+        let true_ = Wrong::NOTHING;
+        let wrongs = [
+            ("nothing", true_),
+            ("mass +30 %", Wrong { mass_scale: 1.3, ..true_ }),
+            ("grade 4 %", Wrong { grade: 0.04, ..true_ }),
+            ("head wind 10 m/s", Wrong { headwind_mps: 10.0, ..true_ }),
+            ("lag +50 %", Wrong { lag_scale: 1.5, ..true_ }),
+            ("all of these", Wrong { mass_scale: 1.3, grade: 0.04, headwind_mps: 10.0, lag_scale: 1.5 }),
+        ];
+        let base = Conditions::of(&self.corridor);
+        let jobs: Vec<(u64, Conditions)> =
+            wrongs.iter().map(|(_, wrong)| (seed, Conditions { wrong: *wrong, ..base })).collect();
+        let outcomes = self.excerpt().all(&jobs, done)?;
+        let row = |((what, _), outcome): (&(&str, Wrong), &Outcome)| WrongRow {
+            what: (*what).to_owned(),
+            side: Side::of(&[outcome]),
+        };
+        Ok(wrongs.iter().zip(&outcomes).map(row).collect())
+    }
+
+    /// How the errors grow with the prediction step, and the ego's journal at each.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn steps(&self, seed: u64, done: impl Fn() + Sync) -> Result<Vec<(StepRow, Journal)>, Error> {
+        let excerpt = self.excerpt();
+        let (_, ego) = excerpt.trips(seed);
+        let one = |step_s: &f64| {
+            let conditions = Conditions { step_s: *step_s, ..Conditions::of(&self.corridor) };
+            let mut journal = Journal::new(ego);
+            let outcome = excerpt.run(seed, conditions, Some(&mut journal))?;
+            done();
+            Ok((StepRow { step_s: *step_s, side: Side::of(&[&outcome]) }, journal))
+        };
+        parallel::each(&STEPS_S, one).into_iter().collect()
+    }
+
+    /// The configuration and the way of the ego's unit, for measuring what it costs.
+    #[must_use]
+    pub fn ego_unit(&self, seed: u64, step_s: f64) -> Option<(holdover::Config, &'static Itinerary)> {
+        let (trips, ego) = self.excerpt().trips(seed);
+        let trip = trips.get(ego?)?;
+        let conditions = Conditions { step_s, ..Conditions::of(&self.corridor) };
+        let config = super::conditions::config(&self.corridor, &conditions, ego?, trip.kind);
+        Some((config, self.itineraries[trip.road]))
+    }
+
+    /// The same roads with another traffic.
+    #[must_use]
+    pub fn of(&self, corridor: Corridor) -> Self {
+        Self { corridor, network: self.network.clone(), itineraries: self.itineraries.clone() }
+    }
+
+    /// The same with no more arrivals than an excerpt has.
+    fn excerpt(&self) -> Self {
+        let duration_s = self.corridor.duration_s.min(EXCERPT_S);
+        self.of(Corridor { duration_s, ..self.corridor.clone() })
+    }
+
+    fn all(&self, jobs: &[(u64, Conditions)], done: impl Fn() + Sync) -> Result<Vec<Outcome>, Error> {
+        let one = |(seed, conditions): &(u64, Conditions)| {
+            let outcome = self.run(*seed, *conditions, None);
+            done();
+            outcome
+        };
+        parallel::each(jobs, one).into_iter().collect()
+    }
+}
+
+/// The conditions of the four sides, in the order of [`Sides`].
+fn four(corridor: &Corridor) -> [Conditions; 4] {
+    let scenario = Conditions::of(corridor);
+    let [without, with] =
+        [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
+    let perfect_link = Conditions { radio: without.radio.perfect(), ..without };
+    [without, perfect_link, Conditions { when_lost: WhenLost::Alone, ..without }, with]
+}
+
+/// What the units refuse; nothing, as long as whatever a file may say is something that they take.
+pub fn refused(error: io::Error) -> Error {
+    Error::new(error.to_string(), "report this with the scenario")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::input::scenario::Overrides;
+    use crate::roads::example::TEXT;
+    use crate::roads::read::corridor;
+
+    #[test]
+    fn a_side_is_what_it_is_called_whatever_the_scenario_does_with_the_envelope() {
+        let engaged = TEXT.replacen("engaged = false", "engaged = true", 1);
+        let asked = Overrides { envelope: true, ..Overrides::default() };
+        for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
+            let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
+            let four = four(&corridor);
+            assert_eq!(four.map(|conditions| conditions.envelope.engaged), [false, false, false, true]);
+            assert_eq!(four[1].radio, corridor.radio.perfect());
+            assert_eq!(four.map(|conditions| conditions.when_lost == WhenLost::Alone), [false, false, true, false]);
+        }
+    }
+}

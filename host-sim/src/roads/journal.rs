@@ -1,0 +1,62 @@
+//! The journal of a run, for its figures: who is where enters; trajectories, the ego's errors and the traffic on its bus leave.
+
+use std::collections::BTreeMap;
+
+use super::watch::{Sighting, Watch};
+use crate::bus::Frame;
+use crate::input::impairment::Window;
+
+/// Time from one entry of a trajectory to the next.
+const EVERY_S: f64 = 0.25;
+
+/// The way of one vehicle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Track {
+    /// Its road.
+    pub road: usize,
+    /// Time and way along the road.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// The journal.
+#[derive(Clone, Debug, Default)]
+pub struct Journal {
+    /// The trip of the ego.
+    pub ego: Option<usize>,
+    /// Everyone's way, by trip.
+    pub tracks: BTreeMap<usize, Track>,
+    /// When the ego's radio is silent.
+    pub dark: Option<Window>,
+    /// How wrong the ego's unit is about its target over time.
+    pub errors: Vec<(f64, f64)>,
+    /// The traffic on its bus.
+    pub log: Vec<(f64, Frame)>,
+    last_s: Option<f64>,
+}
+
+impl Journal {
+    /// Nothing has happened yet.
+    #[must_use]
+    pub fn new(ego: Option<usize>) -> Self {
+        Self { ego, ..Self::default() }
+    }
+}
+
+impl Watch for Journal {
+    fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+        if sightings.iter().any(|own| Some(own.trip) == self.ego && own.dark) {
+            self.dark.get_or_insert(Window { from_s: at_s, to_s: at_s }).to_s = at_s;
+        }
+        if self.last_s.is_some_and(|last_s| at_s - last_s < EVERY_S - 1e-9) {
+            return;
+        }
+        self.last_s = Some(at_s);
+        for own in sightings {
+            let track = self.tracks.entry(own.trip).or_default();
+            track.road = own.road;
+            track.points.push((at_s, own.way_m));
+        }
+    }
+
+    fn left(&mut self, _: f64, _: usize) {}
+}

@@ -1,0 +1,29 @@
+//! Roads that cross without signals: a scenario file and a seed enter; vehicles of all kinds arrive at random, each with the
+//! unit's own code, agree on an order by radio, cross and leave; what happened to them leaves.
+//!
+//! ```text
+//! file -> read, fit (does it fit together) -> description -> network (roads, crossing points) -> trips -> traffic (the world)
+//!                                               referee (collisions, gaps, stops), beliefs (errors) <-'
+//! ```
+
+pub mod alone;
+pub mod beliefs;
+pub mod conditions;
+pub mod description;
+#[cfg(test)]
+pub(crate) mod example;
+pub mod experiment;
+pub mod figures;
+pub mod fit;
+pub mod journal;
+pub mod map;
+pub mod network;
+pub mod read;
+pub mod referee;
+pub mod tally;
+pub mod traffic;
+pub mod trips;
+pub mod watch;
+
+pub use description::Corridor;
+pub use network::Network;

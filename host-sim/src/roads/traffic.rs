@@ -1,0 +1,363 @@
+//! The world of a corridor: trips enter; vehicles appear, sense, hear, tick, speak, move and leave; every tick, who is where
+//! goes to those who watch.
+//!
+//! The order within a tick is that of [`Stages`]. A vehicle appears when its time has come and there is room for it to follow
+//! the one ahead; until then it waits out of sight, and that counts as travel time. Its unit has power before.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::io;
+use std::rc::Rc;
+
+use holdover::coordination::Itinerary;
+use holdover::health::Cause;
+use holdover::time::Instant;
+use holdover::wire::StationHash;
+
+use super::alone::{self, Lost};
+use super::conditions::{Conditions, WhenLost};
+use super::description::{Corridor, Radio};
+use super::network::Network;
+use super::tally::Tally;
+use super::trips::Trip;
+use super::watch::{Sighting, Watch};
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
+use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
+use crate::sim::air::{Air, Arrived};
+use crate::sim::globe::Shift;
+use crate::sim::ground::Point;
+use crate::sim::modem::V2xMessage;
+use crate::sim::road::Ground;
+use crate::sim::stages::Stages;
+use crate::sim::station::station;
+use crate::sim::vehicle::Vehicle;
+use crate::sim::world::TargetBelief;
+
+mod arrivals;
+mod departures;
+mod numbers;
+
+use arrivals::LISTENING_S;
+use numbers::Numbers;
+
+/// A vehicle on the roads.
+struct Traveller {
+    trip: usize,
+    /// When it has left, if it has.
+    left_s: Option<f64>,
+    vehicle: Box<Vehicle>,
+    ground: Ground,
+    dark: Window,
+    log: Option<MemoryNode>,
+}
+
+impl Traveller {
+    fn way_m(&self) -> f64 {
+        self.vehicle.plant.position_m - self.ground.odometer_m
+    }
+
+    /// What has been on its bus, if that is logged.
+    fn hand_in(&mut self, log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let Some(node) = &mut self.log else { return Ok(()) };
+        while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+            log.push((self.vehicle.time_of(at), frame));
+        }
+        Ok(())
+    }
+
+    fn has_left(&self) -> bool {
+        self.left_s.is_some()
+    }
+
+    fn is_dark(&self, at_s: f64) -> bool {
+        (self.dark.from_s..self.dark.to_s).contains(&at_s)
+    }
+}
+
+/// The world.
+pub struct Traffic<'a> {
+    corridor: &'a Corridor,
+    network: &'a Network,
+    itineraries: &'a [&'static Itinerary],
+    trips: &'a [Trip],
+    conditions: Conditions,
+    seed: u64,
+    ticks: u64,
+    next: usize,
+    waiting: Vec<VecDeque<usize>>,
+    travellers: BTreeMap<usize, Traveller>,
+    numbers: Numbers,
+    air: Air,
+    /// What has been broadcast of late: when, by whom, and from where.
+    aired: VecDeque<(f64, usize, Point, Rc<V2xMessage>)>,
+    remains: Remains,
+    tally: Tally,
+    logged: Option<usize>,
+}
+
+/// What is left of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Remains {
+    /// Vehicles that had not left when the run was given up.
+    pub unserved: usize,
+    /// Refusals of all units.
+    pub refusals: u64,
+    /// Times that a unit gave way to one that did not heed it.
+    pub disagreements: u64,
+    /// Messages that found no slot.
+    pub turned_away: u64,
+}
+
+impl Remains {
+    fn add(&mut self, vehicle: &Vehicle) {
+        let health = vehicle.unit.health();
+        self.refusals += Cause::ALL.iter().map(|cause| u64::from(health.of(*cause))).sum::<u64>();
+        self.disagreements += u64::from(health.of(Cause::Overlooked));
+        self.turned_away += vehicle.turned_away();
+    }
+}
+
+impl<'a> Traffic<'a> {
+    /// Empty roads.
+    #[must_use]
+    pub fn new(
+        corridor: &'a Corridor,
+        network: &'a Network,
+        itineraries: &'a [&'static Itinerary],
+        trips: &'a [Trip],
+        conditions: Conditions,
+        seed: u64,
+    ) -> Self {
+        let Radio { delay_mean_s, delay_std_s, loss, .. } = conditions.radio;
+        let outages = Vec::new();
+        let impairment = Impairment::Random { delay_mean_s, delay_std_s, loss, duplicate: 0.0, outages };
+        Self {
+            corridor,
+            network,
+            itineraries,
+            trips,
+            conditions,
+            seed,
+            ticks: 0,
+            next: 0,
+            waiting: vec![VecDeque::new(); network.lanes.len()],
+            travellers: BTreeMap::new(),
+            numbers: Numbers::new(),
+            air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
+            aired: VecDeque::new(),
+            remains: Remains::default(),
+            tally: Tally::default(),
+            logged: None,
+        }
+    }
+
+    /// Keeps the traffic on the bus of that trip's vehicle.
+    pub fn log(&mut self, trip: Option<usize>) {
+        self.logged = trip;
+    }
+
+    /// Runs it until everyone has left, or for twice as long as it lasts and five minutes.
+    ///
+    /// # Errors
+    /// The buses', and a configuration that the units refuse, as an error of invalid input.
+    pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
+        let longest_s = 2.0 * self.corridor.duration_s + 300.0;
+        while !self.is_over() && self.at_s() <= longest_s {
+            self.step(watches, log)?;
+        }
+        let on_way = self.travellers.values().filter(|traveller| !traveller.has_left()).count();
+        let unserved = self.trips.len() - self.next + on_way + self.waiting.iter().map(VecDeque::len).sum::<usize>();
+        for mut traveller in std::mem::take(&mut self.travellers).into_values() {
+            self.remains.add(&traveller.vehicle);
+            traveller.hand_in(log)?;
+        }
+        Ok(Remains { unserved, ..self.remains })
+    }
+
+    /// Runs it until then, and keeps no log.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn advance(&mut self, to_s: f64, watches: &mut [&mut dyn Watch]) -> io::Result<()> {
+        while self.at_s() < to_s {
+            self.step(watches, &mut Vec::new())?;
+        }
+        Ok(())
+    }
+
+    /// What there was to do up to now.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The time of the next tick.
+    fn at_s(&self) -> f64 {
+        self.ticks as f64 * self.corridor.period_s
+    }
+
+    fn is_over(&self) -> bool {
+        self.next == self.trips.len()
+            && self.travellers.values().all(|traveller| traveller.has_left())
+            && self.waiting.iter().all(VecDeque::is_empty)
+    }
+
+    fn step(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+        let at_s = self.at_s();
+        self.ticks += 1;
+        self.tick(at_s, |traffic| {
+            traffic.show(at_s, watches);
+            Ok(())
+        })?;
+        self.dismiss(at_s, watches, log)
+    }
+
+    /// Those who watch see who is where.
+    fn show(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
+        let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
+            self.travellers.values().partition(|traveller| traveller.has_left());
+        let [beyond, on_way] = [beyond, on_way]
+            .map(|some| some.into_iter().map(|traveller| self.sight(at_s, traveller)).collect::<Vec<Sighting>>());
+        self.tally.on_way += on_way.len() as u64;
+        for watch in watches.iter_mut() {
+            watch.beyond(&beyond);
+            watch.tick(at_s, &on_way);
+        }
+    }
+
+    /// Messages go to everyone within the radio's range.
+    fn broadcast(&mut self, at_s: f64, messages: Vec<(usize, V2xMessage)>) {
+        if messages.is_empty() {
+            return;
+        }
+        let place = |traveller: &Traveller| traveller.ground.road.at(traveller.way_m()).0;
+        let places: BTreeMap<usize, Point> = self.travellers.iter().map(|(index, one)| (*index, place(one))).collect();
+        let range_m = self.conditions.radio.range_m;
+        for (from, message) in messages {
+            let Some(here) = places.get(&from) else { continue };
+            let reaches =
+                |(to, there): &(&usize, &Point)| **to != from && Shift::between(*here, **there).length_m() <= range_m;
+            let message = Rc::new(message);
+            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), &message);
+            self.aired.push_back((at_s, from, *here, message));
+        }
+        while self.aired.front().is_some_and(|(aired_s, ..)| aired_s + LISTENING_S < at_s) {
+            self.aired.pop_front();
+        }
+    }
+
+    fn sight(&self, at_s: f64, traveller: &Traveller) -> Sighting {
+        let vehicle = &traveller.vehicle;
+        Sighting {
+            trip: traveller.trip,
+            station: station(vehicle.index),
+            road: self.trips[traveller.trip].road,
+            way_m: traveller.way_m(),
+            length_m: vehicle.length_m,
+            speed_mps: vehicle.plant.speed_mps,
+            odometer_m: traveller.ground.odometer_m,
+            next: vehicle.unit.coordination().crossing().map(|crossing| usize::from(crossing.intersection.id)),
+            followed: followed(vehicle),
+            belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
+            limited: vehicle.limited,
+            dark: traveller.is_dark(at_s),
+        }
+    }
+
+    fn drive_alone(&mut self, at_s: f64) {
+        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(at_s, traveller)).collect();
+        for own in &sightings {
+            let Some(traveller) = self.travellers.get_mut(&own.trip) else { continue };
+            let vehicle = &mut traveller.vehicle;
+            let Some(lost) = Lost::of(&vehicle.unit, vehicle.instant(at_s)) else { continue };
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, lost.crossing);
+            let choice = vehicle.unit.coordination().choice();
+            vehicle.override_with(alone::still_given_way(lost, choice, wanted, vehicle.command_mps2));
+        }
+    }
+}
+
+impl Stages for Traffic<'_> {
+    fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
+            if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
+                self.tally.heard += u64::from(!traveller.has_left());
+                traveller.vehicle.hear(at_s, &message)?;
+            }
+        }
+        self.admit(at_s)?;
+        let period_s = self.corridor.period_s;
+        self.travellers.values_mut().try_for_each(|traveller| traveller.vehicle.speak(at_s, period_s, None))
+    }
+
+    fn act(&mut self, at_s: f64) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for (index, traveller) in &mut self.travellers {
+            let message = traveller.vehicle.tick(at_s)?;
+            broadcasts.extend(message.filter(|_| !traveller.is_dark(at_s)).map(|message| (*index, message)));
+        }
+        if self.conditions.when_lost == WhenLost::Alone {
+            self.drive_alone(at_s);
+        }
+        self.run_out();
+        self.broadcast(at_s, broadcasts);
+        Ok(())
+    }
+
+    fn drive(&mut self, _: f64) -> io::Result<()> {
+        for traveller in self.travellers.values_mut() {
+            traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
+        }
+        Ok(())
+    }
+}
+
+/// Whom a vehicle's unit follows.
+fn followed(vehicle: &Vehicle) -> Option<StationHash> {
+    let target = vehicle.unit.coordination().choice().target?;
+    vehicle.unit.peers().get(target.into())?.station()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::kind::Kind;
+    use crate::roads::example;
+    use crate::roads::experiment::Experiment;
+    use crate::roads::network::RUN_OUT_M;
+
+    /// The largest way of a vehicle on its way, and of one that has left.
+    #[derive(Default)]
+    struct Farthest {
+        on_way_m: f64,
+        beyond_m: f64,
+    }
+
+    fn farthest_m(sightings: &[Sighting]) -> f64 {
+        sightings.iter().map(|one| one.way_m).fold(0.0, f64::max)
+    }
+
+    impl Watch for Farthest {
+        fn beyond(&mut self, sightings: &[Sighting]) {
+            self.beyond_m = self.beyond_m.max(farthest_m(sightings));
+        }
+        fn tick(&mut self, _: f64, sightings: &[Sighting]) {
+            self.on_way_m = self.on_way_m.max(farthest_m(sightings));
+        }
+        fn left(&mut self, _: f64, _: usize) {}
+    }
+
+    #[test]
+    fn who_has_left_is_still_seen_until_it_vanishes() {
+        let experiment = Experiment::new(example::corridor());
+        let Experiment { corridor, network, itineraries } = &experiment;
+        let kind = Kind::Car;
+        let trips = [Trip { road: 2, at_s: 0.0, speed_mps: 10.0, kind, dark_after_s: 60.0, odometer_m: 0.0 }];
+        let mut traffic = Traffic::new(corridor, network, itineraries, &trips, Conditions::of(corridor), 1);
+        let mut farthest = Farthest::default();
+        traffic.advance(60.0, &mut [&mut farthest]).unwrap();
+        let exit_m = network.lanes[2].exit_m;
+        assert!((exit_m - 0.2..exit_m).contains(&farthest.on_way_m), "{}", farthest.on_way_m);
+        assert!((exit_m + RUN_OUT_M - 0.2..exit_m + RUN_OUT_M).contains(&farthest.beyond_m), "{}", farthest.beyond_m);
+    }
+}

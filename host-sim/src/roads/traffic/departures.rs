@@ -1,0 +1,103 @@
+//! Who leaves a corridor: vehicles at the end of their way enter; those who have left drive on by sight, stay on the air until
+//! everybody whom they could matter to has heard of it, and vanish.
+
+use std::io;
+
+use holdover::controller::Mode;
+
+use super::{Traffic, Traveller};
+use crate::bus::Frame;
+use crate::input::impairment::Window;
+use crate::roads::alone;
+use crate::roads::network::RUN_OUT_M;
+use crate::roads::watch::{Sighting, Watch};
+use crate::sim::vehicle::Vehicle;
+
+/// They stay on the air until everybody who minds them could hear them for so long since they left, in seconds. As everyone falls silent once, that
+/// is by two silences later.
+const HEARD_OF_S: f64 = 2.0;
+
+impl Traffic<'_> {
+    /// Who has left and has lost whom it follows drives on by sight: the one ahead of it vanishes without a word, and for all that
+    /// is known it stands there. Each would wait for that, and all behind it, back onto the way. With the envelope everyone who
+    /// has left does, as what is certain of the one ahead counts then.
+    pub(super) fn run_out(&mut self) {
+        let is_lost = |vehicle: &Vehicle| matches!(vehicle.unit.mode(), Mode::Fallback { .. });
+        let by_sight = |traveller: &Traveller| {
+            traveller.has_left() && (self.conditions.envelope.engaged || is_lost(&traveller.vehicle))
+        };
+        let all: Vec<usize> =
+            self.travellers.values().filter(|one| by_sight(one)).map(|traveller| traveller.trip).collect();
+        if all.is_empty() {
+            return;
+        }
+        let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(0.0, traveller)).collect();
+        for traveller in self.travellers.values_mut().filter(|traveller| all.contains(&traveller.trip)) {
+            let Some(own) = sightings.iter().find(|own| own.trip == traveller.trip) else { continue };
+            let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, true);
+            traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
+        }
+    }
+
+    /// Those who have driven to the end of their way leave, and vanish a little later.
+    pub(super) fn dismiss(
+        &mut self,
+        at_s: f64,
+        watches: &mut [&mut dyn Watch],
+        log: &mut Vec<(f64, Frame)>,
+    ) -> io::Result<()> {
+        let trips = self.trips;
+        let beyond_m =
+            |traveller: &Traveller| traveller.way_m() - self.network.lanes[trips[traveller.trip].road].exit_m;
+        for (index, traveller) in &mut self.travellers {
+            if !traveller.has_left() && beyond_m(traveller) >= 0.0 {
+                traveller.left_s = Some(at_s);
+                watches.iter_mut().for_each(|watch| watch.left(at_s + self.corridor.period_s, *index));
+            }
+        }
+        let has_gone = |traveller: &Traveller| beyond_m(traveller) >= RUN_OUT_M && self.is_heard_of(at_s, traveller);
+        let gone: Vec<usize> =
+            self.travellers.iter().filter(|(_, traveller)| has_gone(traveller)).map(|(index, _)| *index).collect();
+        for index in gone {
+            if let Some(mut traveller) = self.travellers.remove(&index) {
+                self.numbers.give_back(at_s, traveller.vehicle.index);
+                self.remains.add(&traveller.vehicle);
+                traveller.hand_in(log)?;
+            }
+            self.air.forget(index);
+        }
+        Ok(())
+    }
+
+    /// Whether everyone who is on his way to the last intersection of one that has left could hear it for long enough since.
+    fn is_heard_of(&self, at_s: f64, gone: &Traveller) -> bool {
+        let Some(left_s) = gone.left_s else { return false };
+        let last = self.network.lanes[self.trips[gone.trip].road].stops.last().map(|stop| stop.intersection);
+        let minds = |other: &&Traveller| {
+            let stops = &self.network.lanes[self.trips[other.trip].road].stops;
+            !other.has_left() && stops.iter().any(|stop| Some(stop.intersection) == last)
+        };
+        let since = Window { from_s: left_s, to_s: at_s };
+        self.travellers.values().filter(minds).all(|other| heard_s(&since, &gone.dark, &other.dark) >= HEARD_OF_S)
+    }
+}
+
+/// For how much of that time neither of the two was silent; at least.
+fn heard_s(since: &Window, one: &Window, other: &Window) -> f64 {
+    let silent_s = |dark: &Window| (dark.to_s.min(since.to_s) - dark.from_s.max(since.from_s)).max(0.0);
+    since.to_s - since.from_s - silent_s(one) - silent_s(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_has_left_is_heard_while_neither_is_silent() {
+        let window = |from_s: f64, to_s: f64| Window { from_s, to_s };
+        let since = window(10.0, 16.0);
+        assert_eq!(heard_s(&since, &window(0.0, 4.0), &window(20.0, 24.0)), 6.0);
+        assert_eq!(heard_s(&since, &window(8.0, 12.0), &window(20.0, 24.0)), 4.0);
+        assert_eq!(heard_s(&since, &window(8.0, 12.0), &window(13.0, 17.0)), 1.0);
+    }
+}

@@ -1,0 +1,86 @@
+//! Who comes when: a description and a seed enter; every vehicle of a run, with what is drawn of it, leaves. All runs under
+//! one seed, with whatever link and whatever is wrong, have the same trips.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::description::{Corridor, Radio};
+use super::network::Network;
+use crate::input::impairment::Window;
+use crate::input::kind::Kind;
+use crate::streams::{Purpose, stream, unit};
+
+/// One vehicle's way through the corridor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trip {
+    /// The road that it comes by.
+    pub road: usize,
+    /// When it arrives where the road begins for it.
+    pub at_s: f64,
+    /// Speed at which it arrives.
+    pub speed_mps: f64,
+    /// What it is.
+    pub kind: Kind,
+    /// When it falls silent, counted from when it appears on the road: it may have to wait for room.
+    pub dark_after_s: f64,
+    /// What its odometer shows at the beginning of the road.
+    pub odometer_m: f64,
+}
+
+impl Trip {
+    /// When its radio is silent if it appears at that time.
+    #[must_use]
+    pub fn dark(&self, appears_s: f64, radio: &Radio) -> Window {
+        let from_s = appears_s + self.dark_after_s;
+        Window { from_s, to_s: from_s + radio.dark_s }
+    }
+}
+
+/// A vehicle that appears has been on its way, and on the air, before; so its silence begins when it has been so for a while.
+pub const HEARD_S: f64 = 2.0;
+
+/// The trips, in the order of their arrival.
+#[must_use]
+pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
+    let mut trips = Vec::new();
+    for (road, (plan, lane)) in corridor.roads.iter().zip(&network.lanes).enumerate() {
+        let nominal_s = (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps;
+        let mut generator = stream(seed, Purpose::Arrivals(u32::try_from(road).unwrap_or(u32::MAX)));
+        let mut at_s = next_s(corridor, plan.vehicles_per_min, 0.0, &mut generator);
+        while at_s < corridor.duration_s {
+            // Everything is drawn for every vehicle, so that nothing depends on what another one turned out to be.
+            let [pace, sort, dark, odometer] = [(); 4].map(|()| unit(&mut generator));
+            let span = corridor.traffic.entry_speed_mps;
+            trips.push(Trip {
+                road,
+                at_s,
+                speed_mps: span.low + (span.high - span.low) * pace,
+                kind: kind(corridor, sort),
+                dark_after_s: HEARD_S + dark * (nominal_s - HEARD_S).max(0.0),
+                odometer_m: 10_000.0 * odometer,
+            });
+            at_s = next_s(corridor, plan.vehicles_per_min, at_s, &mut generator);
+        }
+    }
+    trips.sort_by(|a, b| a.at_s.total_cmp(&b.at_s).then(a.road.cmp(&b.road)));
+    trips
+}
+
+/// The next arrival, never without any. They are without memory, but for the least headway; the mean rate is the one asked for.
+fn next_s(corridor: &Corridor, vehicles_per_min: f64, last_s: f64, generator: &mut ChaCha8Rng) -> f64 {
+    if vehicles_per_min <= 0.0 {
+        return f64::INFINITY;
+    }
+    let least_s = corridor.traffic.headway_s;
+    last_s + least_s - (60.0 / vehicles_per_min - least_s) * (1.0 - unit(generator)).ln()
+}
+
+fn kind(corridor: &Corridor, share: f64) -> Kind {
+    let (vans, buses) = (corridor.traffic.vans, corridor.traffic.buses);
+    if share < vans {
+        Kind::Van
+    } else if share < vans + buses {
+        Kind::Bus
+    } else {
+        Kind::Car
+    }
+}

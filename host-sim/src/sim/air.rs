@@ -1,0 +1,95 @@
+//! What is between the antennas: a broadcast enters with who is to hear it; its copies leave at their receivers in the order
+//! of arrival.
+
+use std::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+use std::rc::Rc;
+
+use crate::input::impairment::{ChannelModel, Link};
+use crate::sim::channel::Channel;
+use crate::sim::modem::V2xMessage;
+use crate::sim::time::micros;
+
+/// A message on its way.
+struct Flight {
+    arrives_us: i64,
+    number: u64,
+    to: usize,
+    /// All copies of a broadcast are one.
+    message: Rc<V2xMessage>,
+}
+
+impl PartialEq for Flight {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+impl Eq for Flight {}
+impl PartialOrd for Flight {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Flight {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.arrives_us, self.number).cmp(&(other.arrives_us, other.number))
+    }
+}
+
+/// A message that has arrived.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrived {
+    /// When, in seconds of the run.
+    pub at_s: f64,
+    /// At whom.
+    pub to: usize,
+    /// What it says.
+    pub message: Rc<V2xMessage>,
+}
+
+/// The channel and all that is on its way in it.
+pub struct Air {
+    channel: Channel,
+    flights: BinaryHeap<Reverse<Flight>>,
+    sent: u64,
+}
+
+impl Air {
+    /// Nothing has been sent yet.
+    #[must_use]
+    pub fn new(model: &ChannelModel, seed: u64) -> Self {
+        Self { channel: Channel::new(model, seed), flights: BinaryHeap::new(), sent: 0 }
+    }
+
+    /// Sends a message from one vehicle to those.
+    pub fn broadcast(&mut self, at_s: f64, from: usize, to: impl IntoIterator<Item = usize>, message: &Rc<V2xMessage>) {
+        for to in to {
+            for arrives_s in self.channel.send(Link { from, to }, at_s) {
+                self.sent += 1;
+                // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
+                let arrives_us = micros(arrives_s).max(micros(at_s) + 1);
+                self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message: Rc::clone(message) }));
+            }
+        }
+    }
+
+    /// The next message that has arrived by then.
+    pub fn arrived(&mut self, at_s: f64) -> Option<Arrived> {
+        let now_us = micros(at_s);
+        self.flights.peek().filter(|Reverse(flight)| flight.arrives_us <= now_us)?;
+        let Reverse(flight) = self.flights.pop()?;
+        let at_s = flight.arrives_us as f64 * 1e-6;
+        Some(Arrived { at_s, to: flight.to, message: flight.message })
+    }
+
+    /// Forgets the links of a vehicle that has gone.
+    pub fn forget(&mut self, vehicle: usize) {
+        self.channel.forget(vehicle);
+    }
+
+    /// The channel with all that happened on it.
+    #[must_use]
+    pub fn into_channel(self) -> Channel {
+        self.channel
+    }
+}

@@ -1,0 +1,158 @@
+//! The V2X channel: a message enters, its copies leave with delay, loss, duplication and reordering, seeded.
+//!
+//! Every link (one sender, one receiver) has random numbers of its own, so what happens on one does not depend on what
+//! is sent over another. Per message, always in this order and whatever becomes of it: loss, delay, duplication, delay
+//! of the duplicate. So a run with other outages or another loss has the same delays.
+//!
+//! - *Delay* is a normal distribution truncated at 0 by drawing again (so its mean is a little above `delay_mean_s`:
+//!   43.3 ms for the paper's 40 and 25.9).
+//! - *Loss* is independent per message. A message *sent* inside an outage `[from_s, to_s)` is lost; one that is already
+//!   on its way when the outage begins arrives.
+//! - *Duplication* sends a second copy with a delay of its own.
+//! - *Reordering* is what delays do.
+//! - A *recording* replaces all of that ([`ChannelTrace::delay_at`](crate::input::recording::ChannelTrace::delay_at) states how it is read).
+//! - The modem drops what is older than [`OLDEST_S`] on arrival: stamps repeat after 13.1 s, so a message a whole
+//!   period old would be taken for a new one.
+
+use crate::input::impairment::{ChannelModel, Impairment, Link, Window};
+use crate::streams::{Purpose, stream, unit};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use std::collections::BTreeMap;
+
+/// The age beyond which a receiving modem drops a message, in seconds.
+pub const OLDEST_S: f64 = 10.0;
+
+/// Arrival times of one message's copies, in seconds; none if it was lost.
+pub type Arrivals = heapless::Vec<f64, 2>;
+
+/// What became of the messages of a link; `sent = delivered + lost + expired`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages sent.
+    pub sent: u64,
+    /// Messages of which at least one copy arrived.
+    pub delivered: u64,
+    /// Messages lost by chance, in an outage, or in the recording.
+    pub lost: u64,
+    /// Messages dropped by the receiving modem because they were older than [`OLDEST_S`].
+    pub expired: u64,
+    /// Second copies that arrived, beyond `delivered`.
+    pub duplicates: u64,
+}
+
+/// Everything that happened on one link, for the report.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LinkRecord {
+    /// The counts.
+    pub counts: Counts,
+    /// Each message's time of sending and delay of its first copy, in the order of sending; `None`: it never arrived.
+    pub messages: Vec<(f64, Option<f64>)>,
+}
+
+impl LinkRecord {
+    /// The times longer than `longer_than_s` in which nothing arrived, between `from_s` and `to_s`.
+    #[must_use]
+    pub fn silences(&self, longer_than_s: f64, from_s: f64, to_s: f64) -> Vec<Window> {
+        let mut arrivals: Vec<f64> = self.messages.iter().filter_map(|&(at, delay)| Some(at + delay?)).collect();
+        arrivals.retain(|at| (from_s..to_s).contains(at));
+        arrivals.sort_by(f64::total_cmp);
+        let begins = std::iter::once(from_s).chain(arrivals.iter().copied());
+        let ends = arrivals.iter().copied().chain(std::iter::once(to_s));
+        begins
+            .zip(ends)
+            .map(|(from_s, to_s)| Window { from_s, to_s })
+            .filter(|silence| silence.to_s - silence.from_s > longer_than_s)
+            .collect()
+    }
+}
+
+/// The channel of one run.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    model: ChannelModel,
+    seed: u64,
+    links: BTreeMap<Link, (ChaCha8Rng, LinkRecord)>,
+}
+
+impl Channel {
+    /// A channel on which nothing has been sent yet.
+    #[must_use]
+    pub fn new(model: &ChannelModel, seed: u64) -> Self {
+        Self { model: model.clone(), seed, links: BTreeMap::new() }
+    }
+
+    /// Sends a message over a link at a time in seconds since the start of the run, and says when its copies arrive.
+    pub fn send(&mut self, link: Link, at_s: f64) -> Arrivals {
+        let seed = self.seed;
+        let (generator, record) = self.links.entry(link).or_insert_with(|| {
+            let purpose = Purpose::Link { from: link.from as u16, to: link.to as u16 };
+            (stream(seed, purpose), LinkRecord::default())
+        });
+        let delays =
+            if self.model.impairs(link) { self.model.impairment.delays(at_s, generator) } else { [Some(0.0), None] };
+        record.note(at_s, delays)
+    }
+
+    /// Forgets all links of a vehicle that has gone.
+    pub fn forget(&mut self, vehicle: usize) {
+        self.links.retain(|link, _| link.from != vehicle && link.to != vehicle);
+    }
+
+    /// What happened on a link; `None` if nothing was ever sent over it.
+    #[must_use]
+    pub fn link(&self, link: Link) -> Option<&LinkRecord> {
+        self.links.get(&link).map(|(_, record)| record)
+    }
+
+    /// Every link that was used and what happened on it, by sender and receiver.
+    pub fn links(&self) -> impl Iterator<Item = (Link, &LinkRecord)> {
+        self.links.iter().map(|(&link, (_, record))| (link, record))
+    }
+}
+
+impl Impairment {
+    /// The delays of a message's first and second copy.
+    fn delays(&self, at_s: f64, generator: &mut ChaCha8Rng) -> [Option<f64>; 2] {
+        match self {
+            Self::Recorded(trace) => [trace.delay_at(at_s), None],
+            Self::Random { delay_mean_s, delay_std_s, loss, duplicate, outages } => {
+                let lost = unit(generator) < *loss;
+                let first = truncated_normal(*delay_mean_s, *delay_std_s, generator);
+                let twice = unit(generator) < *duplicate;
+                let second = truncated_normal(*delay_mean_s, *delay_std_s, generator);
+                let silent = outages.iter().any(|outage| (outage.from_s..outage.to_s).contains(&at_s));
+                if lost || silent { [None, None] } else { [Some(first), twice.then_some(second)] }
+            }
+        }
+    }
+}
+
+impl LinkRecord {
+    fn note(&mut self, at_s: f64, delays: [Option<f64>; 2]) -> Arrivals {
+        let in_time: heapless::Vec<f64, 2> =
+            delays.into_iter().flatten().filter(|&delay_s| delay_s <= OLDEST_S).collect();
+        self.counts.sent += 1;
+        match (in_time.len(), delays[0]) {
+            (0, None) => self.counts.lost += 1,
+            (0, Some(_)) => self.counts.expired += 1,
+            (copies, _) => {
+                self.counts.delivered += 1;
+                self.counts.duplicates += copies as u64 - 1;
+            }
+        }
+        self.messages.push((at_s, in_time.iter().copied().reduce(f64::min)));
+        in_time.iter().map(|delay_s| at_s + delay_s).collect()
+    }
+}
+
+/// At least half of all draws are kept, because the mean is not negative.
+fn truncated_normal(mean: f64, std: f64, generator: &mut ChaCha8Rng) -> f64 {
+    let Ok(normal) = Normal::new(mean, std) else { return mean.max(0.0) };
+    loop {
+        let delay = normal.sample(generator);
+        if delay >= 0.0 {
+            return delay;
+        }
+    }
+}

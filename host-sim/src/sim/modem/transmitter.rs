@@ -1,0 +1,50 @@
+//! What a modem broadcasts: the unit's `Own*` messages enter one by one, and one message for the channel leaves.
+
+use holdover::wire::Said;
+use holdover::wire::driving_parameters::DrivingParameters;
+use holdover::wire::horizon::Knots;
+use holdover::wire::motion::Motion;
+use holdover::wire::route::Route;
+
+/// What one vehicle broadcasts at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct V2xMessage {
+    /// Its state.
+    pub motion: Motion,
+    /// How it drives; `None` if it does not say.
+    pub parameters: Option<DrivingParameters>,
+    /// Its horizon from that state, if it computed one.
+    pub horizon: Option<Knots>,
+    /// Where it is on its route, if it has one.
+    pub route: Option<Route>,
+}
+
+/// What the unit said since the last broadcast.
+#[derive(Clone, Debug, Default)]
+pub struct Transmitter {
+    motion: Option<Motion>,
+    parameters: Option<DrivingParameters>,
+    horizon: Option<Knots>,
+    route: Option<Route>,
+}
+
+impl Transmitter {
+    /// Takes in one of the unit's own messages.
+    pub fn take(&mut self, said: &Said) {
+        match said {
+            Said::Motion(motion) => self.motion = Some(*motion),
+            Said::DrivingParameters(parameters) => self.parameters = Some(*parameters),
+            Said::Horizon(knots) => self.horizon = Some(*knots),
+            Said::Route(route) => self.route = Some(*route),
+            Said::Geo(_) => {}
+        }
+    }
+
+    /// What is to be broadcast now, if the unit has said where it is. Driving parameters hold until the next ones.
+    pub fn broadcast(&mut self) -> Option<V2xMessage> {
+        let motion = self.motion.take()?;
+        let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
+        let route = self.route.take().filter(|route| route.tag == motion.tag);
+        Some(V2xMessage { motion, parameters: self.parameters, horizon, route })
+    }
+}

@@ -1,0 +1,124 @@
+//! A road: the points of its line enter; the path that the units' maps hold, and the place of a vehicle on the globe by its
+//! way along it, leave.
+
+use holdover::coordination::Path;
+use holdover::time::Stamp;
+use holdover::wire::geo::GeoPosition;
+
+use super::globe::Shift;
+use crate::sim::ground::{Point, path, path_length_m, point_at};
+
+/// One lane of traffic in one direction. Its path lives as long as the program, which is what the core wants of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Road {
+    /// The path, prepared for the core.
+    pub path: &'static Path,
+}
+
+/// Where on the globe a vehicle drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Its road.
+    pub road: Road,
+    /// What its odometer shows where the road begins.
+    pub odometer_m: f64,
+}
+
+impl Road {
+    /// A lane that lies `right_m` to the right of a line through those points, which are at least two and all different;
+    /// it begins `before_m` before the first and ends `beyond_m` beyond the last.
+    #[must_use]
+    pub fn new(line: &[Point], right_m: f64, before_m: f64, beyond_m: f64) -> Self {
+        let mut corners = offset(line, right_m);
+        let last = corners.len() - 1;
+        let [begin, end] = [(1, 0, before_m), (last - 1, last, beyond_m)].map(|(from, to, by_m)| {
+            let way = Shift::between(corners[from], corners[to]);
+            way.times(by_m / way.length_m()).from(corners[to])
+        });
+        (corners[0], corners[last]) = (begin, end);
+        Self { path: path(&corners) }
+    }
+
+    /// From end to end.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        path_length_m(self.path)
+    }
+
+    /// The place after that way, and the direction of travel there, clockwise from north.
+    #[must_use]
+    pub fn at(&self, way_m: f64) -> (Point, f64) {
+        point_at(self.path, way_m).unwrap_or((Point { latitude: 0.0, longitude: 0.0 }, 0.0))
+    }
+
+    /// The way along the road to where it passes nearest to a point, and how far from it that is.
+    #[must_use]
+    pub fn nearest(&self, point: Point) -> (f64, f64) {
+        let ways = self.path.segments.iter().map(|segment| {
+            let begins_m = segment.begins.get().to_num::<f64>();
+            let length_m = segment.length.get().to_num::<f64>();
+            let (from, to) = (self.at(begins_m).0, self.at(begins_m + length_m - 1e-6).0);
+            let piece = Shift::between(from, to);
+            let along_m = Shift::between(from, point).along(piece).clamp(0.0, length_m);
+            let foot = piece.times(along_m / piece.length_m()).from(from);
+            (begins_m + along_m, Shift::between(foot, point).length_m())
+        });
+        ways.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, f64::INFINITY))
+    }
+
+    /// The place after that way, as a positioning system says it.
+    #[must_use]
+    pub fn said(&self, way_m: f64, tag: u8, stamp: Stamp) -> GeoPosition {
+        let (point, heading_deg) = self.at(way_m);
+        let steps = |degrees: f64| (degrees * 1e7).round() as i32;
+        let heading = (heading_deg.rem_euclid(360.0) * 80.0).round() as u16 % 28_800;
+        GeoPosition { tag, latitude: steps(point.latitude), longitude: steps(point.longitude), heading, stamp }
+    }
+}
+
+/// The line moved to the right, its corners along the bisectors.
+fn offset(line: &[Point], right_m: f64) -> Vec<Point> {
+    let unit = |from: Point, to: Point| {
+        let way = Shift::between(from, to);
+        way.times(1.0 / way.length_m())
+    };
+    let corner = |index: usize| {
+        let before = index.checked_sub(1).map(|before| unit(line[before], line[index]));
+        let after = line.get(index + 1).map(|after| unit(line[index], *after));
+        let (Some(before), Some(after)) = (before.or(after), after.or(before)) else { return line[index] };
+        let sum = Shift { north_m: before.north_m + after.north_m, east_m: before.east_m + after.east_m };
+        // Along the bisector it is farther, so that the lane keeps its distance from the line; a hairpin is cut short.
+        let cosine_2 = (0.25 * sum.length_m() * sum.length_m()).max(0.25);
+        sum.right().times(0.5 * right_m / cosine_2).from(line[index])
+    };
+    (0..line.len()).map(corner).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(north_m: f64, east_m: f64) -> Point {
+        Shift { north_m, east_m }.from(Point { latitude: 37.785, longitude: -122.396 })
+    }
+
+    #[test]
+    fn a_lane_lies_beside_its_line_and_reaches_beyond_it() {
+        let road = Road::new(&[point(0.0, 0.0), point(600.0, 0.0)], 2.0, 100.0, 50.0);
+        assert!((road.length_m() - 750.0).abs() < 0.05, "{}", road.length_m());
+        let (place, heading_deg) = road.at(400.0);
+        let off_m = Shift::between(point(300.0, 2.0), place).length_m();
+        assert!(off_m < 0.05 && heading_deg.min(360.0 - heading_deg) < 0.1, "{off_m} {heading_deg}");
+        let (way_m, aside_m) = road.nearest(point(250.0, 7.0));
+        assert!((way_m - 350.0).abs() < 0.05 && (aside_m - 5.0).abs() < 0.05, "{way_m} {aside_m}");
+    }
+
+    #[test]
+    fn a_lane_keeps_its_distance_around_a_corner() {
+        let road = Road::new(&[point(0.0, 0.0), point(100.0, 0.0), point(100.0, 100.0)], 3.0, 0.0, 0.0);
+        // To the right of both pieces: the corner is cut.
+        assert!((road.length_m() - 194.0).abs() < 0.05, "{}", road.length_m());
+        let (_, aside_m) = road.nearest(point(100.0, 50.0));
+        assert!((aside_m - 3.0).abs() < 0.05, "{aside_m}");
+    }
+}

@@ -1,0 +1,386 @@
+//! One vehicle: its body, its onboard unit, its own bus between the two, and its modem. What its sensors and its modem put
+//! on the bus enters the unit; what the unit commands moves the body. The unit's seat on the bus can be given to another
+//! one outside ([`Vehicle::give_seat`]).
+
+use std::io;
+
+use holdover::coordination::{Itinerary, MapError};
+use holdover::time::Instant;
+use holdover::wire::command::{Effort, ModeCode};
+use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::estimate::TargetEstimate;
+use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::sync::{FollowUp, Sync};
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
+use holdover::{Config, ConfigError};
+
+use crate::bus::Bus;
+use crate::bus::memory::{MemoryBus, MemoryNode};
+use crate::sim::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, UNSERVED_EVERY_S, V2xMessage};
+use crate::sim::plant::Plant;
+use crate::sim::quantities::{acceleration, metres, speed};
+use crate::sim::road::Ground;
+use crate::sim::sensors::{Ahead, RANGE_EVERY_S, Sensors};
+use crate::sim::station::station;
+use crate::sim::time::{gnss, micros};
+use actuators::Actuators;
+
+pub mod actuators;
+pub mod alias;
+mod unit;
+mod warm_up;
+
+pub use alias::Alias;
+pub use unit::Unit;
+
+/// Samples that they hold of each peer.
+pub const SAMPLES: usize = 8;
+/// Steps of their horizons.
+pub const STEPS: usize = 1082;
+
+/// Cycle of the time base, in seconds.
+const SYNC_EVERY_S: f64 = 0.5;
+/// Cycle of the position on the globe, in seconds.
+const LOCATE_EVERY_S: f64 = 0.1;
+/// What a unit outside said of its target is held for so long: the message's timeout.
+const ESTIMATE_TIMEOUT_S: f64 = 0.05;
+/// Cycle of the driver's request, in seconds.
+const REQUEST_EVERY_S: f64 = 0.1;
+
+/// A vehicle of a run.
+pub struct Vehicle {
+    /// Its place in the string; 0 leads.
+    pub index: usize,
+    /// Its true motion.
+    pub plant: Plant,
+    /// Bumper to bumper.
+    pub length_m: f64,
+    /// Its unit.
+    pub unit: Unit,
+    /// Whether its unit drives it.
+    pub engaged: bool,
+    /// What its unit commanded last.
+    pub command_mps2: f64,
+    /// The engine force or brake torque that its unit commanded for that.
+    pub effort: Effort,
+    /// Whether its unit's envelope changed that.
+    pub limited: bool,
+    /// In which mode that was.
+    pub mode: ModeCode,
+    /// What its unit said last of its target.
+    pub estimate: Option<TargetEstimate>,
+    request: DriverRequest,
+    clock_offset_us: u64,
+    sensors: Sensors,
+    ground: Option<Ground>,
+    sender: Sender<0>,
+    relay: Relay,
+    listener: Receiver<PEERS>,
+    transmitter: Transmitter,
+    bus: MemoryBus,
+    /// The unit's place on the bus; `None`: a unit outside has it, which commands through these actuators.
+    ecu: Option<MemoryNode>,
+    actuators: Actuators,
+    /// When the unit last said something of its target.
+    estimate_s: f64,
+    /// How its bus calls the stations.
+    alias: Alias,
+    harness: MemoryNode,
+    tag: u8,
+    synced: u8,
+}
+
+impl Vehicle {
+    /// A vehicle at rest in its seat: nothing on its bus yet. Its unit's own clock started `clock_offset_us` before the run.
+    ///
+    /// # Errors
+    /// What the unit finds wrong with its configuration.
+    pub fn new(
+        index: usize,
+        config: &Config,
+        plant: Plant,
+        length_m: f64,
+        request: DriverRequest,
+        clock_offset_us: u64,
+        sensors: Sensors,
+    ) -> Result<Self, ConfigError> {
+        let bus = MemoryBus::new();
+        let mut relay = Relay::new(config.base_id);
+        if let Predecessor::Station(ahead) = request.predecessor {
+            relay.set_out(Course::behind(ahead));
+        }
+        Ok(Self {
+            index,
+            plant,
+            length_m,
+            unit: Unit::new(config)?,
+            engaged: request.engaged,
+            command_mps2: 0.0,
+            effort: Effort::Force(0),
+            limited: false,
+            mode: ModeCode::Standby,
+            estimate: None,
+            request,
+            clock_offset_us,
+            sensors,
+            ground: None,
+            sender: Sender::new(config.base_id),
+            relay,
+            listener: Receiver::new(config.base_id, Role::Modem),
+            transmitter: Transmitter::default(),
+            ecu: Some(bus.node()),
+            actuators: Actuators::default(),
+            estimate_s: f64::NEG_INFINITY,
+            alias: Alias::default(),
+            harness: bus.node(),
+            bus,
+            tag: 0,
+            synced: 0,
+        })
+    }
+
+    /// Sets out on a way through intersections, whose numbers stand in `course`: from now on it knows where on the globe it is.
+    ///
+    /// # Errors
+    /// What the unit finds wrong with the map.
+    pub fn set_out(&mut self, ground: Ground, itinerary: &'static Itinerary, course: Course) -> Result<(), MapError> {
+        self.ground = Some(ground);
+        self.relay.set_out(course);
+        self.unit.set_out(itinerary)
+    }
+
+    /// Lets its modem use no more than so many of the unit's slots, if nothing has been heard yet.
+    pub fn limit_slots(&mut self, slots: usize) {
+        self.relay.limit(slots);
+    }
+
+    /// Lets the driver want another speed from now on.
+    pub fn want(&mut self, target_speed_mps: f64) {
+        self.request.target_speed = speed(target_speed_mps);
+    }
+
+    /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
+    #[must_use]
+    pub fn listen(&self) -> MemoryNode {
+        self.bus.node()
+    }
+
+    /// Takes its unit off the bus and hands out the place, for a unit outside. On this bus stations are called by `alias`.
+    pub fn give_seat(&mut self, alias: Alias) -> MemoryNode {
+        self.alias = alias;
+        self.relay.limit(ECU_PEERS);
+        self.ecu.take().unwrap_or_else(|| self.bus.node())
+    }
+
+    /// How its bus calls the stations.
+    #[must_use]
+    pub fn alias(&self) -> Alias {
+        self.alias
+    }
+
+    /// When its unit said so of its target, at a time of the run.
+    #[must_use]
+    pub fn estimate_s(&self) -> f64 {
+        self.estimate_s
+    }
+
+    /// Lets its driver engage the unit, if it is to drive at all, or not yet.
+    pub fn engage(&mut self, engages: bool) {
+        self.engaged = engages && self.request.engaged;
+    }
+
+    /// Messages that its modem had no slot for.
+    #[must_use]
+    pub fn turned_away(&self) -> u64 {
+        self.relay.turned_away()
+    }
+
+    /// The instant of the unit's clock at a time of the run.
+    #[must_use]
+    pub fn instant(&self, at_s: f64) -> Instant {
+        Instant::from_micros(self.clock_offset_us.saturating_add_signed(micros(at_s)))
+    }
+
+    /// The time of the run at an instant of the unit's clock.
+    #[must_use]
+    pub fn time_of(&self, at: Instant) -> f64 {
+        at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
+    }
+
+    /// How the one behind sees it.
+    #[must_use]
+    pub fn seen_from_behind(&self) -> Ahead {
+        Ahead { rear_m: self.plant.position_m - self.length_m, speed_mps: self.plant.speed_mps }
+    }
+
+    /// What the vehicle puts on its unit's bus in a period: its motion, and what it sees `ahead`, what the driver wants and
+    /// the time base when they are due.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
+        self.sense(at_s)?;
+        if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
+            let way_m = self.plant.position_m - ground.odometer_m;
+            let place = ground.road.said(way_m, self.tag, gnss(at_s).stamp());
+            self.put(at_s, &Message::Ego(Said::Geo(place)))?;
+        }
+        if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
+            && let Some(seen) = self.sensors.look(self.plant.position_m, self.plant.speed_mps, ahead)
+        {
+            self.put(at_s, &Message::Range(seen))?;
+        }
+        if is_due(at_s, UNSERVED_EVERY_S, period_s)
+            && let Some(unserved) = self.relay.unserved(at_s)
+        {
+            self.put(at_s, &Message::Unserved(unserved))?;
+        }
+        if is_due(at_s, REQUEST_EVERY_S, period_s) {
+            self.request(at_s)?;
+        }
+        if is_due(at_s, SYNC_EVERY_S, period_s) {
+            self.synchronise(at_s)?;
+        }
+        Ok(())
+    }
+
+    /// The time base's two messages.
+    fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
+        self.synced = (self.synced + 1) % 16;
+        let time = gnss(at_s).as_micros();
+        let sync = Sync { sequence: self.synced, seconds: (time / 1_000_000) as u32 };
+        let follow_up = FollowUp { sequence: self.synced, micros: (time % 1_000_000) as u32 };
+        self.put(at_s, &Message::Sync(sync))?;
+        self.put(at_s, &Message::FollowUp(follow_up))
+    }
+
+    /// The vehicle's own motion, as its sensors see it now.
+    fn sense(&mut self, at_s: f64) -> io::Result<()> {
+        self.tag = (self.tag + 1) % 4;
+        let motion = Motion {
+            tag: self.tag,
+            position: WirePosition::from_position(metres(self.plant.position_m)),
+            speed: speed(self.plant.speed_mps),
+            acceleration: acceleration(self.plant.acceleration_mps2),
+            demand: acceleration(self.command_mps2),
+            stamp: gnss(at_s).stamp(),
+            position_accuracy: Some(self.sensors.position_accuracy),
+            speed_accuracy: Some(self.sensors.speed_accuracy),
+            station: self.alias.of(station(self.index)),
+        };
+        self.put(at_s, &Message::Ego(Said::Motion(motion)))
+    }
+
+    /// What the driver wants.
+    fn request(&mut self, at_s: f64) -> io::Result<()> {
+        let predecessor = self.alias.of_predecessor(self.request.predecessor);
+        let request = DriverRequest { engaged: self.engaged, predecessor, ..self.request };
+        self.put(at_s, &Message::DriverRequest(request))
+    }
+
+    /// A message from the channel.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
+        let mut frames = Vec::new();
+        self.relay.hear(at_s, &self.alias.of_message(message), &mut frames);
+        let at = self.instant(at_s);
+        frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
+    }
+
+    /// One period of the unit: receive, tick, transmit. What its modem broadcasts then, if anything.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
+        let now = self.instant(at_s);
+        if let Some(ecu) = &mut self.ecu {
+            while let Some((at, frame)) = ecu.receive(now)? {
+                let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
+            }
+            for frame in self.unit.tick(now).frames {
+                ecu.send(now, (&frame).into())?;
+            }
+            self.estimate = None;
+        } else if self.estimate_s + ESTIMATE_TIMEOUT_S < at_s {
+            self.estimate = None;
+        }
+        self.take_in(at_s)?;
+        Ok(self.transmitter.broadcast().map(|message| self.alias.of_message(&message)))
+    }
+
+    /// Takes in what the unit has said up to now.
+    fn take_in(&mut self, at_s: f64) -> io::Result<()> {
+        let now = self.instant(at_s);
+        while let Some((at, frame)) = self.harness.receive(now)? {
+            let at_s = self.time_of(at);
+            match self.listener.receive(at, &frame) {
+                Ok(Received::Whole(Message::Own(said))) => {
+                    self.transmitter.take(&said);
+                    self.relay.take(&said);
+                }
+                Ok(Received::Whole(Message::Estimate(estimate))) => {
+                    (self.estimate, self.estimate_s) = (Some(estimate), at_s);
+                }
+                Ok(Received::Whole(Message::Command(command))) => {
+                    self.command_mps2 = command.acceleration.get().to_num();
+                    self.effort = command.effort;
+                    self.limited = command.limited;
+                    self.mode = command.mode;
+                    if self.ecu.is_none() && command.mode != ModeCode::Standby {
+                        self.actuators.take(at_s, self.effort);
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The body moves on from the time of a tick to the next one. A command from outside is in force from when it came.
+    ///
+    /// # Errors
+    /// The bus's.
+    pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
+        if self.ecu.is_some() {
+            self.plant.drive(self.effort, period_s);
+            return Ok(());
+        }
+        self.take_in(at_s + period_s)?;
+        for (effort, length_s) in self.actuators.pieces(at_s, at_s + period_s) {
+            let without = || self.effort_for(actuators::WITHOUT_COMMAND_MPS2);
+            self.plant.drive(effort.unwrap_or_else(without), length_s);
+        }
+        Ok(())
+    }
+
+    /// Drives it by another acceleration than its unit's command, as far as its body can.
+    pub fn override_with(&mut self, wanted_mps2: f64) {
+        self.command_mps2 = wanted_mps2;
+        self.effort = self.effort_for(wanted_mps2);
+    }
+
+    fn effort_for(&self, wanted_mps2: f64) -> Effort {
+        self.unit.config().body.effort(acceleration(wanted_mps2), speed(self.plant.speed_mps))
+    }
+
+    fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
+        let at = self.instant(at_s);
+        let mut result = Ok(());
+        let harness = &mut self.harness;
+        let sent = self.sender.send(message, &mut |frame| {
+            if result.is_ok() {
+                result = harness.send(at, (&frame).into());
+            }
+        });
+        debug_assert!(sent.is_ok(), "the vehicle says nothing that the catalogue has no line for");
+        result
+    }
+}
+
+/// Whether something of that cycle is due in the tick at `at_s`.
+fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
+    let phase = (at_s + 1e-9).rem_euclid(cycle_s);
+    phase < period_s - 1e-9
+}

@@ -1,0 +1,332 @@
+//! The world of a run: a scenario enters; every tick the vehicles sense, hear, tick, speak and move; a trace of every tick
+//! leaves.
+//!
+//! The order within a tick is that of [`Stages`].
+
+use std::io;
+use std::rc::Rc;
+
+use holdover::ConfigError;
+use holdover::health::Cause;
+use holdover::time::Instant;
+
+use crate::bus::memory::MemoryNode;
+use crate::bus::{Bus, Frame};
+use crate::input::scenario::Scenario;
+use crate::sim::channel::Channel;
+use crate::sim::plant::Plant;
+use crate::sim::sensors::Sensors;
+use crate::sim::stages::Stages;
+use crate::sim::station::request;
+use crate::sim::vehicle::{Alias, Vehicle};
+use crate::streams::{Purpose, stream, unit};
+
+mod config;
+mod tick;
+
+use crate::sim::air::{Air, Arrived};
+pub use config::{HORIZON_S, config, horizon, machine};
+pub use tick::{Bounds, TargetBelief, Tick};
+
+/// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
+pub const WARM_UP_S: f64 = 1.0;
+
+/// The trace of a run.
+pub struct Trace {
+    /// The time of each tick.
+    pub times_s: Vec<f64>,
+    /// For each vehicle, its ticks.
+    pub vehicles: Vec<Vec<Tick>>,
+    /// For each tick, where the literal paper believes that the measured vehicle is; empty if nobody asks it.
+    pub paper: Vec<Option<f64>>,
+    /// The vehicle whose position is estimated, and by whom.
+    pub measured: Measured,
+    /// Refusals of all units together, by cause.
+    pub refusals: Vec<(Cause, u64)>,
+    /// The channel with all that happened on it.
+    pub channel: Channel,
+    /// The bus of one vehicle, if it was asked for: times of the run and frames.
+    pub log: Vec<(f64, Frame)>,
+    /// Messages that found no slot in a modem.
+    pub turned_away: u64,
+}
+
+/// Whose position is estimated by whom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measured {
+    /// The vehicle whose position is estimated.
+    pub vehicle: usize,
+    /// The vehicle that follows it and estimates.
+    pub by: usize,
+}
+
+impl Measured {
+    /// The ego as its follower estimates it; if nobody follows the ego, the one ahead as the ego estimates it.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        let ego = scenario.ego;
+        if ego + 1 < scenario.vehicles.len() {
+            Self { vehicle: ego, by: ego + 1 }
+        } else {
+            Self { vehicle: ego - 1, by: ego }
+        }
+    }
+}
+
+/// The world.
+pub struct World<'a> {
+    scenario: &'a Scenario,
+    vehicles: Vec<Vehicle>,
+    air: Air,
+    /// Listens on the bus that is logged.
+    log: Option<(usize, MemoryNode)>,
+    measured: Measured,
+    /// Where the bodies start.
+    starts_m: Vec<f64>,
+}
+
+impl<'a> World<'a> {
+    /// The world of a scenario under a seed; the bus of `logged` is kept.
+    ///
+    /// # Errors
+    /// What a unit finds wrong with the configuration that the scenario gives it.
+    pub fn new(scenario: &'a Scenario, seed: u64, logged: Option<usize>) -> Result<Self, ConfigError> {
+        let mut vehicles = Vec::new();
+        for (index, state) in scenario.initial_states(seed).iter().enumerate() {
+            let described = &scenario.vehicles[index];
+            let config = config(scenario, index);
+            let is_recorded = index == 0 && scenario.leader.motion.is_some();
+            let plant = Plant::cruising(machine(scenario, index), state.position_m, state.speed_mps);
+            let request = request(
+                index.checked_sub(1),
+                !is_recorded,
+                scenario.leader.followers_target_speed_mps(),
+                described.time_gap_s,
+            );
+            let clock_offset_us = clock_offset(seed, index);
+            let sensors = Sensors::new(described, seed, index);
+            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, request, clock_offset_us, sensors)?);
+        }
+        let measured = Measured::of(scenario);
+        let starts_m = vehicles.iter().map(|vehicle: &Vehicle| vehicle.plant.position_m).collect();
+        Ok(Self {
+            scenario,
+            air: Air::new(&scenario.channel, seed),
+            log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
+            vehicles,
+            measured,
+            starts_m,
+        })
+    }
+
+    /// Runs the world to its end. From time to time `progress` is told the share that is done.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn run(self, progress: impl FnMut(f64)) -> io::Result<Trace> {
+        self.run_beside(|_, _, _| Ok(()), progress)
+    }
+
+    /// Runs the world to its end and shows every tick to `beside`, before the bodies move on.
+    ///
+    /// # Errors
+    /// The buses', and those of `beside`.
+    pub fn run_beside(
+        mut self,
+        mut beside: impl FnMut(&Self, f64, &mut Trace) -> io::Result<()>,
+        mut progress: impl FnMut(f64),
+    ) -> io::Result<Trace> {
+        let period_s = self.scenario.period_s;
+        for tick in (1..=self.warm_up_ticks(WARM_UP_S)).rev() {
+            let at_s = -f64::from(tick) * period_s;
+            self.approach(at_s)?;
+            self.answer(at_s)?;
+        }
+        self.begin();
+        let ticks = self.ticks();
+        let mut trace = self.trace();
+        for tick in 0..ticks {
+            let at_s = tick as f64 * period_s;
+            self.tick(at_s, |world| {
+                world.note(at_s, &mut trace);
+                beside(world, at_s, &mut trace)
+            })?;
+            if tick % 100 == 0 {
+                progress(tick as f64 / ticks as f64);
+            }
+        }
+        self.finish(trace)
+    }
+
+    /// Gives the place of a vehicle's unit on its bus to a unit outside, which calls stations by the alias. What the unit
+    /// outside says up to a time has to be on the bus before the world goes on from that time.
+    pub fn give_seat(&mut self, vehicle: usize, alias: Alias) -> MemoryNode {
+        self.vehicles[vehicle].give_seat(alias)
+    }
+
+    /// The vehicles.
+    #[must_use]
+    pub fn vehicles(&self) -> &[Vehicle] {
+        &self.vehicles
+    }
+
+    /// Whose position is estimated by whom.
+    #[must_use]
+    pub fn measured(&self) -> Measured {
+        self.measured
+    }
+
+    /// Ticks of the run.
+    #[must_use]
+    pub fn ticks(&self) -> usize {
+        (self.scenario.duration_s / self.scenario.period_s).round() as usize
+    }
+
+    /// Ticks of a time before the run that is at least so long, in seconds, and ends when the own messages, which go out
+    /// from the first tick on, are due at time 0.
+    #[must_use]
+    pub fn warm_up_ticks(&self, at_least_s: f64) -> u32 {
+        warm_up_ticks(at_least_s, self.scenario.message_rate_hz, self.scenario.period_s)
+    }
+
+    /// The trace of a run that has not begun.
+    #[must_use]
+    pub fn trace(&self) -> Trace {
+        let ticks = self.ticks();
+        Trace {
+            times_s: Vec::with_capacity(ticks),
+            vehicles: vec![Vec::with_capacity(ticks); self.vehicles.len()],
+            paper: Vec::with_capacity(ticks),
+            measured: self.measured,
+            refusals: Vec::new(),
+            channel: Channel::new(&self.scenario.channel, 0),
+            log: Vec::new(),
+            turned_away: 0,
+        }
+    }
+
+    /// A tick before the run. As every real unit knows it, the units have power and tick, their time base and their sensors
+    /// speak, the drivers drive at constant speed and have not engaged them yet, and nobody is within reach. `at_s` is
+    /// negative; [`answer`](Self::answer) follows.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn approach(&mut self, at_s: f64) -> io::Result<()> {
+        self.place_recorded_leader(0.0);
+        for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
+            vehicle.engage(false);
+            vehicle.approach(*start_m, (at_s, -at_s), self.scenario.period_s)?;
+        }
+        Ok(())
+    }
+
+    /// The units answer before the run.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn answer(&mut self, at_s: f64) -> io::Result<()> {
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s).map(|_| ()))
+    }
+
+    /// The drivers engage their units; the run begins.
+    pub fn begin(&mut self) {
+        for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
+            vehicle.plant.position_m = *start_m;
+            vehicle.engage(true);
+        }
+    }
+
+    /// Writes a tick down; after [`act`](Stages::act).
+    pub fn note(&self, at_s: f64, trace: &mut Trace) {
+        trace.times_s.push(at_s);
+        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
+            ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
+        }
+    }
+
+    /// The run is over: the trace is completed.
+    ///
+    /// # Errors
+    /// The buses'.
+    pub fn finish(mut self, mut trace: Trace) -> io::Result<Trace> {
+        trace.refusals = Cause::ALL
+            .iter()
+            .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
+            .collect();
+        if let Some((index, node)) = &mut self.log {
+            while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
+                trace.log.push((self.vehicles[*index].time_of(at), frame));
+            }
+        }
+        trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
+        trace.channel = self.air.into_channel();
+        Ok(trace)
+    }
+
+    /// Everything that has arrived by now, in the order of arrival.
+    fn deliver(&mut self, at_s: f64) -> io::Result<()> {
+        while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
+            self.vehicles[to].hear(at_s, &message)?;
+        }
+        Ok(())
+    }
+
+    /// A leader on a recording is where the recording says.
+    fn place_recorded_leader(&mut self, at_s: f64) {
+        let Some(motion) = &self.scenario.leader.motion else { return };
+        let state = motion.at(motion.start_s() + at_s);
+        let leader = &mut self.vehicles[0];
+        leader.plant.position_m = self.starts_m[0] + state.position_m - motion.at(motion.start_s()).position_m;
+        leader.plant.speed_mps = state.speed_mps.max(0.0);
+        leader.plant.acceleration_mps2 = motion.past_slope(motion.start_s() + at_s);
+        leader.command_mps2 = leader.plant.acceleration_mps2;
+    }
+}
+
+impl Stages for World<'_> {
+    fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        self.deliver(at_s)?;
+        self.place_recorded_leader(at_s);
+        let program = &self.scenario.leader.program;
+        if let Some((_, speed_mps)) = program.iter().rfind(|(from_s, _)| *from_s <= at_s + 1e-9) {
+            self.vehicles[0].want(*speed_mps);
+        }
+        let mut ahead = None;
+        for vehicle in &mut self.vehicles {
+            vehicle.speak(at_s, self.scenario.period_s, ahead)?;
+            ahead = Some(vehicle.seen_from_behind());
+        }
+        Ok(())
+    }
+
+    fn act(&mut self, at_s: f64) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for vehicle in &mut self.vehicles {
+            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
+        }
+        for (from, message) in broadcasts {
+            let others = (0..self.vehicles.len()).filter(|to| *to != from);
+            self.air.broadcast(at_s, from, others, &Rc::new(message));
+        }
+        Ok(())
+    }
+
+    fn drive(&mut self, at_s: f64) -> io::Result<()> {
+        let period_s = self.scenario.period_s;
+        self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged).try_for_each(|vehicle| vehicle.drive(at_s, period_s))
+    }
+}
+
+/// The ticks of a warm-up: whole cycles of the messages.
+#[must_use]
+pub fn warm_up_ticks(at_least_s: f64, message_rate_hz: f64, period_s: f64) -> u32 {
+    let messages = (at_least_s * message_rate_hz).ceil();
+    (messages / message_rate_hz / period_s - 1e-9).ceil() as u32
+}
+
+/// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
+#[must_use]
+pub fn clock_offset(seed: u64, index: usize) -> u64 {
+    let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));
+    10_000_000 + (share * 1e9) as u64
+}
