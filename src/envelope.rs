@@ -8,7 +8,7 @@
 //! # Safe distance
 //!
 //! What is certain of a vehicle ahead is its near end: a vehicle of its own, whose rear is at `p`, whose speed is `w`, and
-//! which brakes with `c`, its hardest ([`crate::estimator::bound`]). No truth gets behind it. What the gate keeps is this:
+//! which brakes with `c`, its hardest ([`crate::model::bound`]). No truth gets behind it. What the gate keeps is this:
 //! *emergency braking from now on never meets the near end*. A command that is allowed by a condition that suffices for it
 //! keeps it; and where none does, the command is emergency braking, and what was true stays true.
 //!

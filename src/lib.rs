@@ -1,10 +1,12 @@
 //! **holdover** keeps a connected vehicle's cooperative control running while its V2X link is late or silent.
 //!
 //! ```text
-//! CAN frame -> wire -> peers -> estimator -> controller -> envelope -> wire -> CAN frame
-//!              Message  Track    Estimate     Demand        Command    encode
-//!                       per peer + Horizon               (each refusal is counted, by cause, in health)
+//! a frame:  wire -> message -> scene: clock, ego, peers, places, range sensor   (each refusal is counted, by cause, in health)
+//! a tick:   review -> update -> decide -> drive -> limit -> actuate -> foresee -> send
+//!           order     horizons  mode      demand   command  effort     own horizon  frames
 //! ```
+//!
+//! Imports run one way only: `unit -> coordination, controller -> estimator -> peers -> model -> wire -> time -> units -> fixed`.
 //!
 //! The two doors are [`OnboardUnit::receive`] and [`OnboardUnit::tick`]. Time is an argument, frames are
 //! [`embedded_can::Frame`]s; there is no clock, no bus, no allocator and no global in here. Same input, same output,
@@ -38,6 +40,7 @@ pub mod fixed;
 pub mod health;
 mod held;
 pub mod lockstep;
+pub mod model;
 pub mod parameters;
 pub mod peers;
 #[cfg(test)]

@@ -92,7 +92,7 @@ fn step(base: BaseId, frame: &impl Frame) -> Option<Step> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Config;
+    use crate::config::Config;
     use crate::health::Cause;
     use crate::wire::{Message, Sender, StationHash};
 

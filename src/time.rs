@@ -34,6 +34,12 @@ impl Duration {
         Self(millis.saturating_mul(1000))
     }
 
+    /// Of a factor for accelerations, such as a lag, rounded to nearest.
+    #[must_use]
+    pub const fn of_fine_seconds(time: FineSeconds) -> Self {
+        Self(time.to_multiple_of(1_000_000))
+    }
+
     /// In microseconds.
     #[must_use]
     pub const fn as_micros(self) -> i64 {

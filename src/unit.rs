@@ -1,37 +1,51 @@
 //! The onboard unit: frames and ticks enter by its two doors, a command and frames leave. The only file that names every
 //! stage.
+//!
+//! ```text
+//!  frame -> Receiver -> message -> Scene: all that is known, changed by messages and by the first two stages of a tick
+//!                                    |
+//!  tick:  review   whom the ego follows, by the order at the intersections        coordinate
+//!         update   every horizon, brought up to now                               estimator
+//!         decide   the mode, and the gains of a new association                   course, mode, association
+//!         drive    the demand, by the course of the mode                          course, room, controller
+//!         limit    the command: the demand, or what the limits leave of it        gate, lane, envelope
+//!         actuate  the force or torque that brings the command about              dynamics
+//!         foresee  the own horizon, when the own messages are due                 ego_horizon
+//!         send     frames                                                         outbox
+//! ```
+//!
+//! From `decide` on the scene is only looked at, but for the own horizon.
 
 use embedded_can::Frame as CanFrame;
 use heapless::Vec;
 
-use crate::clock::Clock;
 use crate::config::{Config, ConfigError};
-use crate::controller::{Controller, Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
-use crate::coordination::{ComfortBraking, Coordination};
-use crate::envelope::Reckoning;
-use crate::estimator::{Aim, Estimator, Reading, Remainders, State, VehicleModel};
+use crate::controller::{Controller, Mode};
+use crate::coordination::{Itinerary, MapError};
+use crate::dynamics::Inversion;
 use crate::health::{Cause, Health, Incident};
-use crate::held::Held;
-use crate::peers::{Peers, Sample};
+use crate::model::{Reading, State};
+use crate::peers::Sample;
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Seconds, Speed};
+use crate::units::Acceleration;
 use crate::wire::command::Command;
-use crate::wire::driver_request::DriverRequest;
-use crate::wire::{BaseId, Predecessor, Received, Receiver, Role, Sender};
-use gate::Displaced;
+use crate::wire::{BaseId, Frame, Received, Receiver, Role};
+use association::Association;
+use gate::{Gate, Last};
+use outbox::{Outbox, Report};
+use scene::Scene;
 
-mod admission;
 mod answer;
+mod association;
 mod coordinate;
+mod course;
 mod ego_horizon;
 mod gate;
-mod inbox;
 mod lane;
 mod outbox;
-mod range;
 mod room;
-mod sight;
-mod unknown;
+mod scene;
+mod vantage;
 mod view;
 
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
@@ -41,29 +55,15 @@ pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
 /// It is `Clone`, holds no pointer, and may live in a `static`.
 #[derive(Clone, Debug)]
 pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
-    config: Config,
     receiver: Receiver<PEERS>,
-    sender: Sender<0>,
-    clock: Clock,
-    ego: Held<Sample>,
-    desired: Held<DriverRequest>,
-    peers: Peers<PEERS, SAMPLES>,
-    estimator: Estimator<PEERS, STEPS>,
-    /// Whom the ego follows, with the gains looked up when that began.
-    association: Option<(crate::wire::StationHash, Gains)>,
-    controller: Controller,
+    scene: Scene<PEERS, SAMPLES, STEPS>,
+    association: Association,
     mode: Mode,
+    controller: Controller,
+    gate: Gate,
+    dynamics: Inversion,
+    outbox: Outbox,
     health: Health,
-    outbox: outbox::Outbox,
-    ranging: sight::Ranging,
-    unknown: unknown::Unknown,
-    /// The ego as the last gate sees it.
-    reckoning: Held<Reckoning>,
-    /// The slot of whom the driver named and who was heard of, until another one is both.
-    named: Option<u8>,
-    /// The same, once somebody else has its slot.
-    displaced: Held<Displaced>,
-    coordination: Coordination<PEERS>,
     last_tick: Option<Instant>,
 }
 
@@ -73,25 +73,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[must_use]
     pub const fn idle() -> Self {
         Self {
-            config: Config::NONE,
             receiver: Receiver::new(BaseId::NONE, Role::Unit),
-            sender: Sender::new(BaseId::NONE),
-            clock: Clock::new(),
-            ego: Held::Nothing,
-            desired: Held::Nothing,
-            peers: Peers::idle(),
-            estimator: Estimator::idle(),
-            association: None,
-            controller: Controller::idle(),
+            scene: Scene::idle(),
+            association: Association::NONE,
             mode: Mode::Standby,
+            controller: Controller::idle(),
+            gate: Gate::new(),
+            dynamics: Inversion::new(),
+            outbox: Outbox::new(BaseId::NONE),
             health: Health::new(),
-            outbox: outbox::Outbox::new(),
-            ranging: sight::Ranging::new(),
-            unknown: unknown::Unknown::NONE,
-            reckoning: Held::Nothing,
-            named: None,
-            displaced: Held::Nothing,
-            coordination: Coordination::idle(),
             last_tick: None,
         }
     }
@@ -104,25 +94,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(STEPS)?;
         // Field by field, because the whole of it would pass over the stack.
-        self.config = *config;
         self.receiver = Receiver::new(config.base_id, Role::Unit);
-        self.sender = Sender::new(config.base_id);
-        self.clock = Clock::new();
-        self.ego.clear();
-        self.desired.clear();
-        self.peers.start(config.link.period);
-        self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
-        self.association = None;
-        self.controller = Controller::new(config.period);
+        self.scene.start(config);
+        self.association = Association::NONE;
         self.mode = Mode::Standby;
+        self.controller = Controller::new(config.period);
+        self.gate = Gate::new();
+        self.dynamics = Inversion::new();
+        self.outbox = Outbox::new(config.base_id);
         self.health = Health::new();
-        self.outbox = outbox::Outbox::new();
-        self.ranging = sight::Ranging::new();
-        self.unknown = unknown::Unknown::NONE;
-        self.reckoning.clear();
-        self.named = None;
-        self.displaced.clear();
-        self.coordination.reset();
         self.last_tick = None;
         Ok(())
     }
@@ -137,9 +117,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Ok(unit)
     }
 
+    /// Sets out on a way through intersections: from now on, and until the unit is started anew, positions of peers are taken on
+    /// the virtual lane, and where `DriverRequest` names no predecessor the order at the intersections decides whom to follow.
+    ///
+    /// # Errors
+    /// What is wrong with the map; nothing is changed then.
+    pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
+        self.scene.coordination.set_out(itinerary)
+    }
+
     /// A configuration that was checked has a period.
     fn is_started(&self) -> bool {
-        self.config.period > Duration::ZERO
+        self.scene.config.period > Duration::ZERO
     }
 
     /// Takes in one frame received at `at`. Bounded time; frames may come in any order and at any time.
@@ -155,7 +144,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let result = match self.receiver.receive_as_unit(at, frame) {
             Ok(Received::Foreign) => Ok(Reception::Foreign),
             Ok(Received::Pending) => Ok(Reception::Pending),
-            Ok(Received::Whole(message)) => self.take(at, &message).map(|()| Reception::Taken),
+            Ok(Received::Whole(message)) => self.scene.take(at, &message, &mut self.health).map(|()| Reception::Taken),
             Err(cause) => Err(cause),
         };
         if let Err(cause) = result {
@@ -178,55 +167,37 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer
     }
 
+    /// The stages in the order of the diagram above.
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
-        let before = self.last_tick;
+        let last_tick = self.last_tick;
         let now = self.monotonic(now);
-        let since = before.map_or(Duration::ZERO, |before| now.since(before));
-        self.coordinate(now);
-        let target = self.target();
-        self.note_named(target);
-        let before = match self.mode {
-            Mode::Holdover { .. } => target.and_then(|index| self.estimated(index, now)),
-            _ => None,
-        };
-        let unreachable = self.estimator.update(now, &self.peers);
-        self.health.add(Cause::Unreachable, unreachable);
-        let reading = target.and_then(|index| self.estimated(index, now));
-
-        let facts = self.facts(now, target, reading.is_some());
-        self.mode = self.mode.next(&facts, now);
-        if let (Mode::Cooperative, Some(before), Some(after)) = (self.mode, before, reading)
-            && self.config.prediction.model.smooth
-        {
-            self.controller.blend_from(before, after);
-        }
-        self.associate(reading);
-
-        let ego = self.ego_at(now);
+        let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
         let last = self.controller.last_demand();
-        let course = self.course(now, target, ego.as_ref());
-        let demand = self.controller.drive(&self.config, now, ego.as_ref(), &course);
-        let (acceleration, limited) = match self.config.envelope {
-            Some(limits) if self.mode != Mode::Standby => {
-                self.gate(&limits, now, demand, last, ego.as_ref(), &facts, since)
-            }
-            _ => {
-                // Of what somebody else commands nothing is known.
-                self.reckoning.clear();
-                (demand, false)
-            }
-        };
-        self.controller.correct(acceleration);
-        answer.command = self.outbox.command(&self.config, acceleration, ego.as_ref(), self.mode, limited);
+        coordinate::review(&mut self.scene, now, last, &mut self.health);
+        let target = self.scene.target();
+        self.scene.note_named(target);
+        let (before, reading) = self.update(now, target);
+        self.decide(now, target, before, reading);
+        let ego = self.scene.ego_at(now, last);
+        let demand = self.drive(now, target, ego.as_ref());
+        let (acceleration, limited) = self.limit(now, demand, Last { demand: last, age }, ego.as_ref());
+        answer.command = self.actuate(acceleration, limited, ego.as_ref());
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
-        self.send(now, &answer.command, answer.estimate.as_ref(), last, target, &mut answer.frames);
+        if self.is_started() {
+            let (command, estimate) = (&answer.command, answer.estimate.as_ref());
+            self.outbox.send_answer(command, estimate, &mut self.health, &mut answer.frames);
+            if self.outbox.is_due(now, self.scene.config.link.period) {
+                let own = self.foresee(now, last, target);
+                self.send_own(now, own.as_ref(), &mut answer.frames);
+            }
+        }
     }
 
     fn monotonic(&mut self, now: Instant) -> Instant {
         let Some(last) = self.last_tick else {
-            self.estimator.start_grid(now);
+            self.scene.estimator.start_grid(now);
             self.last_tick = Some(now);
             return now;
         };
@@ -238,136 +209,78 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         now
     }
 
-    /// The slot of whom the ego is to follow.
-    fn target(&self) -> Option<usize> {
-        match self.predecessor() {
-            Predecessor::Station(station) => self.peers.index_of(station),
-            Predecessor::None | Predecessor::Unknown => None,
-        }
+    /// Brings every horizon up to now. The target's reading of now by the horizon as it was, in a holdover, and as it is.
+    fn update(&mut self, now: Instant, target: Option<usize>) -> (Option<Reading>, Option<Reading>) {
+        let before = match self.mode {
+            Mode::Holdover { .. } => target.and_then(|index| self.scene.estimated(index, now)),
+            _ => None,
+        };
+        let unreachable = self.scene.estimator.update(now, &self.scene.peers);
+        self.health.add(Cause::Unreachable, unreachable);
+        (before, target.and_then(|index| self.scene.estimated(index, now)))
     }
 
-    fn facts(&self, now: Instant, target: Option<usize>, readable: bool) -> Facts {
-        let ego = match self.ego.as_ref() {
-            None => Err(FaultCause::EgoMissing),
-            Some(ego) if now.since(ego.received) > self.config.link.ego_timeout => Err(FaultCause::EgoStale),
-            Some(_) => Ok(()),
-        };
-        let track = target.and_then(|index| self.peers.get(index));
-        let target = match (self.predecessor(), track) {
-            (Predecessor::None, _) => TargetFact::NotNeeded,
-            (Predecessor::Unknown, _) => TargetFact::Lost(FallbackCause::NotAssociated),
-            (Predecessor::Station(_), Some(track)) if readable => {
-                let silence = track.link().silence(now).unwrap_or(Duration::MAX);
-                if track.link().is_on(now, &self.config.link) {
-                    TargetFact::On
-                } else if silence <= self.config.link.holdover {
-                    TargetFact::Off
-                } else {
-                    TargetFact::Lost(FallbackCause::Silent)
-                }
+    /// Decides the mode and the gains. After a silence the controller is led from the old reading to the new one.
+    fn decide(&mut self, now: Instant, target: Option<usize>, before: Option<Reading>, reading: Option<Reading>) {
+        let facts = course::facts(&self.scene, now, target, reading.is_some());
+        self.mode = self.mode.next(&facts, now);
+        if let (Mode::Cooperative, Some(before), Some(after)) = (self.mode, before, reading)
+            && self.scene.config.prediction.model.smooth
+        {
+            self.controller.blend_from(before, after);
+        }
+        self.association.update(&self.scene, reading);
+    }
+
+    /// The demand of the controller.
+    fn drive(&mut self, now: Instant, target: Option<usize>, ego: Option<&State>) -> Acceleration {
+        let course = course::course(&self.scene, now, self.mode, target, self.association.gains(), ego);
+        self.controller.drive(&self.scene.config, now, ego, &course)
+    }
+
+    /// The command that the last gate lets through, and whether the gate changed the demand.
+    fn limit(&mut self, now: Instant, demand: Acceleration, last: Last, ego: Option<&State>) -> (Acceleration, bool) {
+        let (acceleration, limited) = match &self.scene.config.envelope {
+            Some(limits) if self.mode != Mode::Standby => {
+                self.gate.command(limits, &self.scene, now, demand, last, ego)
             }
-            (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
-        };
-        // Whoever is seen ahead is driven by then, and not what is heard.
-        let is_contradicted = self.visible().is_some_and(|index| self.is_contradicted(index, now));
-        let target = match target {
-            TargetFact::Lost(_) => target,
-            _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
-            _ => target,
-        };
-        Facts { engaged: self.desired.as_ref().is_some_and(|desired| desired.engaged), ego, target }
-    }
-
-    /// Looks the gains up when the target changes.
-    fn associate(&mut self, reading: Option<Reading>) {
-        let Predecessor::Station(station) = self.predecessor() else {
-            self.association = None;
-            return;
-        };
-        if self.association.is_some_and(|(associated, _)| associated == station) {
-            return;
-        }
-        let (Some(target), Some(ego)) = (reading, self.ego.as_ref()) else { return };
-        let headway = target.position.ahead_of(ego.position);
-        self.association = Some((station, Gains::look_up(&self.config.law, ego.speed, target.speed, headway)));
-    }
-
-    /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
-    fn ego_at(&self, now: Instant) -> Option<State> {
-        let sample = self.ego.as_ref()?;
-        let state = State {
-            position: sample.position.ring(),
-            speed: sample.speed,
-            acceleration: sample.acceleration,
-            demand: self.controller.last_demand(),
-            remainders: Remainders::NONE,
-        };
-        let age = now.since(sample.at);
-        if age <= Duration::ZERO {
-            return Some(state);
-        }
-        let driver = VehicleModel::of_config(&self.config, Aim::Fade);
-        Some(driver.coast(state, age.min(self.config.link.ego_timeout), &self.config.prediction.model))
-    }
-
-    /// How the ego itself drives: the law of its mode.
-    fn driver(&self) -> VehicleModel {
-        let association = self.association.map(|(_, gains)| (gains, self.standstill()));
-        self.driver_with(association, self.coordination.choice().comfort)
-    }
-
-    /// How it drives with these gains and this standstill distance behind somebody, or behind nobody.
-    fn driver_with(&self, association: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
-        let (law, target_speed) = (&self.config.law, self.target_speed());
-        let aim = match association {
-            Some((gains, standstill)) => Aim::Follow {
-                gain: gains.gain,
-                damping: gains.damping,
-                time_gap: self.time_gap(),
-                standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
-                target_speed,
-            },
-            None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
-        };
-        let VehicleModel { aim, lag, mut limits } = VehicleModel::of_config(&self.config, aim);
-        limits.braking = comfort.limit(limits.braking);
-        VehicleModel { aim, lag, limits }
-    }
-
-    /// `t_g`: the driver's, or else the configuration's.
-    fn time_gap(&self) -> Seconds {
-        self.desired.as_ref().and_then(|desired| desired.time_gap).unwrap_or(self.config.law.time_gap)
-    }
-
-    /// `v_∞` likewise.
-    fn target_speed(&self) -> Speed {
-        self.desired.as_ref().map_or(self.config.law.target_speed, |desired| desired.target_speed)
-    }
-
-    fn course(&self, now: Instant, target: Option<usize>, ego: Option<&State>) -> Course {
-        match self.mode {
-            Mode::Standby => Course::Yield { demand: self.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
-            Mode::Cooperative | Mode::Holdover { .. } => {
-                let next = now.plus(self.config.period);
-                let reading = target.and_then(|index| {
-                    let length = self.peers.get(index)?.parameters().map(|parameters| parameters.length);
-                    Some((self.estimated(index, next)?, length))
-                });
-                let cap = ego.map_or(Acceleration::MAX, |ego| self.careful(now, ego));
-                Course::Law { driver: self.driver(), target: reading, cap }
+            _ => {
+                self.gate.forget();
+                (demand, false)
             }
-            Mode::Fallback { .. } => match self.still_known(now, target) {
-                Some(ahead) => Course::Cruise { ahead, target_speed: self.target_speed() },
-                None => Course::Caution,
-            },
-            Mode::Fault { .. } => Course::Brake,
-        }
+        };
+        self.controller.correct(acceleration);
+        (acceleration, limited)
     }
 
+    /// The command with the force or the torque that brings it about.
+    fn actuate(&mut self, acceleration: Acceleration, limited: bool, ego: Option<&State>) -> Command {
+        let is_driving = self.mode != Mode::Standby;
+        let effort = self.dynamics.effort(&self.scene.config, ego, is_driving, acceleration);
+        Command { acceleration, effort, mode: self.mode.code(), limited, tick: self.outbox.next_tick() }
+    }
+
+    /// What is believed of the target.
     fn estimate(&self, now: Instant, index: usize, reading: Reading) -> Option<Estimate> {
-        let track = self.peers.get(index)?;
+        let track = self.scene.peers.get(index)?;
         let age = now.since(track.newest()?.at);
-        let link_on = track.link().is_on(now, &self.config.link);
-        Some(Estimate { reading, age, link_on, bound: self.bound(index, now) })
+        let link_on = track.link().is_on(now, &self.scene.config.link);
+        Some(Estimate { reading, age, link_on, bound: self.scene.bound(index, now) })
+    }
+
+    /// The ego's motion as it is to be told, with its own horizon computed from it; `None` if the motion is too old. Its demand is
+    /// the one in force up to its stamp: from that one a receiver's model repeats the demand of this tick.
+    fn foresee(&mut self, now: Instant, last: Acceleration, target: Option<usize>) -> Option<Sample> {
+        let ego = self.scene.fresh_ego(now)?;
+        let own = if self.mode == Mode::Standby { *ego } else { Sample { demand: last, ..*ego } };
+        if self.mode.is_by_law() {
+            ego_horizon::foresee(&mut self.scene, now, &own, target, self.association.gains());
+        }
+        Some(own)
+    }
+
+    fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        let report = Report { mode: self.mode, gains: self.association.gains(), ego: own };
+        self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }
 }

@@ -5,7 +5,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, Rest, SecondsFormat,
-    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, ratio, saturate_i32, sum_around, unratio,
+    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, quotient, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -108,6 +108,13 @@ macro_rules! quantity {
                 let bits = if self.0.to_bits() > high.0.to_bits() { high } else { self };
                 if bits.0.to_bits() < low.0.to_bits() { low } else { bits }
             }
+
+            /// That fraction of it.
+            #[inline(always)]
+            #[must_use]
+            pub const fn share(self, share: Fraction) -> Self {
+                Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
+            }
         }
     };
 }
@@ -155,26 +162,27 @@ impl Speed {
 }
 
 impl Acceleration {
+    /// A change of speed over so many microseconds, saturating; zero over none.
+    #[must_use]
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+    pub const fn of_change(change: Speed, micros: i64) -> Self {
+        // 23 to 25 fraction bits is a factor of 4; per second instead of per microsecond one of 1e6.
+        let change = (change.to_bits() as i64).saturating_mul(4_000_000);
+        Self::from_bits(saturate_i32(quotient(change, micros)))
+    }
+
+    /// The acceleration that changes the speed by this much in a second, saturating.
+    #[must_use]
+    pub const fn in_a_second(change: Speed) -> Self {
+        // 23 to 25 fraction bits is a factor of 4.
+        Self::from_bits(saturate_i32((change.to_bits() as i64).saturating_mul(4)))
+    }
+
     /// The gain in speed at this acceleration for that time.
     #[inline(always)]
     #[must_use]
     pub const fn over(self, time: FineSeconds) -> Speed {
         Speed::from_bits(mul_hi(self.to_bits(), time.to_bits()))
-    }
-
-    /// That share of it.
-    #[inline(always)]
-    #[must_use]
-    pub const fn share(self, share: Fraction) -> Self {
-        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
-    }
-}
-
-impl FineSeconds {
-    /// That share of it.
-    #[must_use]
-    pub const fn share(self, share: Fraction) -> Self {
-        Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
     }
 }
 

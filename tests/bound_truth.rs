@@ -5,7 +5,7 @@
 mod rig;
 
 use holdover::Config;
-use holdover::estimator::bound::Bound;
+use holdover::model::bound::Bound;
 use holdover::time::Duration;
 use holdover::wire::motion::WirePosition;
 use holdover::wire::{Predecessor, Said};

@@ -5,7 +5,7 @@ mod rig;
 
 use holdover::config::Envelope;
 use holdover::envelope::{self, Ego, Obstacle, Situation};
-use holdover::estimator::bound::{AccelerationRange, Bound, Uncertainty};
+use holdover::model::bound::{AccelerationRange, Bound, Uncertainty};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Jerk};
 use rig::plant::{Body, Plant};

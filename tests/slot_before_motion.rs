@@ -134,5 +134,5 @@ fn a_length_that_was_said_long_before_counts_if_it_is_long() {
     let road = after_parameters_of_nobody(&DrivingParameters { length: metres(18.0), ..parameters(1.0, 2.0) }, 2.5);
     let track = road.rig.unit.peers().get(2).unwrap();
     assert_eq!(track.parameters().map(|parameters| parameters.length), Some(metres(18.0)));
-    assert_eq!(track.reach(), holdover::estimator::bound::AccelerationRange::WORST);
+    assert_eq!(track.reach(), holdover::model::bound::AccelerationRange::WORST);
 }

@@ -160,6 +160,22 @@ fn the_two_just_ahead_on_the_own_leg_are_heard_wherever_they_are_and_however_lon
 }
 
 #[test]
+fn who_was_just_ahead_keeps_its_slot_when_the_unit_has_driven_past_where_it_was_heard_last() {
+    let mut bus = Bus::new();
+    assert!(bus.hear(0.0, &message(1, Some(route(4, OWN_LEG, 80)))));
+    // It falls silent. The unit drives on, and more are heard than there are slots.
+    for tenth in 1..=40 {
+        let at_s = f64::from(tenth) * 0.1;
+        bus.relay.take(&Said::Route(route(4, OWN_LEG, 100 - tenth)));
+        for station in 2..40 {
+            bus.hear(at_s, &message(station, Some(route(4, 2 + station % 2, 200 - 4 * i32::from(station)))));
+        }
+    }
+    bus.relay.take(&Said::Route(route(4, OWN_LEG, 58)));
+    assert!(bus.hear(4.1, &message(1, Some(route(4, OWN_LEG, 40)))));
+}
+
+#[test]
 fn who_was_put_out_of_its_slot_is_heard_to_have_left() {
     let mut bus = Bus::new();
     for station in 1..PEERS as u8 {

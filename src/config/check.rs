@@ -156,7 +156,7 @@ impl Config {
         let free = parameters::FREE_ROAD_ACCELERATION_MIN..=self.limits.acceleration;
         ensure(free.contains(&law.free_road_acceleration), ConfigError::FreeRoad)?;
         ensure(
-            crate::estimator::follower::is_stable(law.gain, law.damping, law.time_gap, self.prediction.step),
+            crate::model::follower::is_stable(law.gain, law.damping, law.time_gap, self.prediction.step),
             ConfigError::Unstable,
         )
     }

@@ -1,9 +1,9 @@
 //! Smooth re-association: the jump of an estimate when news ends a silence enters, and fades out of what the controller
 //! sees, so that the command does not jump.
 
-use crate::estimator::Reading;
+use crate::model::Reading;
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Fraction, Speed};
+use crate::units::{Distance, Fraction, Speed};
 
 /// What is still between the estimate and what the controller sees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,19 +47,14 @@ impl Blend {
     /// One period later, `keep` being the share that is left after it.
     #[must_use]
     pub fn faded(&self, keep: Fraction) -> Self {
-        // Distances and speeds have fewer fraction bits than accelerations, but the same word times a share.
-        let word = |bits: i32| Acceleration::from_bits(bits).share(keep).to_bits();
-        Self {
-            position: Distance::from_bits(word(self.position.to_bits())),
-            speed: Speed::from_bits(word(self.speed.to_bits())),
-        }
+        Self { position: self.position.share(keep), speed: self.speed.share(keep) }
     }
 }
 
 /// The share that is left after one period.
 #[must_use]
 pub fn keep_over(period: Duration) -> Fraction {
-    crate::estimator::Decay::over(period, BLEND).keep
+    crate::model::Decay::over(period, BLEND).keep
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The controller: the ego's state and the estimate of its target at now enter, the demanded acceleration leaves.
 //!
 //! Eqs 5 and 7 with the *estimate at now*, never the stale sample. The law is taken over the unit's own period as the same
-//! semi-implicit step that the prediction takes over `δt` (see [`crate::estimator::Follower`]): at 10 ms it differs from
+//! semi-implicit step that the prediction takes over `δt` (see [`crate::model::Follower`]): at 10 ms it differs from
 //! eq. 7 by less than 1 % in gain, and the model that others predict this vehicle with is the controller it drives by.
 
 mod blend;
@@ -14,8 +14,8 @@ pub use gains::Gains;
 pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
-use crate::estimator::{Follower, Leader, Reading, State, Stride, VehicleModel};
 use crate::held::Held;
+use crate::model::{Follower, Leader, Reading, State, Stride, VehicleModel};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
@@ -27,7 +27,7 @@ pub enum Course {
         /// How the ego drives.
         driver: VehicleModel,
         /// The target's reading and length.
-        target: Option<(Reading, Option<Distance>)>,
+        target: Option<(Reading, Distance)>,
         /// No more acceleration than this, whatever the law asks for.
         cap: Acceleration,
     },
@@ -61,7 +61,7 @@ pub struct Controller {
     /// Since when the course is caution.
     caution: Option<Instant>,
     /// The step of the law that was driven by last, which is made of a driver and a length.
-    stride: Held<(VehicleModel, Option<Distance>, Stride)>,
+    stride: Held<(VehicleModel, Distance, Stride)>,
 }
 
 /// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
@@ -148,10 +148,10 @@ impl Controller {
         config: &Config,
         driver: &VehicleModel,
         ego: &State,
-        target: Option<(Reading, Option<Distance>)>,
+        target: Option<(Reading, Distance)>,
         cap: Acceleration,
     ) -> Acceleration {
-        let length = target.and_then(|(_, length)| length);
+        let length = target.map_or(Distance::ZERO, |(_, length)| length);
         let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
         if !self.stride.as_ref().is_some_and(is_same) {
             self.stride.set((*driver, length, driver.over(config.period, length, &config.prediction.model)));

@@ -118,6 +118,12 @@ pub struct Facts {
 }
 
 impl Mode {
+    /// Whether the ego drives by the law that it publishes.
+    #[must_use]
+    pub const fn is_by_law(self) -> bool {
+        matches!(self, Self::Cooperative | Self::Holdover { .. })
+    }
+
     /// The mode of this tick.
     #[must_use]
     pub fn next(self, facts: &Facts, now: Instant) -> Self {

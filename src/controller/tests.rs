@@ -2,7 +2,7 @@
 //! not allow.
 
 use super::*;
-use crate::estimator::Aim;
+use crate::model::Aim;
 use crate::units::Position;
 use crate::wire::StationHash;
 
@@ -28,7 +28,7 @@ fn mm(demand: Acceleration) -> i32 {
 fn leads(config: &Config, target_mm_per_s: i32) -> Course {
     let aim =
         Aim::Lead { largest: config.law.free_road_acceleration, target_speed: Speed::from_mm_per_s(target_mm_per_s) };
-    Course::Law { driver: VehicleModel::of_config(config, aim), target: None, cap: Acceleration::MAX }
+    Course::Law { driver: config.vehicle_model(aim), target: None, cap: Acceleration::MAX }
 }
 
 /// Behind a vehicle of 4.8 m, whose front bumper is that far ahead.
@@ -43,8 +43,8 @@ fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
     };
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law {
-        driver: VehicleModel::of_config(config, aim),
-        target: Some((reading, Some(Distance::from_mm(4_800)))),
+        driver: config.vehicle_model(aim),
+        target: Some((reading, Distance::from_mm(4_800))),
         cap: Acceleration::MAX,
     }
 }
@@ -192,8 +192,8 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
     let courses = [(250, 3_870, 22_000), (600, 1_680, 20_000), (250, 3_870, 22_000)].map(|(gain, damping, ahead)| {
         let reading = Reading { position: Position::from_mm(ahead), speed: Speed::from_mm_per_s(9_000) };
         Course::Law {
-            driver: VehicleModel::of_config(&config, aim(gain, damping)),
-            target: Some((reading, None)),
+            driver: config.vehicle_model(aim(gain, damping)),
+            target: Some((reading, crate::parameters::DEFAULT_LENGTH)),
             cap: Acceleration::MAX,
         }
     });

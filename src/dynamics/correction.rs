@@ -16,10 +16,10 @@
 //! brakes hold whatever there is, and `d` is kept. What the model misses stays stable where it is less than
 //! `(1 + s/ω)²` of what was asked at every frequency: so with a lag of a third to any multiple of the published one.
 
-use crate::config::{Config, Model};
-use crate::estimator::{Actuator, Decay, State};
+use crate::config::Config;
 use crate::fixed::{quotient, saturate_i32};
 use crate::held::Held;
+use crate::model::{Actuator, Decay, Model, State};
 use crate::time::Duration;
 use crate::units::{Acceleration, Fraction, Speed};
 
@@ -44,8 +44,10 @@ struct Memory {
     state: State,
     disturbance: Acceleration,
     actuator: Actuator,
-    /// `1 - z²`, and `(1 - z)²/h` in 1/s.
-    shares: (Fraction, Fraction),
+    /// `1 - z²`: how much of what the speed is off by is corrected in a step.
+    damped: Fraction,
+    /// `(1 - z)²/h` in 1/s: how fast that changes the disturbance.
+    per_second: Fraction,
 }
 
 impl Correction {
@@ -73,22 +75,20 @@ impl Correction {
 
 impl Memory {
     fn starting(config: &Config, ego: &State) -> Self {
-        let lag = Duration::from_micros(config.lag.to_multiple_of(1_000_000));
+        let lag = Duration::of_fine_seconds(config.lag);
         let unlimited = Model { limits: false, ..Model::HOLDOVER };
         let time_constant = TIME_CONSTANT.max(config.period.times(PERIODS));
         let kept = Decay::over(config.period, time_constant).keep;
-        let squared = |share: Fraction| Acceleration::from_bits(share.to_bits()).share(share).to_bits();
-        let lost = i64::from(squared(Fraction::ONE.minus(kept)));
+        let left = Fraction::ONE.minus(kept);
+        let lost = i64::from(left.share(left).to_bits());
         // At most 1.7: at 20 ms and a time constant of five periods.
         let per_second = quotient(lost.saturating_mul(1_000_000), config.period.as_micros());
         Self {
             state: *ego,
             disturbance: Acceleration::ZERO,
             actuator: Actuator::over(config.period, lag, &config.limits, &unlimited),
-            shares: (
-                Fraction::ONE.minus(Fraction::from_bits(squared(kept))),
-                Fraction::from_bits(saturate_i32(per_second)),
-            ),
+            damped: Fraction::ONE.minus(kept.share(kept)),
+            per_second: Fraction::from_bits(saturate_i32(per_second)),
         }
     }
 
@@ -101,12 +101,10 @@ impl Memory {
         }
         let next = self.actuator.drive(self.state, self.state.demand);
         let expected = next.speed.plus(self.actuator.gained(self.disturbance));
-        let off = measured.minus(expected).to_bits();
-        // Speeds and accelerations have other formats, but the same word times a share; from 23 to 25 bits is a factor of 4.
-        let correction = Acceleration::from_bits(off).share(self.shares.0).to_bits();
-        let change = Acceleration::from_bits(saturate_i32(i64::from(off).saturating_mul(4))).share(self.shares.1);
+        let off = measured.minus(expected);
         // The actuators' model is of a vehicle that does not drive backwards, whatever the measurement says.
-        let speed = expected.plus(Speed::from_bits(correction)).max(Speed::ZERO);
+        let speed = expected.plus(off.share(self.damped)).max(Speed::ZERO);
+        let change = Acceleration::in_a_second(off).share(self.per_second);
         self.state = State { speed, ..next };
         self.disturbance = self.disturbance.plus(change).limited(LARGEST.negated(), LARGEST);
     }

@@ -6,8 +6,8 @@
 
 use super::hardest;
 use crate::config::Envelope;
-use crate::estimator::bound::{AccelerationRange, Bound};
 use crate::fixed::quotient;
+use crate::model::bound::{AccelerationRange, Bound};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Position, Speed};
 

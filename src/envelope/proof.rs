@@ -42,7 +42,7 @@
 //! # What is not
 //!
 //! A braking below 2 mm/s² is none, as no command can say it; and jerks below 1 m/s³ are in `extremes` alone. That the state is
-//! known (`Reckoning`), that the near end is behind the truth (`crate::estimator::bound`), and what is ahead at all, are others'.
+//! known (`Reckoning`), that the near end is behind the truth (`crate::model::bound`), and what is ahead at all, are others'.
 
 mod drives;
 mod extremes;

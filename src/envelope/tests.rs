@@ -2,7 +2,7 @@
 //! against a float64 simulation of emergency braking.
 
 use super::*;
-use crate::estimator::bound::Bound;
+use crate::model::bound::Bound;
 use crate::units::{Distance, FineSeconds, Fraction, Jerk};
 
 const LIMITS: Envelope = Envelope {
@@ -137,7 +137,7 @@ fn who_stands_and_is_told_to_brake_is_safe_wherever_it_stands() {
 
 #[test]
 fn the_rear_of_a_vehicle_is_its_near_end_less_its_length() {
-    use crate::estimator::bound::{AccelerationRange, Uncertainty};
+    use crate::model::bound::{AccelerationRange, Uncertainty};
     let (at, uncertainty) = (crate::time::Instant::ZERO, Uncertainty::default());
     for (front, length) in [(0, 0), (50_000, 4_800), (-7, 18_750)] {
         let bound = Bound::around(

@@ -10,8 +10,8 @@
 //!   forecast of it anywhere.
 //! * A *reading* is limited at its instant, whatever it comes from.
 
-use super::bound::{AccelerationRange, Bound};
-use super::horizon::Reading;
+use crate::model::Reading;
+use crate::model::bound::{AccelerationRange, Bound};
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};

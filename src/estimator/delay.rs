@@ -5,7 +5,7 @@
 //! With `τ < δt` the speed is taken unchanged (eq. 10); with `τ >= δt` it is `v + τ v̇` (eq. 11; the printed `τ/δt` fits a
 //! `v̇` per step) with `v̇` the slope from that step to the next; the position is `r(t+k-τ) + v(t+k) τ` (eq. 12 as printed is only dimensionally right at `τ = δt`).
 
-use super::horizon::Step;
+use crate::model::Step;
 use crate::time::Duration;
 use crate::units::{RingPosition, Speed};
 

@@ -1,11 +1,9 @@
 //! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
 //! horizon brought up to now leaves.
 
-use super::actuator::{Remainders, State};
 use super::delay::adjusted;
-use super::horizon::{Anchor, Grid, Horizon, Step};
-use super::vehicle_model::{Stride, VehicleModel};
-use crate::config::Model;
+use super::horizon::{Anchor, Grid, Horizon};
+use crate::model::{Model, Remainders, State, Step, Stride, VehicleModel};
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
@@ -46,8 +44,8 @@ pub struct News<'a> {
     pub received: Option<(&'a Knots, &'a DrivingParameters)>,
     /// How the vehicle drives.
     pub driver: VehicleModel,
-    /// Length of its predecessor.
-    pub length_ahead: Option<Distance>,
+    /// Length of its predecessor; of no account without one.
+    pub length_ahead: Distance,
 }
 
 impl<const STEPS: usize> Forecast<'_, STEPS> {

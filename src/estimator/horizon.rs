@@ -4,9 +4,9 @@
 //! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step,
 //! and between steps, a reading is the cubic that meets both positions and both speeds.
 
-use super::actuator::{Remainders, State};
 use super::interpolation::{Approach, Cubic};
 use crate::fixed::quotient;
+use crate::model::{Reading, Remainders, State, Step};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, RingPosition, Speed};
 
@@ -52,26 +52,6 @@ impl Grid {
     pub fn time_of(&self, index: i64) -> Instant {
         self.origin.plus(self.step.times(index))
     }
-}
-
-/// One step of a horizon.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Step {
-    /// Front bumper, modulo 4096 m.
-    pub position: RingPosition,
-    /// Never negative.
-    pub speed: Speed,
-}
-
-/// Where a vehicle is at one instant, as read from its horizon.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Reading {
-    /// Front bumper.
-    pub position: Position,
-    /// Never negative.
-    pub speed: Speed,
 }
 
 /// The state that a horizon starts from.

@@ -1,8 +1,8 @@
 //! Reading between two steps: the states at both ends of an interval and a time inside it enter, the position and speed
 //! on the cubic that meets both positions and both speeds leave.
 
-use super::horizon::Reading;
 use crate::fixed::{mul_hi, ratio, saturate_i32, shl_saturating};
+use crate::model::Reading;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Speed};
 

@@ -2,7 +2,7 @@
 //!
 //! Theory of operation, once a tick:
 //!
-//! * *News* of a peer (a newer sample, its own horizon, another driving parameters) re-anchors its horizon: from (a) the horizon that
+//! * *News* of a peer (a newer sample, its own horizon, other driving parameters) re-anchors its horizon: from (a) the horizon that
 //!   it computed itself and sent, resampled onto the unit's grid, and from its end on, or else from its state at the
 //!   stamp, by (b) the unit's own model of it: Algorithm 2 for a leader, Algorithm 4 for a follower whose predecessor is
 //!   known, the fading acceleration for anyone else.
@@ -13,33 +13,21 @@
 //!
 //! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
 
-mod actuator;
-pub mod bound;
 pub mod certain;
 mod chain;
 mod delay;
-mod exponential;
-pub mod follower;
 mod forecast;
 mod horizon;
 mod interpolation;
-mod leader;
-mod position;
-mod vehicle_model;
 
-pub use actuator::{Actuator, Remainders, State};
-pub use exponential::Decay;
-pub use follower::Follower;
-pub use horizon::{Anchor, Grid, Horizon, Reading, Step};
-pub use leader::Leader;
-pub use position::Path;
-pub use vehicle_model::{Aim, Stride, VehicleModel};
+pub use horizon::{Anchor, Grid, Horizon};
 
 use chain::Chain;
 use forecast::{Ahead, Forecast, News, steps};
 
-use crate::config::{Model, Prediction};
+use crate::config::Prediction;
 use crate::held::Held;
+use crate::model::{Model, Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
@@ -61,7 +49,7 @@ pub struct Manner {
     /// The slot of whom it follows.
     pub target: Option<usize>,
     driver: VehicleModel,
-    length_ahead: Option<Distance>,
+    length_ahead: Distance,
     stride: Stride,
 }
 
@@ -205,11 +193,9 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         // How it drives is asked only when its step has to be made, or its horizon starts anew.
         let course = || {
             let length_ahead = match ahead {
-                Some(Ahead::Peer(other)) => {
-                    peers.get(other).and_then(|other| other.parameters()).map(|parameters| parameters.length)
-                }
-                Some(Ahead::Own) => Some(*own_length),
-                None => None,
+                Some(Ahead::Peer(other)) => peers.length_of(other),
+                Some(Ahead::Own) => *own_length,
+                None => Distance::ZERO,
             };
             let driver = match track.parameters() {
                 Some(parameters) if ahead.is_some() || parameters.predecessor == Predecessor::None => {
@@ -262,7 +248,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         target: Option<usize>,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Manner {
-        let length_ahead = target.and_then(|index| peers.get(index)?.parameters().map(|parameters| parameters.length));
+        let length_ahead = target.map_or(Distance::ZERO, |index| peers.length_of(index));
         Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
     }
 

@@ -60,7 +60,7 @@ fn course(driver: VehicleModel, model: &Model) -> (VehicleModel, Stride) {
     (driver, driver.over(GRID.step, CAR, model))
 }
 
-const CAR: Option<Distance> = Some(Distance::from_mm(4_800));
+const CAR: Distance = Distance::from_mm(4_800);
 
 fn forecast<'a>(
     stride: &'a Stride,

@@ -14,9 +14,9 @@
 //! what it is faster. A slower one is none, by what the station says of itself.
 
 use super::Sample;
-use crate::estimator::bound::{AccelerationRange, Uncertainty};
 use crate::fixed::{quotient, saturate_i32};
 use crate::health::Cause;
+use crate::model::bound::{AccelerationRange, Uncertainty};
 use crate::parameters::{SPEED_ROUNDING, UNPUBLISHED_SPEED_ACCURACY};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Position, Speed};

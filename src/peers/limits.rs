@@ -8,7 +8,7 @@
 //!   From then on what is certain is carried on by the softer ones, and what is from before up to that instant by the harder.
 //! * Before anything is published, the worst there is held.
 
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
 use crate::units::{Position, Speed};
 

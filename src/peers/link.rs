@@ -30,7 +30,7 @@ impl Link {
     /// Takes note of a valid message received at `received` about the instant `at`.
     pub fn heard(&mut self, received: Instant, at: Instant) {
         let delay = received.since(at).max(Duration::ZERO);
-        self.delay = if self.heard.is_none() { delay } else { mean(self.delay, delay) };
+        self.delay = if self.heard.is_none() { delay } else { mean_time(self.delay, delay) };
         self.heard = Some(self.heard.map_or(received, |before| before.max(received)));
         let Some(newest) = self.newest else {
             self.newest = Some(at);
@@ -45,11 +45,10 @@ impl Link {
         let periods = step.plus(Duration::from_micros(self.period.as_micros() / 2)).as_micros();
         let periods = periods.checked_div(self.period.as_micros()).unwrap_or(1).clamp(1, 1000);
         if periods == 1 {
-            self.period = mean(self.period, step).clamp(Duration::from_millis(10), Duration::from_millis(1000));
+            self.period = mean_time(self.period, step).clamp(Duration::from_millis(10), Duration::from_millis(1000));
         }
         let lost = periods.saturating_sub(1).saturating_mul(i64::from(LOSS_ONE)).checked_div(periods).unwrap_or(0);
-        let loss = mean(Duration::from_micros(i64::from(self.loss)), Duration::from_micros(lost));
-        self.loss = u16::try_from(loss.as_micros()).unwrap_or(LOSS_ONE);
+        self.loss = u16::try_from(mean(self.loss.into(), lost)).unwrap_or(LOSS_ONE);
     }
 
     /// Whether a valid message came within the expected period and the tolerance.
@@ -84,8 +83,12 @@ impl Link {
 }
 
 /// The running mean with the weight of 1/8 for the new value.
-fn mean(old: Duration, new: Duration) -> Duration {
-    old.plus(Duration::from_micros(new.minus(old).as_micros() / WEIGHT))
+fn mean(old: i64, new: i64) -> i64 {
+    old.saturating_add(new.saturating_sub(old) / WEIGHT)
+}
+
+fn mean_time(old: Duration, new: Duration) -> Duration {
+    Duration::from_micros(mean(old.as_micros(), new.as_micros()))
 }
 
 #[cfg(test)]

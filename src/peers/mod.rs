@@ -18,7 +18,9 @@ pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
 use crate::health::Cause;
+use crate::parameters::DEFAULT_LENGTH;
 use crate::time::Duration;
+use crate::units::Distance;
 use crate::wire::{Slot, StationHash};
 
 /// All slots.
@@ -50,6 +52,12 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
     #[must_use]
     pub fn get(&self, index: usize) -> Option<&Track<SAMPLES>> {
         self.tracks.get(index)
+    }
+
+    /// How long the vehicle in a slot is, published or by default.
+    #[must_use]
+    pub fn length_of(&self, index: usize) -> Distance {
+        self.get(index).map_or(DEFAULT_LENGTH, Track::length)
     }
 
     /// The track of a slot by its index, to be changed.

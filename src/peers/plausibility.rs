@@ -22,8 +22,8 @@ use super::drift::Course;
 use super::limits::Limits;
 use super::sender_clock::Off;
 use crate::config::Link;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::health::Cause;
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::{
     FORGIVEN_AFTER, POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY,
     UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,

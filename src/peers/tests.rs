@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::config::{Config, Link as Limits};
-use crate::estimator::bound::Uncertainty;
+use crate::model::bound::Uncertainty;
 use crate::time::{GnssTime, Instant};
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::horizon::{KNOTS, Knot, Knots};

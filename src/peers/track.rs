@@ -8,9 +8,9 @@ use super::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use super::sample::Sample;
 use super::sender_clock::{Off, SenderClock};
 use crate::config::Link as Settings;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::health::Cause;
 use crate::held::Held;
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::DEFAULT_LENGTH;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
@@ -154,6 +154,18 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub const fn parameters(&self) -> Option<&DrivingParameters> {
         self.parameters.as_ref()
+    }
+
+    /// How long it says that it is.
+    #[must_use]
+    pub fn published_length(&self) -> Option<Distance> {
+        self.parameters().map(|parameters| parameters.length)
+    }
+
+    /// How long it is: as it says, or else as long as a car.
+    #[must_use]
+    pub fn length(&self) -> Distance {
+        self.published_length().unwrap_or(DEFAULT_LENGTH)
     }
 
     /// The horizon that it computed from its newest sample, if that came.

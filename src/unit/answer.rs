@@ -3,8 +3,8 @@
 use heapless::Vec;
 
 use crate::controller::Mode;
-use crate::estimator::Reading;
-use crate::estimator::bound::Bound;
+use crate::model::Reading;
+use crate::model::bound::Bound;
 use crate::time::Duration;
 use crate::wire::Frame;
 use crate::wire::catalogue::{About, CATALOGUE, Content, Node};

@@ -1,128 +1,135 @@
-//! The ego's own horizon: its state and whom it follows enter; where it will be leaves, past the changes of whom it follows
+//! The ego's own horizon: its state and the vehicle that it follows enter; where it will be leaves, past the changes of target
 //! that it can foresee.
 //!
-//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When the one that it follows leaves the
-//! conflict area, or it comes to the next intersection itself, it follows somebody else from then on: by the order that it
-//! knows already and by horizons that it holds already. So its own horizon says so, and with it everyone who hears it knows,
-//! and whoever is behind those.
+//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When its target leaves the conflict area, or
+//! when it comes to the next intersection itself, it follows another vehicle from then on. It knows that order already, and it holds
+//! those horizons already. So its own horizon says so, and every vehicle that hears it knows, and those behind them too.
 
-use super::OnboardUnit;
+use super::scene::Scene;
+use super::vantage::Vantage;
 use crate::controller::Gains;
-use crate::coordination::{Entry, PeerApproach, REVIEW, Slots};
-use crate::estimator::Reading;
-use crate::peers::{Sample, Track};
+use crate::coordination::{Entry, REVIEW, Slots};
+use crate::model::Reading;
+use crate::peers::Sample;
 use crate::time::Instant;
 use crate::units::Position;
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// Computes the ego's own horizon from its own state.
-    pub(super) fn foresee(&mut self, now: Instant, sample: &Sample, target: Option<usize>) {
-        let mut manner = self.estimator.manner(self.driver(), target, &self.peers);
-        let review = self.coordination.next_review().filter(|_| self.is_decided_by_order());
-        self.estimator.foresee_own(now, review, sample, &manner);
-        let Some(mut review) = review.map(|review| review.max(now)) else { return };
-        let (mut crossing, mut comfort) = (self.coordination.next(), self.coordination.choice().comfort);
-        let mut gains = self.association.map(|(_, gains)| gains);
-        let minded = self.minded(now, crossing);
-        while self.estimator.is_own_short(now) {
-            let Some(own) = self.estimator.read_own(review) else { return };
-            crossing = self.coordination.next_of(crossing, own.position, self.config.length);
-            let target = self.outlook(review, &own, crossing, minded, manner.target);
-            let is_new = target != manner.target;
-            let may = self.comfort(target, crossing, own.position, own.speed);
-            if is_new || may < comfort {
-                comfort = may;
-                if is_new {
-                    gains = target.and_then(|index| self.gains_behind(index, &own, review));
-                }
-                let association = gains.zip(target).map(|(gains, index)| (gains, self.standstill_at(crossing, index)));
-                manner = self.estimator.manner(self.driver_with(association, comfort), target, &self.peers);
+/// Computes the ego's own horizon from its own state, behind the target with the gains of the association.
+pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &mut Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    sample: &Sample,
+    target: Option<usize>,
+    gains: Option<Gains>,
+) {
+    let mut manner = scene.estimator.manner(scene.ego_model_now(gains), target, &scene.peers);
+    let review = scene.coordination.next_review().filter(|_| scene.is_decided_by_order());
+    scene.estimator.foresee_own(now, review, sample, &manner);
+    let Some(mut review) = review.map(|review| review.max(now)) else { return };
+    let (mut crossing, mut comfort) = (scene.coordination.next(), scene.coordination.choice().comfort);
+    let mut gains = gains;
+    let minded = minded(scene, now, crossing);
+    while scene.estimator.is_own_short(now) {
+        let Some(own) = scene.estimator.read_own(review) else { return };
+        crossing = scene.coordination.next_of(crossing, own.position, scene.config.length);
+        let view = Vantage { scene, at: review, next: crossing, front: own.position, speed: own.speed };
+        let target = outlook(&view, minded, manner.target);
+        let is_new = target != manner.target;
+        let may = view.comfort(target);
+        if is_new || may < comfort {
+            comfort = may;
+            if is_new {
+                gains = target.and_then(|index| gains_behind(scene, index, &own, review));
             }
-            review = review.plus(REVIEW);
-            self.estimator.carry_own_on(now, review, &manner);
+            let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(crossing, index)));
+            manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
+        }
+        review = review.plus(REVIEW);
+        scene.estimator.carry_own_on(now, review, &manner);
+    }
+}
+
+/// The gains of an association that begins then.
+fn gains_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    index: usize,
+    own: &Reading,
+    at: Instant,
+) -> Option<Gains> {
+    let ahead = scene.estimated(index, at)?;
+    let headway = ahead.position.ahead_of(own.position);
+    Some(Gains::look_up(&scene.config.law, own.speed, ahead.speed, headway))
+}
+
+/// Whom the ego may follow one day, with that crossing next: a vehicle that is ahead on its leg now, as nobody passes there; one that is
+/// ahead in the order; and one that has come to a later crossing.
+fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    next: usize,
+) -> Slots {
+    let mut minded = Slots::NONE;
+    let Some(own) = scene.estimator.read_own(now) else { return minded };
+    for index in 0..PEERS {
+        let is_minded = scene.coordination.standing(index).is_some_and(|standing| {
+            if scene.coordination.is_on_lane(standing) {
+                scene.estimated(index, now).is_some_and(|reading| reading.position > own.position)
+            } else {
+                let is_ahead = || scene.entry(index, standing).is_some_and(|entry| is_ahead(scene, index, &entry));
+                standing.crossing > next || standing.crossing == next && is_ahead()
+            }
+        });
+        minded.set(index, is_minded);
+    }
+    minded
+}
+
+/// Whom the ego will follow by the order and the horizons as they are known now. Nobody knows who registers in between.
+fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
+    minded: Slots,
+    followed: Option<usize>,
+) -> Option<usize> {
+    let (scene, coordination) = (view.scene, &view.scene.coordination);
+    let end = coordination.end_of(view.next);
+    let is_later = view.next != coordination.next();
+    let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
+    for index in (0..PEERS).filter(|index| minded.contains(*index)) {
+        let Some(standing) = coordination.standing(index) else { continue };
+        let is_on_lane = coordination.is_on_lane(standing);
+        // What needs no horizon is asked first.
+        let entry = scene.entry(index, standing).filter(|entry| {
+            let is_ahead = is_later || is_ahead(scene, index, entry);
+            is_ahead && standing.crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
+        });
+        if !is_on_lane && entry.is_none() {
+            continue;
+        }
+        let Some((reading, rear)) = scene.rear(index, view.at) else { continue };
+        if is_on_lane && reading.position > view.front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
+            lane = Some((index, reading.position));
+        }
+        let Some(entry) = entry.filter(|_| end.is_some_and(|end| rear < end)) else { continue };
+        if followed == Some(index) || view.is_announced(standing) {
+            order = Some((index, entry));
         }
     }
+    // A vehicle ahead on the same leg and not yet at a later crossing comes there before the ego, and after all who are there now.
+    let comes_last = |index| coordination.standing(index).is_some_and(|standing| standing.crossing != view.next);
+    let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
+    let is_heeded = |index: &usize| view.is_heeded(*index);
+    let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
+    let target = view.more_careful(order.filter(is_heeded), lane.filter(is_heeded))?;
+    view.is_in_the_way(target, followed).then_some(target)
+}
 
-    /// The gains of an association that begins then.
-    fn gains_behind(&self, index: usize, own: &Reading, at: Instant) -> Option<Gains> {
-        let ahead = self.estimated(index, at)?;
-        let headway = ahead.position.ahead_of(own.position);
-        Some(Gains::look_up(&self.config.law, own.speed, ahead.speed, headway))
-    }
-
-    /// Whom it may follow one day, with that crossing next: who is ahead on its leg now, and nobody passes there; who is ahead in the
-    /// order; and who has come to a later crossing.
-    fn minded(&self, now: Instant, next: usize) -> Slots {
-        let mut minded = Slots::NONE;
-        let Some(own) = self.estimator.read_own(now) else { return minded };
-        for index in 0..PEERS {
-            let is_minded = self.coordination.standing(index).is_some_and(|standing| {
-                if self.coordination.is_on_lane(standing) {
-                    self.estimated(index, now).is_some_and(|reading| reading.position > own.position)
-                } else {
-                    let is_ahead = || self.entry(index, standing).is_some_and(|entry| self.is_ahead(index, &entry));
-                    standing.crossing > next || standing.crossing == next && is_ahead()
-                }
-            });
-            minded.set(index, is_minded);
-        }
-        minded
-    }
-
-    /// Whom the ego will follow, with that state and that crossing next, by the order and the horizons as they are
-    /// known now. Who registers in between is not known.
-    fn outlook(
-        &self,
-        at: Instant,
-        own: &Reading,
-        crossing: usize,
-        minded: Slots,
-        followed: Option<usize>,
-    ) -> Option<usize> {
-        let (front, end) = (own.position, self.coordination.end_of(crossing));
-        let is_later = crossing != self.coordination.next();
-        let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
-        for index in (0..PEERS).filter(|index| minded.contains(*index)) {
-            let Some(standing) = self.coordination.standing(index) else { continue };
-            let is_on_lane = self.coordination.is_on_lane(standing);
-            // What needs no horizon is asked first.
-            let entry = self.entry(index, standing).filter(|entry| {
-                let is_ahead = is_later || self.is_ahead(index, entry);
-                is_ahead && standing.crossing == crossing && order.is_none_or(|(_, last)| last.is_before(entry))
-            });
-            if !is_on_lane && entry.is_none() {
-                continue;
-            }
-            let Some((reading, rear)) = self.rear(index, at) else { continue };
-            if is_on_lane && reading.position > front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
-                lane = Some((index, reading.position));
-            }
-            let Some(entry) = entry.filter(|_| end.is_some_and(|end| rear < end)) else { continue };
-            if followed == Some(index) || self.coordination.is_announced(standing, at, crossing, front, own.speed) {
-                order = Some((index, entry));
-            }
-        }
-        // Who is ahead on the same leg and not yet at a later crossing comes there before the ego, and after all who are there now.
-        let comes_last =
-            |index| self.coordination.standing(index).is_some_and(|standing| standing.crossing != crossing);
-        let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
-        let is_heeded = |index: &usize| self.is_heeded(*index, at, front, own.speed);
-        let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
-        let (order, lane) = (order.filter(is_heeded), lane.filter(is_heeded));
-        let target = self.more_careful(order, lane, at, crossing, front, own.speed)?;
-        self.is_in_the_way(target, at, crossing, front, followed).then_some(target)
-    }
-
-    /// A peer in the order.
-    pub(super) fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
-        let station = self.peers.get(index).and_then(Track::station)?;
-        Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
-    }
-
-    /// Whether a station was ahead at the last review, and still is by what it has said since.
-    fn is_ahead(&self, index: usize, entry: &Entry) -> bool {
-        let arrival = self.coordination.registration().map(|registration| registration.arrival);
-        let own = Entry { station: self.config.station, arrival, claim: self.coordination.claim() };
-        self.coordination.choice().ahead.contains(index) && entry.is_before(&own)
-    }
+/// Whether a station was ahead at the last review, and still is by what it has said since.
+fn is_ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    index: usize,
+    entry: &Entry,
+) -> bool {
+    let arrival = scene.coordination.registration().map(|registration| registration.arrival);
+    let own = Entry { station: scene.config.station, arrival, claim: scene.coordination.claim() };
+    scene.coordination.choice().ahead.contains(index) && entry.is_before(&own)
 }

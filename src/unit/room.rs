@@ -1,15 +1,16 @@
-//! Where the ego has to be able to stop by what is estimated: where it is, and how the one ahead on its leg gets on, enter; whether it
+//! Where the ego has to be able to stop by what is estimated: its own state and the vehicle ahead on its leg enter; whether the ego
 //! is held before the next conflict area, and how much it may accelerate, leave.
 //!
-//! Whoever stands in a conflict area blocks those who cross. So nobody enters who could not leave it again, because the one ahead
-//! has come to a stand beyond it, or is about to. And while it waits for that it lets everyone else go first: they may be those for
-//! whom the one ahead waits, round a whole block.
+//! A vehicle that stands in a conflict area blocks those that cross. So no vehicle enters that could not leave it again, because the
+//! vehicle ahead has come to a stand beyond the area, or is about to. While it waits for that, it lets everyone else go first: the
+//! vehicle ahead may wait for just those, round a whole block.
 
-use super::OnboardUnit;
+use super::scene::Scene;
+use super::vantage::Vantage;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle};
-use crate::estimator::State;
 use crate::fixed::{quotient, saturate_i32};
+use crate::model::State;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
 
@@ -25,130 +26,135 @@ const SLOW: Speed = Speed::from_mm_per_s(3_000);
 /// Slower than this a vehicle may be about to stop in one.
 const QUEUED: Speed = Speed::from_mm_per_s(5_000);
 
-/// How far before the conflict area the ego stops, and at least behind the one ahead.
+/// How far before the conflict area the ego stops, and at least behind the vehicle ahead.
 const LINE: Distance = Distance::from_mm(1_000);
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// Where the next conflict area begins.
-    pub(super) fn area_begins(&self) -> Option<Position> {
-        let crossing = self.coordination.crossing()?;
-        Some(self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half.negated()))
-    }
-
-    /// Whether the ego, with its front bumper there, at this speed, could not stop before the next conflict area as it brakes in
-    /// normal driving: it gives way to nobody any more, as it would stand in the area and wait for one who cannot get past it.
-    pub(super) fn is_committed(&self, front: Position, speed: Speed) -> bool {
-        let Some(area_begins) = self.area_begins() else { return false };
-        area_begins.ahead_of(front) <= self.stops_within(speed)
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
+    /// Whether the ego could not stop before the next conflict area as it brakes in normal driving. It gives way to nobody any more
+    /// then: it would stand in the area and wait for a vehicle that cannot get past it.
+    pub fn is_committed(&self) -> bool {
+        let Some(area_begins) = self.scene.area_begins() else { return false };
+        area_begins.ahead_of(self.front) <= self.stops_within()
     }
 
     /// The way that the ego takes to stop as it brakes in normal driving, from when the law asks for it.
-    fn stops_within(&self, speed: Speed) -> Distance {
-        let limits = &self.config.limits;
-        let mm_per_s2 = i64::from(limits.braking.to_mm_per_s2()).max(1);
+    fn stops_within(&self) -> Distance {
+        let config = &self.scene.config;
+        let mm_per_s2 = i64::from(config.limits.braking.to_mm_per_s2()).max(1);
         // Until the brakes are on: half of the ramp, and the lag.
-        let ramp = quotient(mm_per_s2.saturating_mul(500), i64::from(limits.jerk.to_mm_per_s3()).max(1));
-        let reaction_ms = ramp.saturating_add(i64::from(self.config.lag.to_millis()));
-        let mm_per_s = i64::from(speed.to_mm_per_s());
+        let ramp = quotient(mm_per_s2.saturating_mul(500), i64::from(config.limits.jerk.to_mm_per_s3()).max(1));
+        let reaction_ms = ramp.saturating_add(i64::from(config.lag.to_millis()));
+        let mm_per_s = i64::from(self.speed.to_mm_per_s());
         let reacting = quotient(mm_per_s.saturating_mul(reaction_ms), 1_000);
         Distance::from_mm(saturate_i32(reacting.saturating_add(braked(mm_per_s, mm_per_s2))))
     }
 
-    /// Whether there will be room beyond the next conflict area behind that one, the nearest ahead on the ego's leg. Who stands is
-    /// there still: that it wants to move off is not that it can.
-    pub(super) fn has_room(&self, ahead: Option<usize>, now: Instant) -> bool {
-        let (Some(index), Some(end)) = (ahead, self.coordination.end_of(self.coordination.next())) else { return true };
-        let Some((reading, rear)) = self.rear(index, now) else { return true };
-        let later = self.rear(index, now.plus(LEAVES)).filter(|_| reading.speed > WAITING);
+    /// Whether there will be room beyond the next conflict area behind this vehicle, the nearest ahead on the ego's leg. One that stands
+    /// is there still: that it wants to move off is not that it can.
+    pub fn has_room(&self, ahead: Option<usize>) -> bool {
+        let scene = self.scene;
+        let (Some(index), Some(end)) = (ahead, scene.coordination.end_of(self.next)) else { return true };
+        let Some((reading, rear)) = scene.rear(index, self.at) else { return true };
+        let later = scene.rear(index, self.at.plus(LEAVES)).filter(|_| reading.speed > WAITING);
         let rear = later.map_or(rear, |(_, rear)| rear);
-        rear >= end.ahead(self.config.length).ahead(self.standstill_at(self.coordination.next(), index))
+        rear >= end.ahead(scene.config.length).ahead(scene.standstill_at(self.next, index))
     }
 
-    /// Whether the ego, at this speed, stands before the next conflict area for want of room, and is the first to do so on its leg.
-    pub(super) fn waits_for_room(&self, ahead: Option<usize>, now: Instant, speed: Speed) -> bool {
-        let is_first = |index| self.rear(index, now).is_some_and(|(_, rear)| Some(rear) >= self.area_begins());
-        speed <= WAITING && ahead.is_none_or(is_first)
+    /// Whether the ego stands before the next conflict area for want of room, and is the first to do so on its leg.
+    pub fn waits_for_room(&self, ahead: Option<usize>) -> bool {
+        let area_begins = self.scene.area_begins();
+        let is_first = |index| self.scene.rear(index, self.at).is_some_and(|(_, rear)| Some(rear) >= area_begins);
+        self.speed <= WAITING && ahead.is_none_or(is_first)
     }
 
-    /// The largest acceleration with which the ego can still come to a stand, braking as it does in normal driving, behind the one
-    /// ahead on its leg, where that is estimated to do the same now; and, where it is held, before the next conflict area. The law asks
-    /// for gaps, and closing in fast it may ask for too much too late.
-    pub(super) fn careful(&self, now: Instant, ego: &State) -> Acceleration {
-        let Some(sample) = self.ego.as_ref().filter(|_| self.coordination.itinerary().is_some()) else {
-            return Acceleration::MAX;
-        };
-        let choice = self.coordination.choice();
-        let behind = choice.lane.and_then(|index| self.stops_at(index.into(), now));
-        let line = self.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
-        let limits = &self.config.limits;
-        let normal = Envelope {
-            acceleration: limits.acceleration,
-            braking: limits.braking,
-            jerk: limits.jerk,
-            speed: self.config.law.max_speed,
-            margin: Distance::ZERO,
-            delay: Duration::ZERO,
-            lag_tolerance: Fraction::ZERO,
-        };
-        let ego = envelope::Ego {
-            position: sample.position.ahead(ego.position.ahead_of(sample.position.ring())),
-            speed: ego.speed,
-            acceleration: ego.acceleration,
-            last: self.controller.last_demand(),
-            lag: self.config.lag,
-        };
-        let spare = |obstacle| envelope::spare(&normal, &ego, &obstacle);
-        let passes = self.passes_first(now, ego.position, ego.speed);
-        let unknown = self.unknown_ahead(now).map(|rear| rear.ahead(LINE.negated()));
-        let stop = [behind, line, passes, unknown].into_iter().flatten().min().map(Obstacle::standing).map(spare);
-        let Some(spare) = stop else { return Acceleration::MAX };
-        envelope::distance_cap(&normal, spare, self.config.period).max(limits.braking.negated())
-    }
-
-    /// Where the ego, with its front bumper there, at this speed, waits as long as somebody who crosses its way, and is ahead in the order or in the
-    /// next conflict area already, is estimated not to have left it by the time that the ego would be there: before that area. The law looks at the
-    /// last one ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
-    fn passes_first(&self, now: Instant, front: Position, speed: Speed) -> Option<Position> {
-        let (crossing, line) = (self.coordination.crossing()?, self.area_begins()?);
-        let end = self.coordination.end_of(self.coordination.next())?;
-        if front > line {
+    /// Where the ego waits as long as a vehicle that crosses its way, and is ahead in the order or in the next conflict area already, is
+    /// estimated not to have left that area by the time that the ego would be there: before the area. The law looks at the last vehicle
+    /// ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
+    fn passes_first(&self) -> Option<Position> {
+        let coordination = &self.scene.coordination;
+        let (crossing, line) = (coordination.crossing()?, self.scene.area_begins()?);
+        let end = coordination.end_of(self.next)?;
+        if self.front > line {
             return None;
         }
-        let micros = quotient(
-            i64::from(line.ahead_of(front).to_mm()).saturating_mul(1_000_000),
-            i64::from(speed.to_mm_per_s()).max(1),
-        );
-        let then = if speed <= SLOW { now } else { now.plus(Duration::from_micros(micros).min(LEAVES)) };
-        let is_due = |index: &usize| {
-            let Some(standing) = self.coordination.standing(*index) else { return false };
+        let then = if self.speed <= SLOW { self.at } else { self.at.plus(self.time_to(line).min(LEAVES)) };
+        let is_due = |index: usize| {
+            let Some(standing) = coordination.standing(index) else { return false };
             let is_inside = || {
-                self.coordination.is_here(standing)
-                    && self.rear(*index, now).is_some_and(|(reading, _)| reading.position > line)
+                coordination.is_here(standing)
+                    && self.scene.rear(index, self.at).is_some_and(|(reading, _)| reading.position > line)
             };
             crossing.intersection.conflict(crossing.leg, standing.leg)
-                && (self.coordination.choice().ahead.contains(*index) || is_inside())
-                && self.rear(*index, then).is_some_and(|(_, rear)| rear < end)
+                && (coordination.choice().ahead.contains(index) || is_inside())
+                && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end)
         };
-        (0..PEERS).any(|index| is_due(&index)).then(|| line.ahead(LINE.negated()))
+        (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))
     }
 
-    /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. That one which
-    /// was hardly moving when it was heard last has moved on since is not believed for as long as a holdover lasts: whom it waits
-    /// for may have changed.
-    fn stops_at(&self, index: usize, now: Instant) -> Option<Position> {
-        let braking = i64::from(self.config.limits.braking.to_mm_per_s2()).max(1);
+    /// How long the ego takes to a place ahead at its speed now, rounded.
+    fn time_to(&self, place: Position) -> Duration {
+        let mm = i64::from(place.ahead_of(self.front).to_mm());
+        let mm_per_s = i64::from(self.speed.to_mm_per_s()).max(1);
+        Duration::from_micros(quotient(mm.saturating_mul(1_000_000), mm_per_s))
+    }
+
+    /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that
+    /// hardly moved when it was heard last is not believed to have moved on since, for as long as a holdover lasts: the vehicle that it
+    /// waits for may have changed. A peer that was slow then is taken to have braked from there on.
+    fn stops_at(&self, index: usize) -> Option<Position> {
+        let (scene, now) = (self.scene, self.at);
+        let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
         let way = |speed: Speed| Distance::from_mm(saturate_i32(braked(i64::from(speed.to_mm_per_s()), braking)));
-        let track = self.peers.get(index)?;
-        let is_silent = !track.link().is_on(now, &self.config.link) && self.is_in_reach(index, now);
-        let length = self.length_of(index);
+        let track = scene.peers.get(index)?;
+        let is_silent = !track.link().is_on(now, &scene.config.link) && scene.is_in_reach(index, now);
         if let Some(newest) = track.newest().filter(|newest| is_silent && newest.speed <= QUEUED) {
-            let certain = self.bound(index, now)?.lowest_position();
+            let certain = scene.bound(index, now)?.lowest_position();
             let at_rest = if newest.speed <= SLOW { certain } else { newest.position.ahead(way(newest.speed)) };
-            return Some(at_rest.ahead(length.negated()).ahead(LINE.negated()));
+            return Some(at_rest.ahead(track.length().negated()).ahead(LINE.negated()));
         }
-        let (reading, rear) = self.rear(index, now)?;
+        let (reading, rear) = scene.rear(index, now)?;
         Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
     }
+}
+
+/// The largest acceleration with which the ego can still come to a stand, braking as it does in normal driving, behind the vehicle
+/// ahead on its leg, where that is estimated to do the same now; and, where the ego is held, before the next conflict area. The law asks
+/// for gaps, and closing in fast it may ask for too much too late.
+pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    ego: &State,
+) -> Acceleration {
+    if scene.coordination.itinerary().is_none() {
+        return Acceleration::MAX;
+    }
+    let view = scene.vantage(now, scene.front(ego), ego.speed);
+    let (choice, config) = (scene.coordination.choice(), &scene.config);
+    let behind = choice.lane.and_then(|index| view.stops_at(index.into()));
+    let line = scene.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
+    let unknown = scene.unknown_ahead(now).map(|rear| rear.ahead(LINE.negated()));
+    let Some(stop) = [behind, line, view.passes_first(), unknown].into_iter().flatten().min() else {
+        return Acceleration::MAX;
+    };
+    let limits = &config.limits;
+    let normal = Envelope {
+        acceleration: limits.acceleration,
+        braking: limits.braking,
+        jerk: limits.jerk,
+        speed: config.law.max_speed,
+        margin: Distance::ZERO,
+        delay: Duration::ZERO,
+        lag_tolerance: Fraction::ZERO,
+    };
+    let ego = envelope::Ego {
+        position: view.front,
+        speed: ego.speed,
+        acceleration: ego.acceleration,
+        last: ego.demand,
+        lag: config.lag,
+    };
+    let spare = envelope::spare(&normal, &ego, &Obstacle::standing(stop));
+    envelope::distance_cap(&normal, spare, config.period).max(limits.braking.negated())
 }
 
 /// The way of a braking to a stand, rounded.

@@ -6,6 +6,7 @@ use crate::controller::Mode;
 use crate::coordination::Coordination;
 use crate::estimator::Estimator;
 use crate::health::Health;
+use crate::model::bound::Bound;
 use crate::peers::Peers;
 use crate::time::Instant;
 
@@ -25,30 +26,36 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The peers as they are known.
     #[must_use]
     pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
-        &self.peers
+        &self.scene.peers
     }
 
     /// The order at the intersections as it is known.
     #[must_use]
     pub const fn coordination(&self) -> &Coordination<PEERS> {
-        &self.coordination
+        &self.scene.coordination
     }
 
     /// The horizons as they are held.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator<PEERS, STEPS> {
-        &self.estimator
+        &self.scene.estimator
     }
 
     /// The configuration as it was checked.
     #[must_use]
     pub const fn config(&self) -> &Config {
-        &self.config
+        &self.scene.config
     }
 
     /// Whether GNSS time is known.
     #[must_use]
     pub fn is_synchronised(&self, now: Instant) -> bool {
-        self.clock.is_synchronised(now, self.config.link.sync_timeout)
+        self.scene.is_synchronised(now)
+    }
+
+    /// What is certain of a peer at an instant, now or later.
+    #[must_use]
+    pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
+        self.scene.bound(index, at)
     }
 }

@@ -42,7 +42,7 @@ impl DriverRequest {
         [TIME_GAP.with_known(a, self.time_gap)]
     }
 
-    /// From the frame's payload; every payload within the fields' limits is a desired.
+    /// From the frame's payload; every payload within the fields' limits is a request.
     #[must_use]
     pub fn decode([a]: &[Payload; 1]) -> Self {
         Self {

@@ -60,6 +60,21 @@ impl<const PEERS: usize> Sender<PEERS> {
             Message::DriverRequest(parameters) => self.emit(Content::DriverRequest, none, &parameters.encode(), emit),
             Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
             Message::Unserved(unserved) => self.emit(Content::Unserved, none, &unserved.encode(), emit),
+            Message::Ego(said) => self.say(Speaker::Ego, none, said, emit),
+            Message::Peer(slot, said) => self.say(Speaker::Peer, *slot, said, emit),
+            Message::Command(_) | Message::Status(_) | Message::Estimate(_) | Message::Own(_) => {
+                self.send_as_unit(message, emit)
+            }
+        }
+    }
+
+    /// Emits the frames of a message that the unit sends: an image with this alone holds the encoders of the unit's messages alone.
+    ///
+    /// # Errors
+    /// [`Unsent`], also for what the unit does not send; nothing was emitted then.
+    pub fn send_as_unit(&mut self, message: &Message, emit: &mut impl FnMut(Frame)) -> Result<(), Unsent> {
+        let none = Slot(0);
+        match message {
             Message::Command(command) => self.emit(Content::Command, none, &command.encode(), emit),
             Message::Status(status) => self.emit(Content::Status, none, &status.encode(), emit),
             Message::Estimate(estimate) => {
@@ -67,9 +82,8 @@ impl<const PEERS: usize> Sender<PEERS> {
                 self.emit(Content::EstimateA, none, &[a], emit)?;
                 self.emit(Content::EstimateB, none, &[b], emit)
             }
-            Message::Ego(said) => self.say(Speaker::Ego, none, said, emit),
             Message::Own(said) => self.say(Speaker::Own, none, said, emit),
-            Message::Peer(slot, said) => self.say(Speaker::Peer, *slot, said, emit),
+            _ => Err(Unsent::NoLine),
         }
     }
 

@@ -4,7 +4,7 @@
 //! the envelope's limits have no upper end.
 
 use holdover::config;
-use holdover::dynamics;
+use holdover::model;
 use holdover::time::Duration;
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::{BaseId, StationHash, driving_parameters};
@@ -68,7 +68,7 @@ impl From<Limits> for driving_parameters::Limits {
     }
 }
 
-impl From<Body> for dynamics::Body {
+impl From<Body> for model::Body {
     fn from(plain: Body) -> Self {
         let Body { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n } = plain;
         Self { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n }
@@ -186,9 +186,9 @@ impl From<&driving_parameters::Limits> for Limits {
     }
 }
 
-impl From<&dynamics::Body> for Body {
-    fn from(typed: &dynamics::Body) -> Self {
-        let dynamics::Body { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n } = *typed;
+impl From<&model::Body> for Body {
+    fn from(typed: &model::Body) -> Self {
+        let model::Body { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n } = *typed;
         Self { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n }
     }
 }

@@ -7,7 +7,7 @@
 //! Passengers who stand decide what a bus may do: 1.2 m/s² and 2.5 m/s³, and 3 m/s² of braking in normal driving.
 
 use holdover::Config;
-use holdover::dynamics::Body;
+use holdover::model::Body;
 use holdover::units::{Acceleration, Jerk};
 use holdover::wire::StationHash;
 use holdover::wire::driving_parameters::Limits;

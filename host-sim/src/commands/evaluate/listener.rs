@@ -7,8 +7,8 @@
 //! Before the run the bus has been in use: a receiver trusts an identifier from its second good frame on, and that was
 //! long ago. What was said then is too old to be used.
 
-use holdover::estimator::Reading;
 use holdover::health::Cause;
+use holdover::model::Reading;
 use holdover::time::{Duration, Instant};
 use holdover::units::Position;
 use holdover::wire::motion::{Motion, WirePosition};

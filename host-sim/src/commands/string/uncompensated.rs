@@ -1,7 +1,7 @@
 //! The same string without holdover: a leader's drive, a channel and the same law enter, speeds leave. Each vehicle drives
 //! by the newest message of the one ahead as it stands, or moved on by its age times its speed, as platoon simulators do.
 
-use holdover::dynamics::Body;
+use holdover::model::Body;
 use holdover::units::Acceleration;
 
 use super::amplification::Speeds;

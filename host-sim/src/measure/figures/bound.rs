@@ -1,6 +1,6 @@
 //! What was certain of the targets: a trace enters, how often it was not so and how much it said leave.
 
-use holdover::estimator::bound::AccelerationRange;
+use holdover::model::bound::AccelerationRange;
 use holdover::parameters::RECOVERY_SAMPLES;
 use serde::Serialize;
 

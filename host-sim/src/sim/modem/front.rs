@@ -46,7 +46,7 @@ impl Front {
         let mut front = Self { ahead: Nearest::NOBODY, across: [Nearest::NOBODY; LEGS], newest_s: f64::NEG_INFINITY };
         for placed in places {
             front.newest_s = front.newest_s.max(placed.at_s);
-            if let Some(ahead_m) = course.ahead_on_leg(&placed.route) {
+            if let Some(ahead_m) = placed.ahead_m(course) {
                 front.ahead.add(ahead_m);
             }
             let across = course.across(&placed.route).filter(|across| !across.has_entered());
@@ -92,9 +92,7 @@ impl Front {
     /// Whether a station is one of the nearest two ahead on the unit's own leg, by what each said last: who is silent has not
     /// passed anybody.
     fn leads(&self, course: &Course, placed: &Placed) -> bool {
-        course
-            .ahead_on_leg(&placed.route)
-            .is_some_and(|ahead_m| self.ahead.before(ahead_m).is_none_or(|(_, is_only)| is_only))
+        placed.ahead_m(course).is_some_and(|ahead_m| self.ahead.before(ahead_m).is_none_or(|(_, is_only)| is_only))
     }
 }
 

@@ -87,6 +87,16 @@ struct Placed {
     speed_mps: f64,
     length_m: f64,
     at_s: f64,
+    /// Whether it was ahead of the unit on its leg then. Nobody passes there: it still is, though the unit may have driven past that
+    /// place since.
+    is_ahead: bool,
+}
+
+impl Placed {
+    /// How far ahead of the unit on its leg it was when it said that, if it is ahead.
+    fn ahead_m(&self, course: &Course) -> Option<f64> {
+        course.on_leg(&self.route).filter(|_| self.is_ahead)
+    }
 }
 
 /// The receiving side.
@@ -206,7 +216,8 @@ impl Relay {
         self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
         let length_m = message.parameters.map_or(LONGEST_M, |parameters| parameters.length.get().to_num());
-        self.places.push(Placed { station, route, speed_mps, length_m, at_s });
+        let is_ahead = self.course.on_leg(&route).is_some_and(|ahead_m| ahead_m > 0.0);
+        self.places.push(Placed { station, route, speed_mps, length_m, at_s, is_ahead });
     }
 
     fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64, front: &Front) -> Option<usize> {

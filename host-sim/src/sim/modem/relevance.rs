@@ -251,12 +251,12 @@ impl Course {
         Some(self.route?.distance.get().to_num())
     }
 
-    /// How far ahead on the unit's own leg a station was when it said that.
+    /// How far ahead of where the unit said it is now, on its own leg, a station was when it said that; less than nothing where the
+    /// unit has driven past that place since.
     #[must_use]
-    pub fn ahead_on_leg(&self, other: &Route) -> Option<f64> {
+    pub fn on_leg(&self, other: &Route) -> Option<f64> {
         let (there, own_m) = self.way_to(other.intersection)?;
-        let ahead_m = own_m - other.distance.get().to_num::<f64>();
-        (self.crossings[there].leg == other.leg && ahead_m > 0.0).then_some(ahead_m)
+        (self.crossings[there].leg == other.leg).then(|| own_m - other.distance.get().to_num::<f64>())
     }
 
     /// The place on the unit's way, and the way there, of an intersection that it has still to cross.

@@ -18,8 +18,7 @@ impl Relay {
         let unserved: Vec<&Placed> =
             self.places.iter().filter(|placed| self.is_unserved(placed, at_s, &front)).collect();
         let legs = unserved.iter().filter(|placed| self.is_in_the_way(placed, &front)).map(|placed| placed.route.leg);
-        let ahead_m =
-            unserved.iter().filter_map(|placed| Some(self.course.ahead_on_leg(&placed.route)? - placed.length_m));
+        let ahead_m = unserved.iter().filter_map(|placed| Some(placed.ahead_m(&self.course)? - placed.length_m));
         let ahead_m = ahead_m.reduce(f64::min).zip(self.course.way_m()).map(|(ahead_m, way_m)| way_m - ahead_m);
         Some(Unserved {
             intersection: next.id,

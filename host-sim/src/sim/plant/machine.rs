@@ -1,7 +1,7 @@
 //! What eq. 1 takes of a vehicle and of its road: the kind of vehicle and how the real one differs from it enter, the
 //! parameters in SI units leave, and the forces that they make.
 
-use holdover::dynamics::Body;
+use holdover::model::Body;
 
 use crate::input::kind::{Difference, Kind};
 

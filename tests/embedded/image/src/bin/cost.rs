@@ -6,7 +6,7 @@ use core::hint::black_box;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use cortex_m_semihosting::hprintln;
-use holdover::estimator::{Aim, Driver, State, Step};
+use holdover::model::{Aim, State, Step};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Seconds, Speed};
 use holdover::{Config, OnboardUnit};
@@ -181,7 +181,7 @@ fn compare(counter: &Counter) {
         standstill: law.standstill,
         target_speed: law.target_speed,
     };
-    let stride = Driver::of_config(&config, aim).over(Duration::from_millis(10), None, &config.prediction.model);
+    let stride = config.vehicle_model(aim).over(Duration::from_millis(10), config.length, &config.prediction.model);
     let speed = Speed::from_mm_per_s(11_000);
     let start = State { position: Position::ZERO.ring(), speed, ..State::default() };
     // SAFETY: this function is called once, and nothing else names the static.

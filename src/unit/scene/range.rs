@@ -10,10 +10,10 @@
 //! against half the width of the target's bound, which grows with the age of what was heard over V2X. So fresh messages
 //! are left alone, and in a long silence the sensor decides.
 
-use super::OnboardUnit;
+use super::Scene;
 use super::sight::{Sight, Verdict};
-use crate::estimator::bound::{Bound, Uncertainty};
-use crate::health::Cause;
+use crate::health::{Cause, Health};
+use crate::model::bound::{Bound, Uncertainty};
 use crate::parameters::{
     LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
     UNPUBLISHED_SPEED_ACCURACY,
@@ -27,9 +27,14 @@ use crate::wire::range_sensor::RangeSample;
 /// A correction of less than this share is not worth computing the horizon anew.
 const LEAST_SHARE: i64 = 16;
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Takes in a view of the vehicle ahead, received at `received`.
-    pub(super) fn take_range(&mut self, received: Instant, seen: RangeSample) -> Result<(), Cause> {
+    pub(super) fn take_range(
+        &mut self,
+        received: Instant,
+        seen: RangeSample,
+        health: &mut Health,
+    ) -> Result<(), Cause> {
         let ego = self.ego.as_ref().ok_or(Cause::Torn)?;
         let at = received.minus(seen.age);
         let since = at.since(ego.at);
@@ -49,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.raise(index, &sight);
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at)) {
-            sight.station = self.compare(received, index, &sight);
+            sight.station = self.compare(received, index, &sight, health);
         }
         self.ranging.see(sight);
         Ok(())
@@ -59,7 +64,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn raise(&mut self, index: usize, sight: &Sight) -> bool {
         let Some(track) = self.peers.get_index_mut(index) else { return true };
         // However long it is, its front is not behind its rear.
-        let length = track.parameters().map_or(Distance::ZERO, |parameters| parameters.length);
+        let length = track.published_length().unwrap_or(Distance::ZERO);
         let seen = sight.bound();
         track.narrow(&Bound::not_behind(seen.at(), seen.lowest_position().ahead(length)))
     }
@@ -88,11 +93,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// Whose the sight is, if it is certain that it is the peer's; then it narrows it. It is if it fits what is certain of the peer, and
     /// that leaves no room for another vehicle. A sight that may be the peer's or another one's corrects the estimate alone.
-    fn compare(&mut self, now: Instant, index: usize, sight: &Sight) -> Option<StationHash> {
+    fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<StationHash> {
         let is_disputed = self.is_contradicted(index, now);
         let track = self.peers.get_index_mut(index)?;
         let (station, heard) = (track.station()?, track.newest().map(|newest| newest.received));
-        let Some(length) = track.parameters().map(|parameters| parameters.length) else {
+        let Some(length) = track.published_length() else {
             self.raise(index, sight);
             return None;
         };
@@ -108,7 +113,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Verdict::Contradicts
         };
         if self.ranging.judge(station, now, verdict, heard) {
-            self.health.count(Cause::RangeDisagrees);
+            health.count(Cause::RangeDisagrees);
         }
         if is_disputed {
             return None;
@@ -136,12 +141,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Whether what is seen and what is heard of a peer contradict one another.
-    pub(super) fn is_contradicted(&self, index: usize, now: Instant) -> bool {
+    pub fn is_contradicted(&self, index: usize, now: Instant) -> bool {
         self.heard_of(index).is_some_and(|(station, heard)| self.ranging.disagrees(station, now, heard))
     }
 
     /// Whether the sensor sees that a peer is not where it is held to be.
-    pub(super) fn is_seen_past(&self, index: usize, now: Instant) -> bool {
+    pub fn is_seen_past(&self, index: usize, now: Instant) -> bool {
         self.heard_of(index).is_some_and(|(station, heard)| self.ranging.sees_past(station, now, heard))
     }
 
@@ -184,7 +189,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn slope(&self, index: usize, at: Instant) -> Acceleration {
         let half = Duration::from_millis(20);
         let speed = |at| self.estimator.read(index, at).map_or(Speed::ZERO, |reading| reading.speed);
-        super::outbox::slope(speed(at.plus(half)).minus(speed(at.minus(half))), half.times(2))
+        Acceleration::of_change(speed(at.plus(half)).minus(speed(at.minus(half))), half.times(2).as_micros())
     }
 }
 

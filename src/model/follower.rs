@@ -8,7 +8,7 @@
 //! v* = [ v - κ ( r + v δt - r_p + l + s_0 - γ v_p ) ] / [ 1 + κ (t_g + γ) ],   κ = α k δt,  α = 1
 //! ```
 //!
-//! and the desired is `(v* - v)/δt`, which is
+//! and the desired acceleration is `(v* - v)/δt`, which is
 //!
 //! ```text
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
@@ -23,7 +23,7 @@
 //!
 //! Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
 
-use super::actuator::State;
+use super::state::State;
 use crate::fixed::saturate_i32;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};

@@ -1,14 +1,14 @@
 //! How a vehicle drives, as far as it is known: its published driving parameters (or the lack of it) enters, the constants of its
 //! prediction step leave.
 
-use super::actuator::{Actuator, State};
+use super::actuator::Actuator;
 use super::follower::Follower;
-use super::horizon::Step;
 use super::leader::Leader;
-use crate::config::{Config, Model};
-use crate::parameters::{DEFAULT_LENGTH, FADE, FREE_ROAD_ACCELERATION};
+use super::state::{State, Step};
+use super::switches::Model;
+use crate::parameters::{FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, RingPosition, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Gain, Jerk, RingPosition, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
@@ -79,13 +79,7 @@ impl VehicleModel {
                 target_speed: parameters.target_speed,
             },
         };
-        Self { aim, lag: micros(parameters.lag), limits: parameters.limits }
-    }
-
-    /// Of the ego, from its configuration and what it is after.
-    #[must_use]
-    pub fn of_config(config: &Config, aim: Aim) -> Self {
-        Self { aim, lag: micros(config.lag), limits: config.limits }
+        Self { aim, lag: Duration::of_fine_seconds(parameters.lag), limits: parameters.limits }
     }
 
     /// The state after some time under the demand in force.
@@ -94,14 +88,14 @@ impl VehicleModel {
         Actuator::over(time, self.lag, &self.limits, model).drive(state, state.demand)
     }
 
-    /// The constants of a step of this length behind a predecessor of this length.
+    /// The constants of a step of this length behind a predecessor of this length, which is of no account without one.
     #[must_use]
-    pub fn over(&self, step: Duration, length_ahead: Option<Distance>, model: &Model) -> Stride {
+    pub fn over(&self, step: Duration, length_ahead: Distance, model: &Model) -> Stride {
         let course = match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
             Aim::Follow { gain, damping, time_gap, standstill, target_speed } => {
-                let spacing = length_ahead.unwrap_or(DEFAULT_LENGTH).plus(standstill);
+                let spacing = length_ahead.plus(standstill);
                 let catch_up = model.limits.then(|| catch_up(target_speed));
                 Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
             }
@@ -116,10 +110,6 @@ impl VehicleModel {
 /// The speed with which a follower catches up: a fifth more than it wants on a free road.
 fn catch_up(target_speed: Speed) -> Speed {
     target_speed.plus(Speed::from_bits(target_speed.to_bits() / 5))
-}
-
-const fn micros(lag: FineSeconds) -> Duration {
-    Duration::from_micros(lag.to_multiple_of(1_000_000))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +129,7 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The demand of this step: the desired, but no more than the cap, within the vehicle's limits. A follower without a
+    /// The demand of this step: the desired acceleration, but no more than the cap, within the vehicle's limits. A follower without a
     /// predecessor fades.
     #[inline(always)]
     #[must_use]

@@ -1,10 +1,9 @@
-//! Vehicles that the unit cannot know of: what the modem tells of those for whom it has no slot enters; where the ego stops for
-//! them leaves.
+//! Unknown vehicles: what the modem tells of vehicles for which it has no slot enters; where the ego stops for them leaves.
 //!
-//! Somebody unknown on a leg that crosses the ego's may be ahead in the order, so the ego does not enter the conflict area.
-//! Somebody unknown ahead on the ego's own leg is taken to stand where it was.
+//! An unknown vehicle on a leg that crosses the ego's may be ahead in the order, so the ego does not enter the conflict area.
+//! An unknown vehicle ahead on the ego's own leg is taken to stand where it was.
 
-use super::OnboardUnit;
+use super::Scene;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::Position;
@@ -15,7 +14,7 @@ const HOLDS: Duration = Duration::from_millis(600);
 
 /// What the modem told last, and when.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Unknown(Held<(Instant, Unserved)>);
+pub(in crate::unit) struct Unknown(Held<(Instant, Unserved)>);
 
 impl Unknown {
     /// Nothing was told: all zero.
@@ -32,25 +31,25 @@ impl Unknown {
     }
 }
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// Whether somebody unknown comes into the next conflict area before anybody else on its leg, or is in it.
-    pub(super) fn is_crossed_by_unknown(&self, now: Instant) -> bool {
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// Whether an unknown vehicle comes into the next conflict area before any other on its leg, or is in it.
+    pub fn is_crossed_by_unknown(&self, now: Instant) -> bool {
         let (Some(crossing), Some(told)) = (self.coordination.crossing(), self.unknown.told(now)) else { return false };
         let crosses = |leg: &u8| told.legs & (1 << leg) != 0 && crossing.intersection.conflict(crossing.leg, *leg);
         told.intersection == crossing.intersection.id && (0..8).any(|leg| crosses(&leg))
     }
 
-    /// Where the ego, as far back as it may be, has to be able to stop for somebody unknown: at the next conflict area, unless it could
-    /// not any more when it learned of that, and behind whom is ahead.
-    pub(super) fn stop_for_unknown(&self, now: Instant, rearmost: Position) -> Option<Position> {
+    /// Where the ego, as far back as it may be, has to be able to stop for an unknown vehicle: at the next conflict area, unless it
+    /// could not any more when it learned of that, and behind the one ahead.
+    pub fn stop_for_unknown(&self, now: Instant, rearmost: Position) -> Option<Position> {
         let is_barred = self.coordination.choice().is_held && self.is_crossed_by_unknown(now);
         let line = self.area_begins().filter(|begins| is_barred && rearmost <= *begins);
         let ahead = self.unknown_ahead(now).filter(|rear| rearmost <= *rear);
         [line, ahead].into_iter().flatten().min()
     }
 
-    /// The rear bumper of the nearest unknown one ahead on the ego's own leg, where it was.
-    pub(super) fn unknown_ahead(&self, now: Instant) -> Option<Position> {
+    /// The rear bumper of the nearest unknown vehicle ahead on the ego's own leg, where it was.
+    pub fn unknown_ahead(&self, now: Instant) -> Option<Position> {
         let (crossing, told) = (self.coordination.crossing()?, self.unknown.told(now)?);
         let ahead = told.ahead.filter(|_| told.intersection == crossing.intersection.id)?;
         Some(self.coordination.crossing_point(crossing)?.ahead(ahead.negated()))

@@ -6,10 +6,10 @@
 //! certain to be the same vehicle; with the place on the ego's axis, too far; twice, or too late; and whether it can be. On a way
 //! through intersections a new name is never the same vehicle, so there that comes before the age.
 
-use super::OnboardUnit;
+use super::Scene;
 use crate::coordination::Axis;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
-use crate::health::Cause;
+use crate::health::{Cause, Health};
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use crate::peers::{Admission, Off, Sample, Track, timely};
@@ -82,13 +82,19 @@ fn weigh_anew<const SAMPLES: usize>(
     if judgement.verdict.is_ok() { judgement } else { Judgement { certainty: held, ..judgement } }
 }
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Takes in a peer's motion.
     ///
     /// # Errors
     /// The first cause for which it is refused. Nothing is changed then but the evidence: of misbehaviour, and of whose what else
     /// is said in the slot may be.
-    pub(super) fn take_motion(&mut self, at: Instant, slot: Slot, motion: &Motion) -> Result<(), Cause> {
+    pub(super) fn take_motion(
+        &mut self,
+        at: Instant,
+        slot: Slot,
+        motion: &Motion,
+        health: &mut Health,
+    ) -> Result<(), Cause> {
         let index = usize::from(slot.0);
         let holder = self.peers.get(index).ok_or(Cause::UnknownSlot)?.station();
         let plan = self.plan(at, index, holder, motion);
@@ -100,7 +106,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         }
         // Who is ahead is refused before it has a slot of its own.
         if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Cause::Future)) {
-            self.note_clock(at, index, motion);
+            self.note_clock(at, index, motion, health);
         }
         verdict
     }
@@ -270,11 +276,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Takes note of what a motion says of its sender's clock.
-    fn note_clock(&mut self, at: Instant, index: usize, motion: &Motion) {
+    fn note_clock(&mut self, at: Instant, index: usize, motion: &Motion, health: &mut Health) {
         let Some(stamped) = self.instant_of(motion.stamp, at) else { return };
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if track.hear_clock(at, stamped, &self.config.link) {
-            self.health.count(Cause::PeerClock);
+            health.count(Cause::PeerClock);
         }
     }
 

@@ -1,28 +1,28 @@
 //! What the unit takes in: whole messages enter, and go to the clock, the ego's own motion or the peers, or are refused by
 //! the rules of time and place.
 
-use super::OnboardUnit;
-use crate::health::Cause;
+use super::Scene;
+use crate::health::{Cause, Health};
 use crate::peers::{Sample, timely};
-use crate::time::{Instant, Stamp};
+use crate::time::Instant;
 use crate::wire::motion::Motion;
 use crate::wire::{Message, Said, Slot};
 
-impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Takes in a whole message.
-    pub(super) fn take(&mut self, at: Instant, message: &Message) -> Result<(), Cause> {
+    pub fn take(&mut self, at: Instant, message: &Message, health: &mut Health) -> Result<(), Cause> {
         match message {
             Message::Sync(sync) => self.clock.sync(at, *sync),
             Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
             Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
-            Message::DriverRequest(desired) => {
-                if self.desired.as_ref().map(|held| held.predecessor) != Some(desired.predecessor) {
+            Message::DriverRequest(request) => {
+                if self.request.as_ref().map(|held| held.predecessor) != Some(request.predecessor) {
                     self.ranging.note_named(at);
                 }
-                self.desired.set(*desired);
+                self.request.set(*request);
             }
-            Message::Peer(slot, said) => self.take_peer(at, *slot, said)?,
-            Message::Range(seen) => self.take_range(at, *seen)?,
+            Message::Peer(slot, said) => self.take_peer(at, *slot, said, health)?,
+            Message::Range(seen) => self.take_range(at, *seen, health)?,
             Message::Unserved(unserved) => self.unknown.take(at, *unserved),
             Message::Ego(Said::Geo(geo)) => self.take_ego_place(at, geo)?,
             Message::Ego(_) => {}
@@ -49,7 +49,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Ok(())
     }
 
-    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said) -> Result<(), Cause> {
+    fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said, health: &mut Health) -> Result<(), Cause> {
         let index = usize::from(slot.0);
         if !matches!(said, Said::Motion(_)) {
             let is_disputed = self.peers.get_mut(slot)?.is_disputed();
@@ -60,7 +60,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             }
         }
         match said {
-            Said::Motion(motion) => self.take_motion(at, slot, motion)?,
+            Said::Motion(motion) => self.take_motion(at, slot, motion, health)?,
             Said::DrivingParameters(parameters) => {
                 let track = self.peers.get_mut(slot)?;
                 // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
@@ -94,13 +94,5 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     pub(super) fn may_be_of_another(&self, at: Instant, index: usize) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
         silence.is_some_and(|silence| silence >= self.config.link.slot_reuse)
-    }
-
-    /// The instant of a message's stamp, while GNSS time is known.
-    pub(super) fn instant_of(&self, stamp: Stamp, at: Instant) -> Option<Instant> {
-        if !self.clock.is_synchronised(at, self.config.link.sync_timeout) {
-            return None;
-        }
-        self.clock.instant_of(stamp, at)
     }
 }

@@ -1,46 +1,15 @@
-//! What a vehicle's controller and actuators make of a desired: the desired acceleration enters, limited in size and jerk
+//! What a vehicle's controller and actuators make of a desired acceleration: it enters, limited in size and jerk
 //! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
 //! because the model must be the controller.
 
 use super::exponential::Decay;
-use super::horizon::Step;
 use super::position::Path;
-use crate::config::Model;
+use super::state::{Remainders, State, Step};
+use super::switches::Model;
 use crate::fixed::{Rest, mul_hi, product, sum};
 use crate::time::Duration;
-use crate::units::{Acceleration, FineSeconds, Jerk, RingPosition, Speed};
+use crate::units::{Acceleration, FineSeconds, Jerk, Speed};
 use crate::wire::driving_parameters::Limits;
-
-/// A vehicle's state at one step of a horizon.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct State {
-    /// Front bumper, modulo 4096 m.
-    pub position: RingPosition,
-    /// Never negative.
-    pub speed: Speed,
-    /// Acceleration reached.
-    pub acceleration: Acceleration,
-    /// Acceleration demanded in the step before.
-    pub demand: Acceleration,
-    /// What is below the last bits of position and speed.
-    pub remainders: Remainders,
-}
-
-/// What hundreds of steps would lose of position and speed if each of them were rounded.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Remainders {
-    position: Rest,
-    speed: Rest,
-}
-
-impl Remainders {
-    /// Of a state that is exactly its words.
-    pub const NONE: Self = Self { position: Rest::NONE, speed: Rest::NONE };
-    /// Of no state: all zero.
-    pub(super) const UNSET: Self = Self { position: Rest::UNSET, speed: Rest::UNSET };
-}
 
 /// The constants of one step of a given length for one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +43,7 @@ impl Actuator {
         }
     }
 
-    /// The demand that comes of a desired: at most the jerk limit away from the last one, and within the limits on
+    /// The demand that comes of a desired acceleration: at most the jerk limit away from the last one, and within the limits on
     /// acceleration as far as the jerk limit lets it get there.
     #[inline(always)]
     #[must_use]

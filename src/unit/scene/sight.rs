@@ -1,7 +1,7 @@
 //! What the range sensor has seen: views enter; what the unit remembers of them, and whether they contradict what is heard,
 //! leave.
 //!
-//! A view shows the nearest vehicle on the ego's path: nobody is between the ego and what it sees. That is an assumption of
+//! A view shows the nearest vehicle on the ego's path: nothing is between the ego and what it sees. That is an assumption of
 //! use; all that is concluded here rests on it.
 //!
 //! *Memory.* What was seen does not vanish with the view. Its near end is carried on, as a stranger's that may brake as hard
@@ -12,25 +12,25 @@
 //! none has contradicted it for [`SETTLED`]. If as many in a row saw past all that is certain of the target, nobody is where that
 //! is held to be, and the contradiction lasts until the target is heard again, however long it is silent.
 
-use crate::estimator::Reading;
-use crate::estimator::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::held::Held;
+use crate::model::Reading;
+use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
 use crate::units::{Position, Speed};
 use crate::wire::StationHash;
 
 /// A view older than this is not driven by, and shows no longer that nobody is nearer.
-pub(super) const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
+const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// Who was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does not
-/// act within this time, so that one who turns off costs nothing.
+/// A vehicle that was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does
+/// not act within this time, so a vehicle that turns off costs nothing.
 const MOVING: Duration = Duration::from_millis(1_000);
 
-/// Who stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a sensor
-/// that sees nobody says nothing: without an end, who leaves while nobody looks would hold the ego for ever.
+/// A vehicle that stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a
+/// sensor that sees nothing says nothing: without an end, a vehicle that leaves unseen would hold the ego for ever.
 const STANDING: Duration = Duration::from_millis(10_000);
 
-/// Whoever may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
+/// A vehicle that may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
 /// So many views in a row that contradict what is certain of the target are a disagreement.
@@ -41,7 +41,7 @@ const SETTLED: Duration = Duration::from_millis(1_000);
 
 /// A view, at an instant of the unit's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sight {
+pub(in crate::unit) struct Sight {
     pub at: Instant,
     /// Rear bumper of the vehicle ahead.
     pub rear: Position,
@@ -70,7 +70,7 @@ struct Contradiction {
 
 /// The range sensor's part of the unit.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ranging {
+pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
     /// Whoever was seen standing last, until a view shows that it is not there.
     standing: Held<Sight>,
@@ -84,7 +84,7 @@ pub(super) struct Ranging {
 }
 
 impl Ranging {
-    pub(super) const fn new() -> Self {
+    pub(in crate::unit) const fn new() -> Self {
         Self {
             newest: Held::Nothing,
             standing: Held::Nothing,
@@ -96,17 +96,17 @@ impl Ranging {
     }
 
     /// Takes note that the driver names another one from now on: what was seen before is not of that one.
-    pub(super) fn note_named(&mut self, at: Instant) {
+    pub(in crate::unit) fn note_named(&mut self, at: Instant) {
         (self.named, self.contradictions, self.past) = (at, 0, 0);
     }
 
     /// Whether a view may be of whom the driver names: who was not on the way yet was not hidden by what was seen.
-    pub(super) fn is_of_named(&self, seen: Instant) -> bool {
+    pub(in crate::unit) fn is_of_named(&self, seen: Instant) -> bool {
         seen >= self.named
     }
 
     /// Takes a view in.
-    pub(super) fn see(&mut self, sight: Sight) {
+    pub(in crate::unit) fn see(&mut self, sight: Sight) {
         let seen = sight.bound();
         // The same one again, or farther: nobody is where it was held to be, then.
         let is_beyond = |held: &Sight| {
@@ -122,26 +122,30 @@ impl Ranging {
 
     /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
     /// front one. `None` if the view is too old.
-    pub(super) fn ahead(&self, now: Instant) -> Option<Reading> {
+    pub(in crate::unit) fn ahead(&self, now: Instant) -> Option<Reading> {
         let sight = self.newest.get().filter(|sight| now.since(sight.at) <= RANGE_TIMEOUT)?;
         let age = now.since(sight.at).seconds();
         Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
     }
 
     /// What is certain of the rears of those who are remembered as `station` is not, each at the time of its view.
-    pub(super) fn strangers(&self, now: Instant, station: Option<StationHash>) -> impl Iterator<Item = Bound> + use<> {
+    pub(in crate::unit) fn strangers(
+        &self,
+        now: Instant,
+        station: Option<StationHash>,
+    ) -> impl Iterator<Item = Bound> + use<> {
         let moving = self.newest.get().filter(|sight| now.since(sight.at) <= MOVING);
         let remembered = [moving, self.standing(now)].into_iter().flatten();
         remembered.filter(move |sight| station.is_none() || sight.station != station).map(|sight| sight.bound())
     }
 
     /// Whoever was seen standing.
-    pub(super) fn standing(&self, now: Instant) -> Option<Sight> {
+    pub(in crate::unit) fn standing(&self, now: Instant) -> Option<Sight> {
         self.standing.get().filter(|sight| now.since(sight.at) <= STANDING)
     }
 
     /// Takes note of whether a view contradicts what is certain of a station, and saw past that. Whether a disagreement begins.
-    pub(super) fn judge(
+    pub(in crate::unit) fn judge(
         &mut self,
         station: StationHash,
         at: Instant,
@@ -166,13 +170,13 @@ impl Ranging {
     }
 
     /// Whether what is seen and what is heard of a station, `heard` last, contradict one another.
-    pub(super) fn disagrees(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
+    pub(in crate::unit) fn disagrees(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
         self.holds(station, now, heard, SETTLED).is_some()
     }
 
     /// Whether the sensor sees that a station is not where it is held to be: by a view that is not too old, or since which nothing
     /// was heard of it.
-    pub(super) fn sees_past(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
+    pub(in crate::unit) fn sees_past(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
         self.holds(station, now, heard, RANGE_TIMEOUT).is_some_and(|contradiction| contradiction.is_past)
     }
 
@@ -192,7 +196,7 @@ impl Ranging {
 
 /// What a view says of what is certain of a station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(in crate::unit) enum Verdict {
     /// It may be that station's.
     Agrees,
     /// It is not, or what is heard is wrong.

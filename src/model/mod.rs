@@ -1,0 +1,35 @@
+//! One vehicle, as everyone models it: its parameters enter; how its state goes on, step by step, and what it can be certain to do
+//! within its limits, leave.
+//!
+//! The prediction of a peer, the own controller and the last gate share this model, because a vehicle then drives exactly by what
+//! others predict of it. It knows of no messages, no peers and no time but a step's length.
+//!
+//! | what | where |
+//! |---|---|
+//! | the state at an instant or a step | `state` |
+//! | how it drives: free road, following, or nothing known (Algorithms 2 and 4) | `vehicle_model`, `leader`, `follower` |
+//! | what limits, lag and integration make of a demand (Algorithm 3) | `actuator`, `exponential`, `position` |
+//! | the force or torque for an acceleration (eqs 1 to 3) | `body` |
+//! | the least and the most that it can do | `bound` |
+//! | which of this is used | `switches` |
+
+mod actuator;
+mod body;
+pub mod bound;
+mod exponential;
+pub mod follower;
+mod leader;
+mod position;
+mod state;
+mod switches;
+mod vehicle_model;
+
+pub use actuator::Actuator;
+pub use body::Body;
+pub use exponential::Decay;
+pub use follower::Follower;
+pub use leader::Leader;
+pub use position::Path;
+pub use state::{Reading, Remainders, State, Step};
+pub use switches::Model;
+pub use vehicle_model::{Aim, Stride, VehicleModel};

@@ -1,0 +1,107 @@
+//! What the mode and the controller go by: the scene enters; the facts that decide the mode, and the course to be driven in it, leave.
+
+use super::room;
+use super::scene::Scene;
+use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
+use crate::model::bound::AccelerationRange;
+use crate::model::{Reading, State};
+use crate::parameters::REACH;
+use crate::time::{Duration, Instant};
+use crate::units::{Acceleration, Position, Speed};
+use crate::wire::Predecessor;
+
+/// What the mode is decided by; `is_readable` says whether the target has an estimate.
+pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    target: Option<usize>,
+    is_readable: bool,
+) -> Facts {
+    let ego = match (scene.ego.as_ref(), scene.fresh_ego(now)) {
+        (None, _) => Err(FaultCause::EgoMissing),
+        (Some(_), None) => Err(FaultCause::EgoStale),
+        (Some(_), Some(_)) => Ok(()),
+    };
+    let track = target.and_then(|index| scene.peers.get(index));
+    let target = match (scene.predecessor(), track) {
+        (Predecessor::None, _) => TargetFact::NotNeeded,
+        (Predecessor::Unknown, _) => TargetFact::Lost(FallbackCause::NotAssociated),
+        (Predecessor::Station(_), Some(track)) if is_readable => {
+            let silence = track.link().silence(now).unwrap_or(Duration::MAX);
+            if track.link().is_on(now, &scene.config.link) {
+                TargetFact::On
+            } else if silence <= scene.config.link.holdover {
+                TargetFact::Off
+            } else {
+                TargetFact::Lost(FallbackCause::Silent)
+            }
+        }
+        (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
+    };
+    // The ego drives by what its sensor sees ahead then, and not by what it hears.
+    let is_contradicted = scene.visible().is_some_and(|index| scene.is_contradicted(index, now));
+    let target = match target {
+        TargetFact::Lost(_) => target,
+        _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
+        _ => target,
+    };
+    Facts { engaged: scene.request.as_ref().is_some_and(|request| request.engaged), ego, target }
+}
+
+/// The course of a mode; `gains` are those of the association with the target.
+pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    mode: Mode,
+    target: Option<usize>,
+    gains: Option<Gains>,
+    ego: Option<&State>,
+) -> Course {
+    match mode {
+        Mode::Standby => Course::Yield { demand: scene.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
+        Mode::Cooperative | Mode::Holdover { .. } => {
+            let next = now.plus(scene.config.period);
+            let target = target.and_then(|index| Some((scene.estimated(index, next)?, scene.peers.length_of(index))));
+            let cap = ego.map_or(Acceleration::MAX, |ego| room::careful(scene, now, ego));
+            Course::Law { driver: scene.ego_model_now(gains), target, cap }
+        }
+        Mode::Fallback { .. } => match still_known(scene, now, target) {
+            Some(ahead) => Course::Cruise { ahead, target_speed: scene.target_speed() },
+            None => Course::Caution,
+        },
+        Mode::Fault { .. } => Course::Brake,
+    }
+}
+
+/// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it, or the near
+/// end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees that it is not there.
+/// Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the one that is nearer.
+fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    target: Option<usize>,
+) -> Option<Reading> {
+    let seen = scene.ranging.ahead(now);
+    if seen.is_some() && target == scene.visible() {
+        return seen;
+    }
+    let stood = scene.ranging.standing(now).map(|sight| sight.bound().after(now, &AccelerationRange::WORST));
+    let stood = stood.and_then(|bound| near(scene, bound.lowest_position(), bound.lowest_speed()));
+    let target = target.filter(|index| !scene.is_seen_past(*index, now));
+    let certain = target.and_then(|index| {
+        let (rear, bound) = scene.near_rear(index, now)?;
+        near(scene, rear, bound.lowest_speed())
+    });
+    [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
+}
+
+/// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+fn near<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    position: Position,
+    speed: Speed,
+) -> Option<Reading> {
+    let ego = scene.ego.as_ref()?.position;
+    let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
+    Some(Reading { position: ego.ahead(gap), speed })
+}

@@ -1,0 +1,269 @@
+//! The scene: all that the unit knows. Messages enter; what is known of the ego, of every peer and of the way ahead leaves.
+//!
+//! Messages change it ([`inbox`], [`admission`], [`places`], [`range`]), and so do the two stages that bring it up to now: the
+//! estimator and the review of the order. Every other stage of the tick only looks at it, so a reference to it is the one view that
+//! the rules need.
+
+mod admission;
+mod inbox;
+mod named;
+mod places;
+mod range;
+mod sight;
+mod unknown;
+
+use super::vantage::Vantage;
+use crate::clock::Clock;
+use crate::config::Config;
+use crate::controller::Gains;
+use crate::coordination::{ComfortBraking, Coordination, Entry, PeerApproach, standstill_behind};
+use crate::envelope::Obstacle;
+use crate::estimator::Estimator;
+use crate::held::Held;
+use crate::model::bound::Bound;
+use crate::model::{Aim, Reading, Remainders, State, VehicleModel};
+use crate::peers::{Peers, Sample, Track};
+use crate::time::{Duration, Instant, Stamp};
+use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
+use crate::wire::Predecessor;
+use crate::wire::driver_request::DriverRequest;
+use named::Named;
+use sight::Ranging;
+use unknown::Unknown;
+
+/// What a vehicle on a way through intersections keeps beside the law's standstill distance. Where a queue has formed, a vehicle
+/// brakes for what it alone knows, because a vehicle ahead has no slot or is silent. Those behind that do not hear it do not foresee
+/// that, and have to find room for the error of their estimates.
+const QUEUE: Distance = Distance::from_mm(8_000);
+
+/// What the unit knows.
+#[derive(Clone, Debug)]
+pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
+    pub config: Config,
+    pub clock: Clock,
+    pub ego: Held<Sample>,
+    pub request: Held<DriverRequest>,
+    pub peers: Peers<PEERS, SAMPLES>,
+    pub estimator: Estimator<PEERS, STEPS>,
+    pub coordination: Coordination<PEERS>,
+    /// What the range sensor has seen.
+    pub ranging: Ranging,
+    /// Vehicles without a slot.
+    pub unknown: Unknown,
+    /// Whom the driver has put ahead.
+    pub named: Named,
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// Of a unit that is not started: all zero.
+    pub const fn idle() -> Self {
+        Self {
+            config: Config::NONE,
+            clock: Clock::new(),
+            ego: Held::Nothing,
+            request: Held::Nothing,
+            peers: Peers::idle(),
+            estimator: Estimator::idle(),
+            coordination: Coordination::idle(),
+            ranging: Ranging::new(),
+            unknown: Unknown::NONE,
+            named: Named::Nobody,
+        }
+    }
+
+    /// Nothing is known but a checked configuration. Field by field, because the whole of it would pass over the stack.
+    pub fn start(&mut self, config: &Config) {
+        self.config = *config;
+        self.clock = Clock::new();
+        self.ego.clear();
+        self.request.clear();
+        self.peers.start(config.link.period);
+        self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
+        self.coordination.reset();
+        self.ranging = Ranging::new();
+        self.unknown = Unknown::NONE;
+        self.named = Named::Nobody;
+    }
+
+    /// Whether GNSS time is known.
+    pub fn is_synchronised(&self, now: Instant) -> bool {
+        self.clock.is_synchronised(now, self.config.link.sync_timeout)
+    }
+
+    /// The instant of a message's stamp, while GNSS time is known.
+    pub fn instant_of(&self, stamp: Stamp, at: Instant) -> Option<Instant> {
+        if !self.is_synchronised(at) {
+            return None;
+        }
+        self.clock.instant_of(stamp, at)
+    }
+
+    /// The ego's newest motion, unless it is too old.
+    pub fn fresh_ego(&self, now: Instant) -> Option<&Sample> {
+        self.ego.as_ref().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout)
+    }
+
+    /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
+    pub fn ego_at(&self, now: Instant, last_demand: Acceleration) -> Option<State> {
+        let sample = self.ego.as_ref()?;
+        let state = State {
+            position: sample.position.ring(),
+            speed: sample.speed,
+            acceleration: sample.acceleration,
+            demand: last_demand,
+            remainders: Remainders::NONE,
+        };
+        let age = now.since(sample.at);
+        if age <= Duration::ZERO {
+            return Some(state);
+        }
+        let model = self.config.vehicle_model(Aim::Fade);
+        Some(model.coast(state, age.min(self.config.link.ego_timeout), &self.config.prediction.model))
+    }
+
+    /// The ego's front bumper in this state, which is near its newest sample.
+    pub fn front(&self, ego: &State) -> Position {
+        let sample = self.ego.as_ref().map_or(Position::ZERO, |sample| sample.position);
+        sample.ahead(ego.position.ahead_of(sample.ring()))
+    }
+
+    /// The ego now, with its front bumper there, at this speed.
+    pub const fn vantage(&self, now: Instant, front: Position, speed: Speed) -> Vantage<'_, PEERS, SAMPLES, STEPS> {
+        Vantage { scene: self, at: now, next: self.coordination.next(), front, speed }
+    }
+
+    /// `t_g`: the driver's, or else the configuration's.
+    pub fn time_gap(&self) -> Seconds {
+        self.request.as_ref().and_then(|request| request.time_gap).unwrap_or(self.config.law.time_gap)
+    }
+
+    /// `v_∞` likewise.
+    pub fn target_speed(&self) -> Speed {
+        self.request.as_ref().map_or(self.config.law.target_speed, |request| request.target_speed)
+    }
+
+    /// How the ego drives by the law: with these gains and this standstill distance behind a target, or on a free road.
+    pub fn ego_model(&self, behind: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
+        let (law, target_speed) = (&self.config.law, self.target_speed());
+        let aim = match behind {
+            Some((gains, standstill)) => Aim::Follow {
+                gain: gains.gain,
+                damping: gains.damping,
+                time_gap: self.time_gap(),
+                standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
+                target_speed,
+            },
+            None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
+        };
+        let VehicleModel { aim, lag, mut limits } = self.config.vehicle_model(aim);
+        limits.braking = comfort.limit(limits.braking);
+        VehicleModel { aim, lag, limits }
+    }
+
+    /// How the ego drives now: with the gains of its association, if there is one.
+    pub fn ego_model_now(&self, gains: Option<Gains>) -> VehicleModel {
+        self.ego_model(gains.map(|gains| (gains, self.standstill())), self.coordination.choice().comfort)
+    }
+
+    /// Whom the driver says the ego is to follow.
+    fn requested(&self) -> Predecessor {
+        self.request.as_ref().map_or(Predecessor::Unknown, |request| request.predecessor)
+    }
+
+    /// Whether the order at the intersections decides whom the ego follows, and not the driver.
+    pub fn is_decided_by_order(&self) -> bool {
+        self.requested() == Predecessor::Unknown && self.coordination.registration().is_some()
+    }
+
+    /// Whom the ego is to follow: the driver's choice, or whom the order has put ahead of it.
+    pub fn predecessor(&self) -> Predecessor {
+        if !self.is_decided_by_order() {
+            return self.requested();
+        }
+        let Some(target) = self.coordination.choice().target else { return Predecessor::None };
+        let station = self.peers.get(target.into()).and_then(Track::station);
+        station.map_or(Predecessor::None, Predecessor::Station)
+    }
+
+    /// The slot of the vehicle that the ego is to follow.
+    pub fn target(&self) -> Option<usize> {
+        match self.predecessor() {
+            Predecessor::Station(station) => self.peers.index_of(station),
+            Predecessor::None | Predecessor::Unknown => None,
+        }
+    }
+
+    /// The slot of the vehicle that a sensor would see ahead.
+    pub fn visible(&self) -> Option<usize> {
+        match self.coordination.itinerary() {
+            Some(_) => self.coordination.choice().lane.map(usize::from),
+            None => self.target(),
+        }
+    }
+
+    /// Where a peer is estimated to be, inside what is certain of it then.
+    pub fn estimated(&self, index: usize, at: Instant) -> Option<Reading> {
+        self.estimator.read_inside(index, at, &self.peers)
+    }
+
+    /// The same, and its rear bumper.
+    pub fn rear(&self, index: usize, at: Instant) -> Option<(Reading, Position)> {
+        let reading = self.estimated(index, at)?;
+        Some((reading, reading.position.ahead(self.peers.length_of(index).negated())))
+    }
+
+    /// What is certain of a peer at an instant, now or later.
+    pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
+        let track = self.peers.get(index)?;
+        Some(track.certainty().bound()?.after(at, &track.reach()))
+    }
+
+    /// The rear bumper of a peer at the near end of what is certain of it, and the bound.
+    pub fn near_rear(&self, index: usize, at: Instant) -> Option<(Position, Bound)> {
+        let bound = self.bound(index, at)?;
+        Some((bound.lowest_position().ahead(self.peers.length_of(index).negated()), bound))
+    }
+
+    /// The rear of a peer at its near end, behind which the ego has to stay.
+    pub fn obstacle(&self, now: Instant, index: usize) -> Option<Obstacle> {
+        let reach = self.peers.get(index)?.reach();
+        Some(Obstacle::rear(&self.bound(index, now)?, self.peers.length_of(index), &reach))
+    }
+
+    /// Whether a peer was heard within the time for which its estimate is driven by.
+    pub fn is_in_reach(&self, index: usize, at: Instant) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+        silence.is_some_and(|silence| silence <= self.config.link.holdover)
+    }
+
+    /// A peer in the order.
+    pub fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
+        let station = self.peers.get(index).and_then(Track::station)?;
+        Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
+    }
+
+    /// The standstill distance behind the vehicle that the ego follows.
+    pub fn standstill(&self) -> Distance {
+        let target = self.coordination.choice().target.map(usize::from);
+        target.map_or(self.config.law.standstill, |index| self.standstill_at(self.coordination.next(), index))
+    }
+
+    /// The standstill distance behind a peer with that crossing next.
+    pub fn standstill_at(&self, next: usize, index: usize) -> Distance {
+        let law = self.config.law.standstill;
+        let Some(itinerary) = self.coordination.itinerary() else { return law };
+        let law = law.plus(QUEUE);
+        match (itinerary.crossings.get(next), self.coordination.standing(index)) {
+            (Some(crossing), Some(standing)) if standing.crossing == next => {
+                standstill_behind(law, crossing, standing.leg)
+            }
+            _ => law,
+        }
+    }
+
+    /// Where the next conflict area begins.
+    pub fn area_begins(&self) -> Option<Position> {
+        let crossing = self.coordination.crossing()?;
+        Some(self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half.negated()))
+    }
+}

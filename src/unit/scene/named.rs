@@ -1,0 +1,68 @@
+//! Whom the driver has put ahead: the driver's choice enters at every tick; where that vehicle is for certain leaves, even after
+//! another station has taken over its slot.
+//!
+//! A name that nobody has been heard by says nothing of where that vehicle is. So the one that was ahead before is minded until the
+//! new one is heard, or until the driver says that nobody is ahead.
+
+use super::Scene;
+use crate::envelope::Obstacle;
+use crate::model::bound::{AccelerationRange, Bound};
+use crate::time::Instant;
+use crate::units::Distance;
+use crate::wire::Predecessor;
+
+/// What is certain of a vehicle that has no slot any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::unit) struct Displaced {
+    bound: Bound,
+    reach: AccelerationRange,
+    length: Distance,
+}
+
+/// Whom the driver has put ahead.
+#[derive(Clone, Copy, Debug)]
+#[repr(u32)] // a tag of its own, of which nobody is zero, as in [`crate::held`]
+pub(in crate::unit) enum Named {
+    /// Nobody, as far as is known.
+    Nobody = 0,
+    /// The vehicle in this slot, which was heard of since it was named.
+    InSlot(u8),
+    /// The vehicle that was in it, once another station has its slot.
+    Displaced(Displaced),
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// Takes note of whom the driver has put ahead.
+    pub fn note_named(&mut self, target: Option<usize>) {
+        match target {
+            Some(index) => self.named = u8::try_from(index).map_or(Named::Nobody, Named::InSlot),
+            None if self.predecessor() == Predecessor::None => self.named = Named::Nobody,
+            None => {}
+        }
+    }
+
+    /// Keeps what is certain of the vehicle that the driver has put ahead, where it loses its slot: it is still there.
+    pub(super) fn displace(&mut self, index: usize) {
+        if !matches!(self.named, Named::InSlot(slot) if usize::from(slot) == index) {
+            return;
+        }
+        let certain = self.peers.get(index).and_then(|track| {
+            Some(Displaced { bound: *track.certainty().bound()?, reach: track.reach(), length: track.length() })
+        });
+        self.named = certain.map_or(Named::Nobody, Named::Displaced);
+    }
+
+    /// The rear of the vehicle that the driver has put ahead, at its near end, unless the range sensor sees that it is not there.
+    pub fn named_ahead(&self, now: Instant) -> Option<Obstacle> {
+        match &self.named {
+            Named::Nobody => None,
+            Named::InSlot(slot) => {
+                let index = usize::from(*slot);
+                if self.is_seen_past(index, now) { None } else { self.obstacle(now, index) }
+            }
+            Named::Displaced(Displaced { bound, reach, length }) => {
+                Some(Obstacle::rear(&bound.after(now, reach), *length, reach))
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Places on the globe and on routes: those of the ego and of its peers enter; where each of them is on the ego's axis, and what
+//! it says of its way through an intersection, is known from then on. The axis is that of [`crate::coordination`].
+
+use super::Scene;
+use crate::coordination::{Arrival, Axis, Crossing, PeerApproach};
+use crate::health::Cause;
+use crate::parameters::{DEFAULT_LENGTH, REACH};
+use crate::time::{Duration, Instant, Stamp};
+use crate::units::Distance;
+use crate::wire::geo::GeoPosition;
+use crate::wire::route::Route;
+use crate::wire::{Predecessor, Slot};
+
+/// A peer that told its route less than this ago is not placed by the globe.
+const SAYS_MORE: Duration = Duration::from_millis(2_000);
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// Takes in where the ego is on the globe.
+    pub(super) fn take_ego_place(&mut self, at: Instant, geo: &GeoPosition) -> Result<(), Cause> {
+        let (Some(itinerary), Some(ego)) = (self.coordination.itinerary(), self.ego.as_ref()) else { return Ok(()) };
+        let since = self.instant_of(geo.stamp, at).unwrap_or(at).since(ego.at);
+        if since.as_micros().unsigned_abs() > self.config.link.ego_timeout.as_micros().unsigned_abs() {
+            return Err(Cause::Stale);
+        }
+        let place = itinerary.path.place(geo).ok_or(Cause::OffRoute)?;
+        self.coordination.locate(ego.position.ahead(ego.speed.over(since.seconds())), place.along);
+        Ok(())
+    }
+
+    /// A peer's axis is this one from now on, and moved so far by that.
+    pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>) {
+        let before = self.coordination.standing(index).copied();
+        if let Some(held) = self.coordination.axis_mut(index) {
+            *held = axis;
+        }
+        self.move_axis(index, moved);
+        self.note_moving_on(index, before);
+    }
+
+    /// Takes in what a peer says of its way to a crossing point.
+    pub(super) fn take_peer_route(&mut self, at: Instant, slot: Slot, route: &Route) {
+        let Some((place, crossing)) = self.coordination.itinerary().and_then(|way| way.find(route.intersection)) else {
+            return self.leave(at, slot);
+        };
+        let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
+        let standing = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
+        self.take_standing(slot, route.stamp, crossing, route.distance, standing);
+    }
+
+    /// Takes in where a peer is on the globe, unless it says more than that.
+    pub(super) fn take_peer_place(&mut self, at: Instant, slot: Slot, geo: &GeoPosition) {
+        let index = usize::from(slot.0);
+        let says_more = |standing: &PeerApproach| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
+        if self.coordination.itinerary().is_none() || self.coordination.standing(index).is_some_and(says_more) {
+            return;
+        }
+        let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(at, slot) };
+        let standing =
+            PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
+        self.take_standing(slot, geo.stamp, crossing, distance, standing);
+    }
+
+    /// The crossing of the ego's way that a vehicle at this place comes to next, and its leg and way there.
+    fn approached(&self, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
+        let mut next: Option<(usize, &'static Crossing, u8, Distance)> = None;
+        for (place, crossing) in self.coordination.itinerary()?.crossings.iter().enumerate() {
+            let intersection = crossing.intersection;
+            for approach in intersection.approaches {
+                let Some(found) = approach.path.place(geo) else { continue };
+                let distance = approach.crossing.ahead_of(found.along);
+                let has_left = distance < intersection.half.plus(DEFAULT_LENGTH).negated();
+                if !has_left && next.is_none_or(|(.., nearest)| distance < nearest) {
+                    next = Some((place, crossing, approach.leg, distance));
+                }
+            }
+        }
+        next
+    }
+
+    fn take_standing(
+        &mut self,
+        slot: Slot,
+        stamp: Stamp,
+        crossing: &Crossing,
+        distance: Distance,
+        standing: PeerApproach,
+    ) {
+        let index = usize::from(slot.0);
+        let Some(point) = self.coordination.crossing_point(crossing) else { return };
+        let before = self.coordination.standing(index).copied();
+        let Some(axis) = self.coordination.axis_mut(index) else { return };
+        let moved = axis.place(stamp, point, distance, standing);
+        self.move_axis(index, moved);
+        self.note_moving_on(index, before);
+    }
+
+    /// A peer that moves on to another intersection, on its way against the ego's, is far behind at once: until the next review
+    /// the ego would follow it there.
+    fn note_moving_on(&mut self, index: usize, before: Option<PeerApproach>) {
+        let now = self.coordination.standing(index);
+        if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
+            self.coordination.review_at_once();
+        }
+    }
+
+    fn leave(&mut self, at: Instant, slot: Slot) {
+        if self.may_be_of_another(at, slot.0.into()) {
+            return;
+        }
+        if let Some(axis) = self.coordination.axis_mut(slot.0.into()) {
+            axis.leave();
+        }
+    }
+
+    /// Everything that is held of a peer moves with its axis.
+    fn move_axis(&mut self, index: usize, moved: Option<Distance>) {
+        let (Some(moved), Some(track)) = (moved, self.peers.get_index_mut(index)) else { return };
+        if moved.magnitude() > REACH {
+            track.restart();
+            self.estimator.forget(index);
+            self.coordination.forget_lane(index);
+        } else {
+            track.shift(moved);
+            self.estimator.shift(index, moved);
+        }
+    }
+}
