@@ -379,29 +379,21 @@ mod tests {
             for part in 0..parts {
                 let mut taken = 0u64;
                 for field in line.fields.iter().filter(|f| !matches!(f.place, Place::Part(of) if of != part)) {
-                    assert!(
-                        field.start >= FIRST_BIT && field.start + field.length <= 64,
-                        "{} {}",
-                        line.name,
-                        field.name
-                    );
+                    let what = format!("{} {}", line.name, field.name);
+                    assert!(field.start >= FIRST_BIT && field.start + field.length <= 64, "{what}");
                     let bits = ((1u64 << field.length) - 1) << field.start;
-                    assert_eq!(taken & bits, 0, "{} {}", line.name, field.name);
+                    assert_eq!(taken & bits, 0, "{what}");
                     taken |= bits;
                 }
             }
             for field in line.fields {
+                let what = format!("{} {}", line.name, field.name);
                 let same = line.fields.iter().filter(|other| other.name == field.name).count();
-                assert!(
-                    same == 1 || line.content == Content::Said(Ego, DrivingParameters),
-                    "{} {}",
-                    line.name,
-                    field.name
-                );
+                assert!(same == 1 || line.content == Content::Said(Ego, DrivingParameters), "{what}");
                 for raw in [Some(field.min), Some(field.max), field.none].into_iter().flatten() {
-                    assert_eq!(field.raw(field.with_raw(Payload::EMPTY, raw)), raw, "{} {}", line.name, field.name);
+                    assert_eq!(field.raw(field.with_raw(Payload::EMPTY, raw)), raw, "{what}");
                 }
-                assert!(field.values.iter().all(|(raw, _)| field.accepts(*raw)), "{} {}", line.name, field.name);
+                assert!(field.values.iter().all(|(raw, _)| field.accepts(*raw)), "{what}");
             }
         }
     }

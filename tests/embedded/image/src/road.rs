@@ -5,8 +5,8 @@ use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
 use holdover::wire::driver_request::DriverRequest;
-use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
+use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -48,7 +48,8 @@ impl Road {
     /// The ego's own motion and the driver's request.
     pub fn ego(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
         let predecessor = Predecessor::Station(StationHash(self.peers - 1));
-        let request = DriverRequest { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
+        let request =
+            DriverRequest { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
         self.say(&Message::DriverRequest(request), hear);
         let motion = self.motion(at, self.peers, EGO);
         self.say(&Message::Ego(Said::Motion(motion)), hear);
