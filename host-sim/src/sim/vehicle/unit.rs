@@ -27,10 +27,10 @@ impl Unit {
         Ok(unit)
     }
 
-    /// The room comes first and the value is written into it, so that it need not lie on the stack meanwhile.
+    /// The room comes first and the value, a constant, is copied into it, so that it need not lie on the stack meanwhile.
     #[inline(never)] // if it lies there after all, then not in the caller's frame
     fn idle() -> Self {
-        Self(Box::write(Box::new_uninit(), Core::idle()))
+        Self(Box::write(Box::new_uninit(), const { Core::idle() }))
     }
 }
 
