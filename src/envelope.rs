@@ -133,23 +133,11 @@ pub struct Situation {
     pub spare: Spare,
 }
 
-/// The gate: the command that the demand becomes.
+/// The gate: the command that the demand becomes. `since` is the age of the last command: it is more than a period where ticks were
+/// missed. Downward the command changes by no more than the limit on jerk allows in that time, of which a period and the envelope's
+/// delay count. With a period alone, ticks that are missed again and again would slow down the ramp of emergency braking each time.
 #[must_use]
 pub fn gate(
-    envelope: &Envelope,
-    demand: Acceleration,
-    ego: &Ego,
-    situation: &Situation,
-    period: Duration,
-) -> Acceleration {
-    gate_after(envelope, demand, ego, situation, period, period)
-}
-
-/// The gate when the last command is older than a period, as ticks were missed: no farther from it downward than the limit on jerk
-/// allows in that time. With a period's worth alone, ticks that are missed again and again would slow down the ramp of emergency
-/// braking each time, where what is kept free is for one delay.
-#[must_use]
-pub fn gate_after(
     envelope: &Envelope,
     demand: Acceleration,
     ego: &Ego,

@@ -45,7 +45,7 @@ fn is_safe(limits: &Envelope, ego: &Ego, stop_before: f64) -> bool {
 /// The gate behind one obstacle.
 fn gated(limits: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Acceleration {
     let situation = Situation { is_fresh: true, spare: envelope::spare(limits, ego, obstacle) };
-    envelope::gate(limits, Acceleration::MAX, ego, &situation, PERIOD)
+    envelope::gate(limits, Acceleration::MAX, ego, &situation, PERIOD, PERIOD)
 }
 
 /// The nearest point ahead, margin included, that is safe to have to stop before.

@@ -59,7 +59,7 @@ fn what_is_safe_is_safe_after_a_tick_of_the_gates_command() {
         let ego = told(&plant, last, 0.0);
         let before = (plant, ahead);
         let situation = Situation { is_fresh: true, spare: envelope::spare(&limits, &ego, &rear(&ahead, braking)) };
-        let command = envelope::gate(&limits, mps2(random.extreme(-10.0, 5.0)), &ego, &situation, PERIOD);
+        let command = envelope::gate(&limits, mps2(random.extreme(-10.0, 5.0)), &ego, &situation, PERIOD, PERIOD);
         for _ in 0..10 {
             plant.drive(mps2_of(command), 1e-3);
         }

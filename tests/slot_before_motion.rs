@@ -57,7 +57,7 @@ fn least_gap(road: &mut Road, seconds: f64) -> f64 {
 }
 
 #[test]
-fn the_next_stations_intent_does_not_shorten_who_has_fallen_silent() {
+fn the_next_stations_parameters_do_not_shorten_who_has_fallen_silent() {
     for is_named in [false, true] {
         let mut road = behind_a_lorry();
         let now = road.now;

@@ -175,9 +175,9 @@ proptest! {
     }
 
     #[test]
-    fn intents_in_a_row_carry_tags_that_differ(parameter_messages in proptest::collection::vec(parameters(), 5)) {
+    fn driving_parameters_in_a_row_carry_tags_that_differ(messages in proptest::collection::vec(parameters(), 5)) {
         let mut sender = Sender::<0>::new(BASE);
-        let tags: Vec<_> = parameter_messages
+        let tags: Vec<_> = messages
             .iter()
             .map(|parameters| {
                 let frames = frames_of(&mut sender, &Message::Own(Said::DrivingParameters(*parameters)));

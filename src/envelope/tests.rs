@@ -35,7 +35,7 @@ fn around(mm: i32) -> impl Iterator<Item = i32> {
 fn nothing_beyond_the_absolute_limits_gets_out() {
     for desired in around(2000).chain(around(-6000)).map(Acceleration::from_mm_per_s2) {
         for last in around(2000).chain(around(-6000)).filter(|last| (-6000..=2000).contains(last)) {
-            let out = gate(&LIMITS, desired, &ego(0, 0, last), &FREE, PERIOD);
+            let out = gate(&LIMITS, desired, &ego(0, 0, last), &FREE, PERIOD, PERIOD);
             assert!(out <= LIMITS.acceleration && out >= LIMITS.braking.negated(), "{desired:?} {last:?}");
         }
     }
@@ -44,7 +44,8 @@ fn nothing_beyond_the_absolute_limits_gets_out() {
 #[test]
 fn no_change_is_faster_than_the_limit_on_jerk() {
     for desired in around(100).chain(around(-100)) {
-        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(0, 0, 0), &FREE, PERIOD).to_mm_per_s2();
+        let out =
+            gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(0, 0, 0), &FREE, PERIOD, PERIOD).to_mm_per_s2();
         assert_eq!(out, desired.clamp(-100, 100));
     }
 }
@@ -61,7 +62,7 @@ fn at_the_speed_limit_nothing_accelerates() {
 fn a_stale_ego_does_not_accelerate() {
     let stale = Situation { is_fresh: false, ..FREE };
     for desired in around(0) {
-        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(10_000, 0, 0), &stale, PERIOD);
+        let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego(10_000, 0, 0), &stale, PERIOD, PERIOD);
         assert_eq!(out.to_mm_per_s2(), desired.clamp(-100, 0));
     }
 }
@@ -73,7 +74,7 @@ fn the_gate_only_ever_makes_a_demand_more_careful() {
             let ego = ego(15_000, 0, desired.clamp(-6000, 2000));
             let spare = spare(&LIMITS, &ego, &Obstacle::standing(Position::from_mm(room)));
             let situation = Situation { is_fresh: true, spare };
-            let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego, &situation, PERIOD);
+            let out = gate(&LIMITS, Acceleration::from_mm_per_s2(desired), &ego, &situation, PERIOD, PERIOD);
             assert!(out.to_mm_per_s2() <= desired || desired < -6000, "{desired} {room} {out:?}");
         }
     }

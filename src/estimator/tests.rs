@@ -167,7 +167,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     let track = peers.get_mut(crate::wire::Slot(1)).unwrap();
     let braking = Sample { station: StationHash(2), ..sample(0, 10_000, -1_500) };
     track.admit(braking, Certainty::NONE, Belief::Agrees);
-    track.intend(
+    track.publish(
         GRID.origin,
         DrivingParameters { predecessor: Predecessor::Station(StationHash(77)), ..leader() },
         Duration::from_millis(10_000),
@@ -201,7 +201,7 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
         for (slot, sample, parameters) in [(front, front_sample, stands), (back, back_sample, follower())] {
             let track = peers.get_mut(crate::wire::Slot(slot)).unwrap();
             track.admit(sample, Certainty::NONE, Belief::Agrees);
-            track.intend(GRID.origin, parameters, Duration::from_millis(10_000));
+            track.publish(GRID.origin, parameters, Duration::from_millis(10_000));
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);

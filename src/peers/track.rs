@@ -35,7 +35,7 @@ pub struct Track<const SAMPLES: usize> {
     certainty: Certainty,
     parameters: Held<DrivingParameters>,
     /// When that was received last.
-    intended: Instant,
+    published_at: Instant,
     limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
     link: Link,
@@ -51,7 +51,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             samples: Vec::new(),
             certainty: Certainty::NONE,
             parameters: Held::Nothing,
-            intended: Instant::ZERO,
+            published_at: Instant::ZERO,
             limits: Held::Nothing,
             knots: None,
             link: Link::new(period),
@@ -131,7 +131,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// Takes over what the same station said of how it drives in the slot in which it was before.
     pub fn follow_on(&mut self, before: &Self) {
         if self.parameters.as_ref().is_none() {
-            (self.parameters, self.intended, self.limits) = (before.parameters, before.intended, before.limits);
+            (self.parameters, self.published_at, self.limits) = (before.parameters, before.published_at, before.limits);
         }
     }
 
@@ -139,7 +139,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// it need not be of whom a motion names now.
     #[must_use]
     pub fn is_of_another(&self, at: Instant, slot_reuse: Duration) -> bool {
-        let is_old = at.since(self.intended) >= slot_reuse;
+        let is_old = at.since(self.published_at) >= slot_reuse;
         self.station().is_none() && self.parameters.as_ref().is_some() && is_old
     }
 
@@ -147,7 +147,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// longer than what is taken for a vehicle that does not say its own: it may be this one's all the same.
     pub fn begin(&mut self) {
         let said = self.parameters.get().filter(|parameters| parameters.length > DEFAULT_LENGTH);
-        *self = Self { parameters: said.into(), intended: self.intended, ..Self::new(self.link.period()) };
+        *self = Self { parameters: said.into(), published_at: self.published_at, ..Self::new(self.link.period()) };
     }
 
     /// What it said of how it drives.
@@ -280,7 +280,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Takes in what the station says of how it drives, received at `at`; whether that is new. Nothing that is older than `stale`
     /// comes after it.
-    pub fn intend(&mut self, at: Instant, parameters: DrivingParameters, stale: Duration) -> bool {
+    pub fn publish(&mut self, at: Instant, parameters: DrivingParameters, stale: Duration) -> bool {
         let published = AccelerationRange::published(&parameters.limits);
         let limits = match self.limits.get() {
             Some(held) => held.publish(at, published, stale),
@@ -288,7 +288,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         };
         self.limits.set(limits);
         self.certainty.settle(&limits);
-        self.intended = at;
+        self.published_at = at;
         let is_new = self.parameters.as_ref() != Some(&parameters);
         self.parameters.set(parameters);
         is_new

@@ -74,7 +74,7 @@ impl Gate {
         let seen = view.obstacles_seen().map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: scene.fresh_ego(now).is_some(), spare };
-        let command = envelope::gate_after(limits, demand, &ego, &situation, scene.config.period, last.age);
+        let command = envelope::gate(limits, demand, &ego, &situation, scene.config.period, last.age);
         (envelope::encodable(limits, command), command != demand)
     }
 }

@@ -24,7 +24,7 @@ use crate::wire::route::Route;
 use crate::wire::status::Status;
 use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
 
-/// How many own motions go by from one driving parameters to the next.
+/// How many own motions go by from one message of the driving parameters to the next.
 const PARAMETERS_EVERY: u8 = 5;
 /// How often the driving parameters are sent at once when they change: a receiver that hears the first message of an identifier trusts it
 /// from the second one on.
@@ -88,7 +88,7 @@ impl Outbox {
     }
 
     /// Whether the driving parameters are due: they have changed, or their turn has come.
-    fn is_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
+    fn are_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
         if self.parameters != Held::Value(parameters) {
             self.at_once = PARAMETERS_AT_ONCE;
         }
@@ -175,7 +175,7 @@ impl Outbox {
         }
         if report.mode != Mode::Standby {
             let parameters = parameters(scene, report);
-            if self.is_parameters_due(parameters) {
+            if self.are_parameters_due(parameters) {
                 self.emit(&Message::Own(Said::DrivingParameters(parameters)), health, frames);
             }
         }

@@ -115,16 +115,18 @@ impl Chase {
     /// The least gap on the way from there to rest; less than 0 is a collision.
     pub fn run(&self, gap: f64) -> f64 {
         let (mut plant, mut ahead) = self.begins(gap);
-        let mut last = mps2(self.own.2);
+        let (mut last, mut since) = (mps2(self.own.2), Duration::ZERO);
         let mut under_way = std::collections::VecDeque::from(vec![last; self.late]);
         let (mut least, mut still) = (gap, 0);
         for tick in 0..12_000 {
             let is_missed = (self.missed.0..self.missed.0 + self.missed.1).contains(&tick);
+            since = since.plus(PERIOD);
             if !is_missed {
                 let ego = self.told(&plant, last);
                 let spare = envelope::spare(&self.limits, &ego, &self.rear(&ahead));
                 let situation = Situation { is_fresh: true, spare };
-                last = envelope::gate(&self.limits, Acceleration::MAX, &ego, &situation, PERIOD);
+                last = envelope::gate(&self.limits, Acceleration::MAX, &ego, &situation, PERIOD, since);
+                since = Duration::ZERO;
             }
             under_way.push_back(last);
             let command = under_way.pop_front().unwrap_or(last);

@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn an_intent_keeps_its_numbers_and_tells_a_leader_from_a_silent_one() {
+    fn driving_parameters_keep_their_numbers_and_tell_a_leader_from_a_silent_one() {
         let parameters = |predecessor| DrivingParameters {
             length: Distance::from_bits(9 << 19),
             standstill: Distance::from_bits(2 << 20),

@@ -21,18 +21,18 @@ use crate::sim::world::{Measured, World};
 /// The listener.
 pub struct Observer {
     receiver: Receiver<PEERS>,
-    parameter_messages: BTreeMap<u8, HeardParameters>,
+    parameters: BTreeMap<u8, HeardParameters>,
 }
 
 impl Observer {
     /// On a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { receiver: Receiver::new(base, Role::Unit), parameter_messages: BTreeMap::new() }
+        Self { receiver: Receiver::new(base, Role::Unit), parameters: BTreeMap::new() }
     }
 
-    /// Takes in a frame that was on the bus at `at_s`; a motion that it completes, with the latest driving parameters from the same slot. `near` is a position to
-    /// unwrap positions near.
+    /// Takes in a frame that was on the bus at `at_s`. Gives a motion that it completes, with the latest driving parameters from the
+    /// same slot. `near` is a position to unwrap positions near.
     pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
         let at = Instant::from_micros(gnss(at_s).as_micros()); // which has no times before its start
         match self.receiver.receive(at, frame) {
@@ -41,7 +41,7 @@ impl Observer {
                     Predecessor::Station(station) => index_of(station),
                     Predecessor::None | Predecessor::Unknown => None,
                 };
-                self.parameter_messages.insert(slot.0, HeardParameters::from_parameters(&parameters, predecessor));
+                self.parameters.insert(slot.0, HeardParameters::from_parameters(&parameters, predecessor));
                 None
             }
             Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
@@ -50,7 +50,7 @@ impl Observer {
                 let vehicle = index_of(motion.station)?;
                 let position = motion.position.nearest_to(near);
                 let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, &motion);
-                Some(match self.parameter_messages.get(&slot.0) {
+                Some(match self.parameters.get(&slot.0) {
                     Some(parameters) => heard.with_parameters(*parameters),
                     None => heard,
                 })

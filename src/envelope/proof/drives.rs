@@ -79,14 +79,15 @@ fn drive(case: &Case, course: &Course) -> f64 {
         rear: case.obstacle.position.get().to_num(),
         other: case.obstacle.speed.get().to_num(),
     };
-    let (mut last, mut least, mut now) = (case.ego.last, f64::MAX, 0.0);
+    let (mut last, mut since, mut least, mut now) = (case.ego.last, case.period, f64::MAX, 0.0);
     let margin = margin.min(world.rear);
     let ramp = (3.0 + number(case.limits.braking)) / case.limits.jerk.get().to_num::<f64>();
     let between = ((ramp + 1.0) / period) as u32;
     for tick in 0..6_000 {
         let (ego, obstacle) = world.known(case, last);
         let spare = spare(&case.limits, &ego, &obstacle);
-        let out = gate(&case.limits, Acceleration::MAX, &ego, &Situation { is_fresh: true, spare }, case.period);
+        let situation = Situation { is_fresh: true, spare };
+        let out = gate(&case.limits, Acceleration::MAX, &ego, &situation, case.period, since);
         let told = encodable(&case.limits, out);
         let missed = if tick % between == between / 2 { course.missed } else { 0 };
         let lasts = period * f64::from(1 + missed);
@@ -100,7 +101,7 @@ fn drive(case: &Case, course: &Course) -> f64 {
                 least = least.min(world.rear - world.way - margin);
             }
         }
-        last = told;
+        (last, since) = (told, case.period.times(i64::from(1 + missed)));
         if world.speed == 0.0 && world.other == 0.0 && told <= Acceleration::ZERO {
             break;
         }

@@ -114,7 +114,7 @@ impl Case {
     pub fn command(&self) -> (Acceleration, bool) {
         let spare = spare(&self.limits, &self.ego, &self.obstacle);
         let situation = Situation { is_fresh: true, spare };
-        let out = gate(&self.limits, Acceleration::MAX, &self.ego, &situation, self.period);
+        let out = gate(&self.limits, Acceleration::MAX, &self.ego, &situation, self.period, self.period);
         let is_capped =
             distance_cap(&self.limits, spare, self.period) >= floor(&self.limits, self.ego.last, self.period);
         (encodable(&self.limits, out), is_capped)

@@ -65,7 +65,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 let track = self.peers.get_mut(slot)?;
                 // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
                 let is_young = track.newest().is_some_and(|newest| at.since(newest.at) <= self.config.link.stale);
-                if track.intend(at, *parameters, self.config.link.stale) {
+                if track.publish(at, *parameters, self.config.link.stale) {
                     self.estimator.note_change(&self.peers);
                     if is_young {
                         self.estimator.note_news(index);

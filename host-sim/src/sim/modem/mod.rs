@@ -177,7 +177,8 @@ impl Relay {
         // The unit puts positions on its own axis by the route, so that has to be there first.
         let mut said: Vec<Said> = message.route.map(Said::Route).into_iter().collect();
         said.push(Said::Motion(message.motion));
-        if let Some(parameters) = message.parameters.filter(|parameters| self.is_parameters_due(slot, parameters, at_s))
+        if let Some(parameters) =
+            message.parameters.filter(|parameters| self.are_parameters_due(slot, parameters, at_s))
         {
             said.push(Said::DrivingParameters(parameters));
         }
@@ -325,7 +326,7 @@ impl Relay {
         None
     }
 
-    fn is_parameters_due(&mut self, slot: usize, parameters: &DrivingParameters, at_s: f64) -> bool {
+    fn are_parameters_due(&mut self, slot: usize, parameters: &DrivingParameters, at_s: f64) -> bool {
         let is_on_route = self.course.is_on_route();
         let Some(tenant) = &mut self.slots[slot] else { return false };
         let is_due = is_on_route && tenant.parameter_messages < FIRST_PARAMETERS

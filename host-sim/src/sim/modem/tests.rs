@@ -116,7 +116,7 @@ fn whom_the_driver_told_it_to_follow_has_a_slot_kept_while_the_unit_names_nobody
 }
 
 #[test]
-fn an_intent_is_relayed_when_it_changes_and_otherwise_twice_a_second() {
+fn driving_parameters_are_relayed_when_they_change_and_otherwise_twice_a_second() {
     let mut unit = Unit::new();
     assert_eq!(unit.hear(0.0, &message(3, Some(parameters(11_000)))).1, 1);
     for tenth in 1..5 {

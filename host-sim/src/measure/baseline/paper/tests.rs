@@ -38,7 +38,7 @@ fn a_message_is_read_at_the_next_multiple_of_the_step_and_at_the_multiple_itself
 }
 
 #[test]
-fn without_intent_the_target_speed_is_13_4() {
+fn without_driving_parameters_the_target_speed_is_13_4() {
     let mut paper = Paper::new(0, STEP_S);
     paper.hear(&message(0.0, 0.0, 0, 0.0, 13.4));
     let at_end = paper.estimate(5.0).unwrap();
