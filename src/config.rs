@@ -45,6 +45,9 @@ pub struct Law {
     pub free_road_acceleration: Acceleration,
     /// Speed wanted on a free road until `DriverRequest` says otherwise, `v_∞`.
     pub target_speed: Speed,
+    /// Share by which the ego may exceed that speed to catch up with the vehicle that it follows; 0 to 0.75 by 0.05, as it is
+    /// published. At 0 the speed is a cap.
+    pub catch_up: Fraction,
     /// Speed never demanded beyond.
     pub max_speed: Speed,
 }
@@ -70,6 +73,8 @@ pub struct Link {
     pub holdover: Duration,
     /// Age up to which the ego's own motion is usable.
     pub ego_timeout: Duration,
+    /// Age up to which the driver's request holds.
+    pub request_timeout: Duration,
     /// Age up to which a synchronisation holds.
     pub sync_timeout: Duration,
     /// Delay assumed while there is no synchronisation.
@@ -165,6 +170,7 @@ impl Config {
             damping: Seconds::ZERO,
             free_road_acceleration: Acceleration::ZERO,
             target_speed: Speed::ZERO,
+            catch_up: Fraction::ZERO,
             max_speed: Speed::ZERO,
         },
         prediction: Prediction { step: Duration::ZERO, horizon: Duration::ZERO, model: Model::PAPER },
@@ -177,6 +183,7 @@ impl Config {
             slot_reuse: Duration::ZERO,
             holdover: Duration::ZERO,
             ego_timeout: Duration::ZERO,
+            request_timeout: Duration::ZERO,
             sync_timeout: Duration::ZERO,
             assumed_delay: Duration::ZERO,
         },
@@ -209,6 +216,7 @@ impl Config {
                 damping: parameters::DAMPING,
                 free_road_acceleration: parameters::FREE_ROAD_ACCELERATION,
                 target_speed: Speed::from_mm_per_s(13_400),
+                catch_up: Fraction::ZERO,
                 max_speed: Speed::from_mm_per_s(50_000),
             },
             prediction: Prediction {
@@ -225,6 +233,7 @@ impl Config {
                 slot_reuse: Duration::from_millis(2000),
                 holdover: Duration::from_millis(15_000),
                 ego_timeout: Duration::from_millis(50),
+                request_timeout: Duration::from_millis(300),
                 sync_timeout: Duration::from_millis(5000),
                 assumed_delay: Duration::from_millis(40),
             },

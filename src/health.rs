@@ -73,6 +73,10 @@ pub enum Cause {
     RangeDisagrees = 30,
     /// A horizon that its sender cannot drive, by all that is certain of it: it is not used.
     Unreachable = 31,
+    /// Not a refusal: the driver's request stopped coming while the unit drove, once for each time. The unit hands back.
+    RequestLost = 32,
+    /// Not a refusal: an `EgoMotion` of another station than the unit is configured for.
+    EgoStation = 33,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -108,7 +112,7 @@ impl Incident {
 
 impl Cause {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 34] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -141,6 +145,8 @@ impl Cause {
         Self::PeerClock,
         Self::RangeDisagrees,
         Self::Unreachable,
+        Self::RequestLost,
+        Self::EgoStation,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -179,14 +185,22 @@ impl Cause {
             Self::PeerClock => "peer_clock",
             Self::RangeDisagrees => "range_disagrees",
             Self::Unreachable => "unreachable",
+            Self::RequestLost => "request_lost",
+            Self::EgoStation => "ego_station",
         }
     }
 }
 
 /// How often each cause has been met since start; each count stops at its maximum.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Health {
     counts: [u32; Cause::ALL.len()],
+}
+
+impl Default for Health {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Health {

@@ -38,6 +38,11 @@ pub const REACH: Distance = Distance::from_mm(1_500_000);
 /// Oldest stamp that any configuration may use.
 pub const STALE_MAX: Duration = Duration::from_millis(10_000);
 
+/// An accuracy says that 95 % of the errors are below it, as in the messages of V2X. What is certain rests on errors of up to so many
+/// times as much: 5.9 standard deviations of normal errors, which one in 2.4e8 exceeds. Errors of one sign in a row (a bias) within it
+/// are inside as well, because no number of samples makes the bound narrower than one of them allows.
+pub const ACCURACY_FACTOR: u8 = 3;
+
 /// Position accuracy taken where none is published: what satellite positioning without correction keeps to.
 pub const UNPUBLISHED_POSITION_ACCURACY: Distance = Distance::from_mm(5_000);
 /// Speed accuracy taken where none is published.

@@ -223,7 +223,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// Decides the mode and the gains. After a silence the controller is led from the old reading to the new one.
     fn decide(&mut self, now: Instant, target: Option<usize>, before: Option<Reading>, reading: Option<Reading>) {
         let facts = course::facts(&self.scene, now, target, reading.is_some());
+        let before_mode = self.mode;
         self.mode = self.mode.next(&facts, now);
+        if self.mode.hands_back() && !before_mode.hands_back() {
+            self.health.count(Cause::RequestLost);
+        }
         if let (Mode::Cooperative, Some(before), Some(after)) = (self.mode, before, reading)
             && self.scene.config.prediction.model.smooth
         {

@@ -16,6 +16,9 @@ fn reachable(body: Body, error: (f64, f64), limits: (f64, f64), age: f64) -> (f6
     (far.position - near.position, far.speed - near.speed)
 }
 
+/// The largest error in accuracies.
+const LARGEST: f64 = 3.0;
+
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
@@ -38,13 +41,16 @@ fn ratios(seed: u64) -> (Vec<f64>, Vec<f64>) {
         for tenth in 0..10 {
             let at = second * 2_000_000 + tenth * 100_000;
             rig.synchronise(at, 0);
-            let said =
-                (body.position + random.extreme(-error.0, error.0), body.speed + random.extreme(-error.1, error.1));
+            let largest = (LARGEST * error.0, LARGEST * error.1);
+            let said = (
+                body.position + random.extreme(-largest.0, largest.0),
+                body.speed + random.extreme(-largest.1, largest.1),
+            );
             let motion = rig.motion(TARGET, at, said.0, said.1, 0.0, 0.0, Some(error));
             let _ = rig.target(at, Said::Motion(motion));
             if tenth == 9 && second > 0 {
                 let sample = Body { position: said.0, speed: said.1.max(0.0) };
-                let (way, speed) = reachable(sample, error, limits, 1.0);
+                let (way, speed) = reachable(sample, largest, limits, 1.0);
                 let bound = rig.unit.bound(2, instant(at + 1_000_000)).unwrap();
                 ways.push((m_of(bound.highest_position()) - m_of(bound.lowest_position())) / way);
                 speeds.push((mps_of(bound.highest_speed()) - mps_of(bound.lowest_speed())) / speed);

@@ -100,16 +100,18 @@ struct Sent {
     motion: Said,
 }
 
-/// All messages of a case in the order of their arrival. Every error is within what is published.
+/// Errors are at most so many times what is published, below which 95 % of them are.
+const LARGEST: f64 = 3.0;
+
+/// All messages of a case in the order of their arrival.
 fn messages(random: &mut Random, rig: &mut Rig, case: &Case, truth: &Truth) -> Vec<Sent> {
-    let (position_error, speed_error) = case.accuracy.unwrap_or((5.0, 1.5));
     // Both clocks together keep to the limit, and the stamp's rounding takes its half step of it.
     let (mut at, mut sent) = (0, Vec::new());
     while at < case.lasts {
         let body = truth.at(at);
         let clock = random.extreme(-(case.clock_error as f64 - 52.0) / 2.0, (case.clock_error as f64 - 52.0) / 2.0);
-        let speed = (body.speed + random.extreme(-speed_error, speed_error)).clamp(0.0, TOP);
-        let position = body.position + random.extreme(-position_error, position_error);
+        let speed = (body.speed + error(random, case.accuracy.map(|(_, speed)| speed), 1.5)).clamp(0.0, TOP);
+        let position = body.position + error(random, case.accuracy.map(|(way, _)| way), 5.0);
         let mut motion = rig.motion(TARGET, at + clock as i64, position, speed, 0.0, 0.0, case.accuracy);
         motion.acceleration = rig::mps2(random.between(-1.0, 1.0) * case.limits.1);
         if !random.happens(case.loss) {

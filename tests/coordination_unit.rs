@@ -334,7 +334,7 @@ fn a_station_that_was_refused_in_a_free_slot_is_known_there_after_a_silence_in_i
         let _ = says(&mut junction, 2, 77, metres);
         junction.run(0.1, |_| {});
     }
-    let slot_of = |junction: &Junction| junction.drivers[0].rig.unit.peers().index_of(StationHash(77));
+    let slot_of = |junction: &Junction| junction.drivers[0].rig.unit.peers().named(StationHash(77)).next();
     assert_eq!(slot_of(&junction), Some(2));
     let _ = says(&mut junction, 3, 77, 88.5); // the first frame of an identifier is not trusted
     assert_eq!(says(&mut junction, 3, 77, 88.5), [Ok(()), Err(Cause::StationConflict)]);
@@ -363,6 +363,7 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let before = held(&junction);
     assert!(before.0 == Some(StationHash(77)) && before.1.is_some());
     // The one in slot 1 speaks in slot 2.
-    assert_eq!(says(&mut junction, 2, 2, 20.0), [Ok(()), Err(Cause::StationConflict)]);
+    let here = CROSSING - junction.drivers[1].body.position;
+    assert_eq!(says(&mut junction, 2, 2, here), [Ok(()), Err(Cause::StationConflict)]);
     assert_eq!(held(&junction), before);
 }

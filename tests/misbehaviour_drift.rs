@@ -47,8 +47,8 @@ fn a_drift_is_found_when_it_has_made_up_what_the_accuracies_leave() {
         (0.3, (0.05, 0.02)),
     ] {
         let after = f64::abs(drift) - hidden(accuracy.1);
-        // Twice the accuracy of the position, and at either end half a millisecond at 15 m/s.
-        let expected = 2.0 * (accuracy.0 + 0.5e-3 * 15.5) / after;
+        // Twice the largest error of the position, and at either end half a millisecond at 15 m/s and 0.3 s of the speed's accuracy.
+        let expected = 2.0 * (3.0 * accuracy.0 + 0.5e-3 * 15.5 + 0.3 * accuracy.1) / after;
         let found = found_after(drift, accuracy, 120).unwrap_or_else(|| panic!("{drift} {accuracy:?}"));
         assert!(found <= 1.3 * expected + 0.3, "{drift} {accuracy:?}: {found} s, not {expected} s");
         assert_eq!(found_after(drift.signum() * 0.95 * accuracy.1, accuracy, 120), None, "{accuracy:?}");

@@ -13,28 +13,29 @@ use rig::random::Random;
 use rig::road::{Road, Senses};
 use rig::{TARGET, config};
 
-/// Standby, Cooperative, Holdover, Fallback (not associated, never heard, silent, range), Fault (ego missing, ego stale).
-const STATES: [&str; 9] = ["S", "C", "H", "Fn", "Fh", "Fs", "Fr", "Xm", "Xs"];
+/// Standby, Cooperative, Holdover, Fallback (not associated, never heard, silent, range, request), Fault (ego missing, ego stale).
+const STATES: [&str; 10] = ["S", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq", "Xm", "Xs"];
 
 /// What the facts are, in the order of the columns.
-const FACTS: [&str; 10] = ["off", "Xm", "Xs", "leads", "on", "silent", "Fn", "Fh", "Fs", "Fr"];
+const FACTS: [&str; 11] = ["off", "Xm", "Xs", "leads", "on", "silent", "Fn", "Fh", "Fs", "Fr", "Fq"];
 
 /// State by state, and within a state that waits by how long it has, the next state by the facts.
-const NEXT: [(&str, &str, [&str; 10]); 14] = [
-    ("S", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("C", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("H", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fn", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fh", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fr", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fs", "not yet", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fs", "almost", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr"]),
-    ("Fs", "enough", ["S", "Xm", "Xs", "C", "C", "Fs", "Fn", "Fh", "Fs", "Fr"]),
-    ("Xm", "almost", ["S", "Xm", "Xs", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm"]),
-    ("Xm", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
-    ("Xs", "not yet", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
-    ("Xs", "almost", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
-    ("Xs", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr"]),
+const NEXT: [(&str, &str, [&str; 11]); 15] = [
+    ("S", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("C", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("H", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fn", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fh", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fr", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fq", "", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fs", "not yet", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fs", "almost", ["S", "Xm", "Xs", "C", "Fs", "Fs", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Fs", "enough", ["S", "Xm", "Xs", "C", "C", "Fs", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Xm", "almost", ["S", "Xm", "Xs", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm", "Xm"]),
+    ("Xm", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
+    ("Xs", "not yet", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
+    ("Xs", "almost", ["S", "Xm", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs", "Xs"]),
+    ("Xs", "enough", ["S", "Xm", "Xs", "C", "C", "H", "Fn", "Fh", "Fs", "Fr", "Fq"]),
 ];
 
 const NOW: Instant = Instant::from_micros(100_000_000);
@@ -50,8 +51,9 @@ fn name(code: ModeCode, detail: u8) -> &'static str {
         (ModeCode::Fallback, 2) => "Fh",
         (ModeCode::Fallback, 3) => "Fs",
         (ModeCode::Fallback, 4) => "Fr",
-        (ModeCode::Fault, 1) => "Xm",
-        (ModeCode::Fault, 2) => "Xs",
+        (ModeCode::Fallback, 5) => "Fq",
+        (ModeCode::Fault, 16) => "Xm",
+        (ModeCode::Fault, 17) => "Xs",
         other => panic!("no such mode: {other:?}"),
     }
 }
@@ -73,6 +75,7 @@ fn mode(state: &str, waited: &str) -> Mode {
         "Fh" => fallback(FallbackCause::NeverHeard),
         "Fs" => fallback(FallbackCause::Silent),
         "Fr" => fallback(FallbackCause::RangeDisagrees),
+        "Fq" => fallback(FallbackCause::RequestLost),
         "Xm" => fault(FaultCause::EgoMissing),
         _ => fault(FaultCause::EgoStale),
     }
@@ -90,6 +93,7 @@ fn facts(name: &str, target: TargetFact) -> Facts {
         "Fn" => Facts { target: TargetFact::Lost(FallbackCause::NotAssociated), ..fine },
         "Fh" => Facts { target: TargetFact::Lost(FallbackCause::NeverHeard), ..fine },
         "Fs" => Facts { target: TargetFact::Lost(FallbackCause::Silent), ..fine },
+        "Fq" => Facts { target: TargetFact::Lost(FallbackCause::RequestLost), ..fine },
         _ => Facts { target: TargetFact::Lost(FallbackCause::RangeDisagrees), ..fine },
     }
 }
@@ -104,6 +108,7 @@ fn every_state_goes_where_the_table_says_and_nowhere_else() {
         TargetFact::Lost(FallbackCause::NeverHeard),
         TargetFact::Lost(FallbackCause::Silent),
         TargetFact::Lost(FallbackCause::RangeDisagrees),
+        TargetFact::Lost(FallbackCause::RequestLost),
     ];
     for (state, waited, row) in NEXT {
         for (column, expected) in FACTS.iter().zip(row) {
@@ -143,12 +148,13 @@ fn walk(seed: u64, seen: &mut BTreeSet<(&'static str, &'static str)>) {
     let mut config = config();
     config.link.holdover = Duration::from_millis(700);
     let mut road = Road::new(&config, 0.0, 10.0);
-    road.senses = Senses { ego: random.happens(0.5), v2x: random.happens(0.5), range: false, clock: true };
+    road.senses = Senses { ego: random.happens(0.5), v2x: random.happens(0.5), range: false, clock: true, desk: true };
     road.engaged = random.happens(0.5);
     let mut before = "S";
     for _ in 0..60 {
         for _ in 0..=random.below(3) {
-            match random.below(6) {
+            match random.below(7) {
+                6 => road.senses.desk = random.happens(0.7),
                 0 => road.engaged = random.happens(0.8),
                 1 => road.senses.ego = random.happens(0.7),
                 2 => road.senses.v2x = random.happens(0.5),
@@ -187,8 +193,9 @@ fn from_outside_every_transition_happens_but_those_that_cannot() {
     for from in STATES {
         for to in STATES {
             // A vehicle whose motion has come once is never again one whose motion never came; and a silent target that
-            // was given up is not held over before it has been heard.
-            let is_possible = (to != "Xm" || from == "Xm" || from == "S") && (from, to) != ("Fs", "H");
+            // was given up is not held over before it has been heard. What engages the unit is a request.
+            let is_possible =
+                (to != "Xm" || from == "Xm" || from == "S") && (from, to) != ("Fs", "H") && (from, to) != ("S", "Fq");
             assert_eq!(seen.contains(&(from, to)), is_possible, "{from} -> {to}");
         }
     }

@@ -95,6 +95,9 @@ fn a_law_outside_its_ranges_is_refused() {
     range(ConfigError::Gain, [0, 3_999], |config, milli| config.law.damping = Seconds::from_millis(int(milli)));
     range(ConfigError::Speed, [0, 65_534], |config, mm| config.law.target_speed = Speed::from_mm_per_s(int(mm)));
     range(ConfigError::Speed, [0, 65_534], |config, mm| config.law.max_speed = Speed::from_mm_per_s(int(mm)));
+    range(ConfigError::CatchUp, [0, 15], |config, steps| {
+        config.law.catch_up = Fraction::from_milli(int(50 * steps));
+    });
     range(ConfigError::FreeRoad, [100, 2_500], |config, mm| {
         config.law.free_road_acceleration = Acceleration::from_mm_per_s2(int(mm));
     });
@@ -123,11 +126,12 @@ fn no_gain_in_range_is_unstable_at_a_step_in_range() {
 #[test]
 fn times_of_the_link_outside_their_ranges_are_refused() {
     type Set = fn(&mut Config, Duration);
-    let at_least_one: [Set; 5] = [
+    let at_least_one: [Set; 6] = [
         |config, time| config.link.period = time,
         |config, time| config.link.slot_reuse = time,
         |config, time| config.link.holdover = time,
         |config, time| config.link.ego_timeout = time,
+        |config, time| config.link.request_timeout = time,
         |config, time| config.link.sync_timeout = time,
     ];
     for set in at_least_one {

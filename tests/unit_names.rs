@@ -56,7 +56,7 @@ fn a_new_name_that_follows_on_is_the_same_vehicle() {
         refused += u32::from(say(road, NEW_NAME, rig::SLOT, 0.0, 0.05).is_err());
     });
     assert_eq!(refused, 0);
-    assert_eq!(road.rig.unit.peers().index_of(NEW_NAME), Some(2));
+    assert_eq!(road.rig.unit.peers().named(NEW_NAME).next(), Some(2));
     assert!(road.rig.unit.peers().get(2).is_some_and(|track| track.parameters().is_some()), "what it said holds");
     assert!(least > 0.3, "{least}");
 }

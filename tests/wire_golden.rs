@@ -3,7 +3,7 @@
 
 use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
@@ -50,6 +50,7 @@ fn parameters() -> Said {
         standstill: m(2_000),
         predecessor: Predecessor::Station(StationHash(0x5C)),
         target_speed: v(11_000),
+        catch_up: Fraction::from_milli(200),
         time_gap: Seconds::from_millis(1_000),
         gain: Gain::from_milli(450),
         damping: Seconds::from_millis(1_250),
@@ -129,6 +130,7 @@ fn every_message_has_these_bytes() {
         detail: 21,
         synchronised: true,
         links_on: 5,
+        interface: 2,
     };
     let messages = [
         Message::Sync(Sync { sequence: 11, seconds: 1_400_000_000 }),
@@ -191,13 +193,13 @@ const GOLDEN: &[&str] = &[
     "492#53E34019419CF01F",
     "492#D924915F7194EC3F",
     "493#6810E0818C5C7C15",
-    "493#0D51C80887385902",
+    "493#1E51C80887385942",
     "493#9D927D2043066428",
     "494#17B0A512434B0C35",
     "494#E171190986DB1B15",
     "495#0E908FF79F036302",
     "495#C85103890F000000",
-    "498#587070682D91BA00",
+    "498#4B7070682D91BA40",
     "4F8#2F605E4AFBE6C0A7",
     "4F9#6D208BA6F62548FC",
     "4FA#AA205046B0B3FCBF",
@@ -206,7 +208,7 @@ const GOLDEN: &[&str] = &[
     "4FA#18E34019419CF01F",
     "4FA#9224915F7194EC3F",
     "4FB#2310E0818C5C7C15",
-    "4FB#4651C80887385902",
+    "4FB#5551C80887385942",
     "4FB#D6927D2043066428",
     "4FC#5CB0A512434B0C35",
     "4FC#AA71190986DB1B15",

@@ -32,6 +32,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .damping_ms = 2000,
         .free_road_acceleration_mm_s2 = 730,
         .target_speed_mm_s = 13400,
+        .catch_up_milli = 0,
         .max_speed_mm_s = 50000,
     },
     .prediction = {
@@ -59,6 +60,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .slot_reuse_us = 2000000,
         .holdover_us = 1000000,
         .ego_timeout_us = 50000,
+        .request_timeout_us = 300000,
         .sync_timeout_us = 5000000,
         .assumed_delay_us = 40000,
     },

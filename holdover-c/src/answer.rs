@@ -44,6 +44,8 @@ pub enum Cause {
     EgoStale = 5,
     /// What the range sensor sees and what is heard of the target exclude one another.
     RangeDisagrees = 6,
+    /// The driver's request has stopped coming: the unit hands back.
+    RequestLost = 7,
 }
 
 /// What brings the acceleration about.
@@ -227,6 +229,7 @@ const fn of_mode(mode: &holdover::controller::Mode) -> (Mode, Cause) {
         Core::Fallback { cause: FallbackCause::NeverHeard, .. } => (Mode::Fallback, Cause::NeverHeard),
         Core::Fallback { cause: FallbackCause::Silent, .. } => (Mode::Fallback, Cause::Silent),
         Core::Fallback { cause: FallbackCause::RangeDisagrees, .. } => (Mode::Fallback, Cause::RangeDisagrees),
+        Core::Fallback { cause: FallbackCause::RequestLost, .. } => (Mode::Fallback, Cause::RequestLost),
         Core::Fault { cause: FaultCause::EgoMissing, .. } => (Mode::Fault, Cause::EgoMissing),
         Core::Fault { cause: FaultCause::EgoStale, .. } => (Mode::Fault, Cause::EgoStale),
     }

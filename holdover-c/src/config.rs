@@ -81,6 +81,9 @@ pub struct Law {
     pub free_road_acceleration_mm_s2: u32,
     /// Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.
     pub target_speed_mm_s: u32,
+    /// Share by which the ego may exceed that speed to catch up with the vehicle that it follows, in thousandths: 0 (the speed is
+    /// a cap) to 750 by 50.
+    pub catch_up_milli: u32,
     /// Speed never demanded beyond, in mm/s.
     pub max_speed_mm_s: u32,
 }
@@ -143,6 +146,8 @@ pub struct Link {
     pub holdover_us: u32,
     /// Age up to which the own motion is usable; in us.
     pub ego_timeout_us: u32,
+    /// Age up to which the request of the driver holds, in us.
+    pub request_timeout_us: u32,
     /// Age up to which a time synchronisation holds; in us.
     pub sync_timeout_us: u32,
     /// Delay assumed while there is no synchronisation; in us.

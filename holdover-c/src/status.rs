@@ -75,6 +75,8 @@ pub enum Status {
     ConfigBody = -47,
     /// A limit of the envelope is zero, or it brakes harder than emergency braking.
     ConfigEnvelope = -48,
+    /// `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
+    ConfigCatchUp = -49,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,
     /// The E2E checksum does not fit.
@@ -139,6 +141,10 @@ pub enum Status {
     RefusedRangeDisagrees = -94,
     /// A horizon that its sender cannot drive.
     RefusedUnreachable = -95,
+    /// Not a refusal of a frame: the driver's request stopped coming while the unit drove.
+    RefusedRequestLost = -96,
+    /// Not a refusal of a frame: an `EgoMotion` of another station than the unit's own.
+    RefusedEgoStation = -97,
 }
 
 impl From<ConfigError> for Status {
@@ -155,6 +161,7 @@ impl From<ConfigError> for Status {
             ConfigError::Gain => Self::ConfigGain,
             ConfigError::Unstable => Self::ConfigUnstable,
             ConfigError::Speed => Self::ConfigSpeed,
+            ConfigError::CatchUp => Self::ConfigCatchUp,
             ConfigError::FreeRoad => Self::ConfigFreeRoad,
             ConfigError::Link => Self::ConfigLink,
             ConfigError::Body => Self::ConfigBody,
@@ -198,6 +205,8 @@ impl From<Cause> for Status {
             Cause::PeerClock => Self::RefusedPeerClock,
             Cause::RangeDisagrees => Self::RefusedRangeDisagrees,
             Cause::Unreachable => Self::RefusedUnreachable,
+            Cause::RequestLost => Self::RefusedRequestLost,
+            Cause::EgoStation => Self::RefusedEgoStation,
         }
     }
 }
@@ -234,6 +243,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::ConfigLink, c"configuration: link"),
     (Status::ConfigBody, c"configuration: body"),
     (Status::ConfigEnvelope, c"configuration: envelope"),
+    (Status::ConfigCatchUp, c"configuration: catch_up"),
     (Status::RefusedLength, c"refused: length"),
     (Status::RefusedChecksum, c"refused: checksum"),
     (Status::RefusedRepeated, c"refused: repeated"),
@@ -266,6 +276,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedPeerClock, c"counted: peer_clock"),
     (Status::RefusedRangeDisagrees, c"counted: range_disagrees"),
     (Status::RefusedUnreachable, c"counted: unreachable"),
+    (Status::RefusedRequestLost, c"counted: request_lost"),
+    (Status::RefusedEgoStation, c"counted: ego_station"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -8,7 +8,7 @@
 
 use holdover::config::Model;
 use holdover::time::{Duration, Instant};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Position, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Position, Seconds, Speed};
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
@@ -95,6 +95,7 @@ fn parameters(vehicle: usize) -> DrivingParameters {
         standstill: Distance::from_mm(2_000),
         predecessor: vehicle.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(station(ahead))),
         target_speed: Speed::from_mm_per_s(12_000),
+        catch_up: Fraction::from_milli(200),
         time_gap: Seconds::from_millis(1_000 + 200 * vehicle as i32),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2_000),

@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use holdover::estimator::Horizon;
 use holdover::time::{Duration, GnssTime, Instant};
-use holdover::units::{Distance, FineSeconds, Gain, Jerk, Speed};
+use holdover::units::{Distance, FineSeconds, Fraction, Gain, Jerk, Speed};
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::quantity::Quantity;
@@ -71,12 +71,13 @@ prop_compose! {
     fn parameters()(
         length in steps::<Distance>(0..=4095, 100), standstill in steps(0..=1023, 100),
         target_speed in prop_oneof![6 => steps::<Speed>(0..=30_000, 500), 1 => steps(0..=100, 500)],
-        time_gap in steps(20..=799, 200), gain in steps::<Gain>(10..=3999, 1000), damping in steps(0..=3999, 1000),
+        catch_up in steps::<Fraction>(0..=15, 20), time_gap in steps(20..=799, 200),
+        gain in steps::<Gain>(10..=3999, 1000), damping in steps(0..=3999, 1000),
         lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
     ) -> DrivingParameters {
         let predecessor = Predecessor::Unknown;
         DrivingParameters {
-            length, standstill, predecessor, target_speed, time_gap, gain, damping, lag, limits, horizon_tenths: 0,
+            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, lag, limits, horizon_tenths: 0,
         }
     }
 }

@@ -41,6 +41,7 @@ impl Message {
             leads: self.predecessor.is_none(),
             predecessor: self.predecessor,
             target_speed_mps: self.target_speed_mps.unwrap(),
+            catch_up: 0.2,
             time_gap_s: self.time_gap_s.unwrap(),
             gain: self.gain.unwrap(),
             damping_s: self.damping_s.unwrap(),

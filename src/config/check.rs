@@ -6,6 +6,7 @@ use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use crate::wire::driving_parameters::Limits;
+use crate::wire::quantity::Quantity;
 
 /// Why a configuration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub enum ConfigError {
     Unstable,
     /// A speed is outside 0 to 65.534 m/s.
     Speed,
+    /// `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
+    CatchUp,
     /// `a_max` of the free road is below 0.1 m/s² or above the limit on acceleration.
     FreeRoad,
     /// A time of the link is negative, zero where it must not be, or beyond 10 s for stamps; or the clock may be off by more
@@ -61,6 +64,7 @@ impl core::fmt::Display for ConfigError {
             Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
             Self::Unstable => "the prediction is unstable with this gain at this step; lower the gain or the step",
             Self::Speed => "a speed is outside 0 to 65.534 m/s",
+            Self::CatchUp => "catch_up is outside 0 to 0.75, or no multiple of 0.05, in which it is published",
             Self::FreeRoad => "free_road_acceleration is below 0.1 m/s² or above the limit on acceleration",
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
@@ -107,7 +111,9 @@ impl Config {
                 && link.future >= Duration::ZERO
                 && link.future < millis(1000)
                 && (Duration::ZERO..=link.future).contains(&link.clock_error)
-                && [link.slot_reuse, link.holdover, link.ego_timeout, link.sync_timeout].into_iter().all(positive)
+                && [link.slot_reuse, link.holdover, link.ego_timeout, link.request_timeout, link.sync_timeout]
+                    .into_iter()
+                    .all(positive)
                 && link.assumed_delay >= Duration::ZERO
                 && link.assumed_delay <= millis(2000),
             ConfigError::Link,
@@ -153,6 +159,9 @@ impl Config {
         ensure(gains.contains(&law.gain) && dampings.contains(&law.damping), ConfigError::Gain)?;
         let speeds = Speed::ZERO..=WIRE_SPEED_MAX;
         ensure(speeds.contains(&law.target_speed) && speeds.contains(&law.max_speed), ConfigError::Speed)?;
+        let is_told_exactly = Fraction::from_steps(law.catch_up.to_steps(20), 20) == law.catch_up;
+        let catch_ups = Fraction::ZERO..=Fraction::from_milli(750);
+        ensure(catch_ups.contains(&law.catch_up) && is_told_exactly, ConfigError::CatchUp)?;
         let free = parameters::FREE_ROAD_ACCELERATION_MIN..=self.limits.acceleration;
         ensure(free.contains(&law.free_road_acceleration), ConfigError::FreeRoad)?;
         ensure(

@@ -39,8 +39,12 @@ pub enum Course {
         /// `v_∞`.
         target_speed: Speed,
     },
-    /// Caution: braking that grows slowly while nothing is known.
-    Caution,
+    /// Caution: braking that grows slowly while nothing is known, or while nobody says what is wanted; more of it if what is still
+    /// known ahead asks for that.
+    Caution {
+        /// As in `Cruise`.
+        ahead: Option<Reading>,
+    },
     /// Braking as hard as is normal.
     Brake,
     /// Someone else drives; the unit keeps up with what is demanded.
@@ -121,7 +125,7 @@ impl Controller {
     /// The demand of this tick.
     pub fn drive(&mut self, config: &Config, now: Instant, ego: Option<&State>, course: &Course) -> Acceleration {
         self.blend = self.blend.faded(self.keep);
-        if !matches!(course, Course::Caution) {
+        if !matches!(course, Course::Caution { .. }) {
             self.caution = None;
         }
         self.demand = match (course, ego) {
@@ -131,10 +135,11 @@ impl Controller {
             }
             (Course::Law { driver, target, cap }, Some(ego)) => self.by_law(config, driver, ego, *target, *cap),
             (Course::Cruise { ahead, target_speed }, Some(ego)) => self.cruise(config, ego, ahead, *target_speed),
-            (Course::Caution, _) => {
+            (Course::Caution { ahead }, ego) => {
                 let since = *self.caution.get_or_insert(now);
-                let braking = growth(now.since(since)).min(config.limits.braking);
-                self.slewed(config, braking.negated())
+                let slowing = slowing(config, now.since(since));
+                let behind = ego.zip(*ahead).map(|(ego, ahead)| behind(config, ego, &ahead));
+                self.slewed(config, behind.map_or(slowing, |behind| behind.min(slowing)))
             }
             (Course::Brake | Course::Law { .. } | Course::Cruise { .. }, _) => {
                 self.slewed(config, config.limits.braking.negated())
@@ -171,10 +176,7 @@ impl Controller {
     /// A plain ACC law: constant time gap on what a sensor sees, or on the worst that is certain, without any prediction. Where
     /// that asks for more than Algorithm 2 does at the speed that the driver wants, Algorithm 2 is driven by.
     fn cruise(&self, config: &Config, ego: &State, ahead: &Reading, target_speed: Speed) -> Acceleration {
-        let Seen { gain, damping, time_gap } = CRUISE;
-        let time_gap = time_gap.max(config.law.time_gap);
-        let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
-        let desired = law.desired(ego, ahead.position.ring(), ahead.speed);
+        let desired = behind(config, ego, ahead);
         let limits = config.limits;
         let free = Leader::new(config.law.free_road_acceleration, target_speed).desired(ego.speed);
         let capped = desired.min(free).min(speed_cap(config.law.max_speed, ego.speed));
@@ -189,6 +191,21 @@ impl Controller {
         let slew = jerk.over(self.period);
         desired.limited(self.demand.minus(slew), self.demand.plus(slew))
     }
+}
+
+/// What the law of the cruise control asks for behind this rear bumper, within the limits of normal driving.
+fn behind(config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
+    let Seen { gain, damping, time_gap } = CRUISE;
+    let time_gap = time_gap.max(config.law.time_gap);
+    let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
+    let desired = law.desired(ego, ahead.position.ring(), ahead.speed);
+    desired.limited(config.limits.braking.negated(), config.limits.acceleration)
+}
+
+/// The demand after so long in caution, no harder than normal braking.
+#[must_use]
+pub fn slowing(config: &Config, since: Duration) -> Acceleration {
+    growth(since).min(config.limits.braking).negated()
 }
 
 /// Braking after so long in caution, saturating after 2 s steps.

@@ -39,6 +39,8 @@ pub enum FallbackCause {
     Silent = 3,
     /// What the range sensor sees and what is heard of the target exclude one another.
     RangeDisagrees = 4,
+    /// The driver's request has stopped coming: the unit hands back.
+    RequestLost = 5,
 }
 
 /// Why the ego's own motion is unknown.
@@ -47,9 +49,9 @@ pub enum FallbackCause {
 #[repr(u8)]
 pub enum FaultCause {
     /// It never came.
-    EgoMissing = 1,
+    EgoMissing = 16,
     /// It has stopped coming.
-    EgoStale = 2,
+    EgoStale = 17,
 }
 
 /// A target that fell silent has to be heard for this long before it is followed again: three messages at 10 Hz.
@@ -124,6 +126,12 @@ impl Mode {
         matches!(self, Self::Cooperative | Self::Holdover { .. })
     }
 
+    /// Whether the unit hands back, because nobody says what is wanted any more.
+    #[must_use]
+    pub const fn hands_back(self) -> bool {
+        matches!(self, Self::Fallback { cause: FallbackCause::RequestLost, .. })
+    }
+
     /// The mode of this tick.
     #[must_use]
     pub fn next(self, facts: &Facts, now: Instant) -> Self {
@@ -179,7 +187,9 @@ impl Mode {
 
     fn fall_back(self, cause: FallbackCause, now: Instant) -> Self {
         match self {
-            Self::Fallback { since, .. } => Self::Fallback { since, cause, heard_since: None },
+            Self::Fallback { since, cause: before, .. } if cause != FallbackCause::RequestLost || before == cause => {
+                Self::Fallback { since, cause, heard_since: None }
+            }
             _ => Self::Fallback { since: now, cause, heard_since: None },
         }
     }

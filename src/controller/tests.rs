@@ -39,7 +39,7 @@ fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
         damping: law.damping,
         time_gap: law.time_gap,
         standstill: law.standstill,
-        target_speed: Speed::from_mm_per_s(40_000),
+        catch_up: Speed::from_mm_per_s(48_000),
     };
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law {
@@ -95,7 +95,7 @@ fn every_course_of_its_own_keeps_to_the_limits_on_acceleration_and_jerk() {
         follows(&config, 1_000, 0),
         Course::Cruise { ahead: wall, target_speed: Speed::from_mm_per_s(60_000) },
         Course::Cruise { ahead: far, target_speed: Speed::from_mm_per_s(60_000) },
-        Course::Caution,
+        Course::Caution { ahead: None },
         Course::Brake,
     ];
     let limits = config.limits;
@@ -128,7 +128,7 @@ fn beyond_its_speed_limit_it_does_not_accelerate() {
 fn in_caution_the_braking_grows_by_half_a_metre_per_second_squared_every_second() {
     let config = config();
     for (periods, expected) in [(1, 0), (101, -500), (401, -2_000), (801, -4_000), (2_000, -4_000)] {
-        assert_eq!(mm(after(periods, &config, Some(ego(20_000)), &Course::Caution)), expected);
+        assert_eq!(mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None })), expected);
     }
 }
 
@@ -186,7 +186,7 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
         damping: Seconds::from_millis(damping),
         time_gap: config.law.time_gap,
         standstill: config.law.standstill,
-        target_speed: Speed::from_mm_per_s(40_000),
+        catch_up: Speed::from_mm_per_s(48_000),
     };
     // From the softest gains of the table behind one target to the firmest behind another, and back.
     let courses = [(250, 3_870, 22_000), (600, 1_680, 20_000), (250, 3_870, 22_000)].map(|(gain, damping, ahead)| {

@@ -338,8 +338,14 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     fn ahead<const SAMPLES: usize>(&self, peers: &Peers<PEERS, SAMPLES>, index: usize) -> Option<Ahead> {
         match peers.get(index)?.parameters()?.predecessor {
-            Predecessor::Station(station) if station == self.station => Some(Ahead::Own),
-            Predecessor::Station(station) => peers.index_of(station).filter(|other| *other != index).map(Ahead::Peer),
+            Predecessor::Station(station) if station == self.station => {
+                // A peer with the ego's name may be meant as well as the ego.
+                peers.named(station).next().is_none().then_some(Ahead::Own)
+            }
+            Predecessor::Station(station) => {
+                let here = peers.get(index)?.newest().map(|newest| newest.position);
+                peers.predecessor(station, here).filter(|other| *other != index).map(Ahead::Peer)
+            }
             Predecessor::None | Predecessor::Unknown => None,
         }
     }

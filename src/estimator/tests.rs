@@ -5,7 +5,7 @@ use super::*;
 use crate::config::Config;
 use crate::peers::plausibility::{Belief, Certainty};
 use crate::time::Stamp;
-use crate::units::{Acceleration, FineSeconds, Gain, Jerk, Position, Seconds, Speed};
+use crate::units::{Acceleration, FineSeconds, Fraction, Gain, Jerk, Position, Seconds, Speed};
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
 const STEPS: usize = 64;
@@ -19,6 +19,7 @@ pub(crate) fn leader() -> DrivingParameters {
         standstill: Distance::from_mm(2_000),
         predecessor: Predecessor::None,
         target_speed: Speed::from_mm_per_s(10_000),
+        catch_up: Fraction::from_milli(200),
         time_gap: Seconds::from_millis(1_000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2_000),

@@ -32,4 +32,4 @@ pub use leader::Leader;
 pub use position::Path;
 pub use state::{Reading, Remainders, State, Step};
 pub use switches::Model;
-pub use vehicle_model::{Aim, Stride, VehicleModel};
+pub use vehicle_model::{Aim, Stride, VehicleModel, catch_up};

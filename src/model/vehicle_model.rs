@@ -8,7 +8,7 @@ use super::state::{State, Step};
 use super::switches::Model;
 use crate::parameters::{FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Gain, Jerk, RingPosition, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Gain, Jerk, RingPosition, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
@@ -35,8 +35,8 @@ pub enum Aim {
         time_gap: Seconds,
         /// `s_0`.
         standstill: Distance,
-        /// `v_∞`.
-        target_speed: Speed,
+        /// Never faster than this, `v_c` ([`catch_up`]).
+        catch_up: Speed,
     },
 }
 
@@ -76,7 +76,7 @@ impl VehicleModel {
                 damping: parameters.damping,
                 time_gap: parameters.time_gap,
                 standstill: if model.standstill { parameters.standstill } else { Distance::ZERO },
-                target_speed: parameters.target_speed,
+                catch_up: catch_up(parameters.target_speed, parameters.catch_up),
             },
         };
         Self { aim, lag: Duration::of_fine_seconds(parameters.lag), limits: parameters.limits }
@@ -94,9 +94,9 @@ impl VehicleModel {
         let course = match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
-            Aim::Follow { gain, damping, time_gap, standstill, target_speed } => {
+            Aim::Follow { gain, damping, time_gap, standstill, catch_up } => {
                 let spacing = length_ahead.plus(standstill);
-                let catch_up = model.limits.then(|| catch_up(target_speed));
+                let catch_up = model.limits.then_some(catch_up);
                 Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
             }
         };
@@ -107,9 +107,10 @@ impl VehicleModel {
     }
 }
 
-/// The speed with which a follower catches up: a fifth more than it wants on a free road.
-fn catch_up(target_speed: Speed) -> Speed {
-    target_speed.plus(Speed::from_bits(target_speed.to_bits() / 5))
+/// The speed with which a follower catches up, `v_c`: the speed that it wants on a free road, and that share more.
+#[must_use]
+pub const fn catch_up(target_speed: Speed, share: Fraction) -> Speed {
+    target_speed.plus(target_speed.share(share))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,14 +13,14 @@ mod sender_clock;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
-pub use sample::{Sample, timely};
+pub use sample::{Sample, excess, largest_error, largest_speed_error, timely};
 pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
 use crate::health::Cause;
 use crate::parameters::DEFAULT_LENGTH;
 use crate::time::Duration;
-use crate::units::Distance;
+use crate::units::{Distance, Position};
 use crate::wire::{Slot, StationHash};
 
 /// All slots.
@@ -77,10 +77,21 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.iter()
     }
 
-    /// The slot of a station.
+    /// The slots in which a station of this name is. Names are 8 bits long, so that two vehicles may have the same one; each is
+    /// known by its slot.
+    pub fn named(&self, station: StationHash) -> impl Iterator<Item = usize> {
+        let is_named = move |(_, track): &(usize, &Track<SAMPLES>)| track.station() == Some(station);
+        self.tracks.iter().enumerate().filter(is_named).map(|(index, _)| index)
+    }
+
+    /// The slot of the station that a vehicle here follows: of several with that name, the nearest ahead of it.
     #[must_use]
-    pub fn index_of(&self, station: StationHash) -> Option<usize> {
-        self.tracks.iter().position(|track| track.station() == Some(station))
+    pub fn predecessor(&self, station: StationHash, here: Option<Position>) -> Option<usize> {
+        self.named(station).min_by_key(|index| {
+            let ahead = here.zip(self.get(*index).and_then(Track::newest));
+            let way = ahead.map_or(Distance::ZERO, |(here, newest)| newest.position.ahead_of(here));
+            (way < Distance::ZERO, way.magnitude())
+        })
     }
 }
 

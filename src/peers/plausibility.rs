@@ -26,7 +26,7 @@ use crate::health::Cause;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::{
     FORGIVEN_AFTER, POSITION_ROUNDING, RECOVERY_SAMPLES, SPEED_ROUNDING, UNKNOWN_DELAY,
-    UNPUBLISHED_ACCELERATION_ACCURACY, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
+    UNPUBLISHED_ACCELERATION_ACCURACY,
 };
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
@@ -226,8 +226,8 @@ pub fn uncertainty(sample: &Sample, is_synchronised: bool, link: &Link, off: Off
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)
     };
     Uncertainty {
-        position: sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING),
-        speed: sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING),
+        position: sample.position_error().plus(POSITION_ROUNDING),
+        speed: sample.speed_error().plus(SPEED_ROUNDING),
         earlier,
         later,
     }

@@ -1,6 +1,7 @@
 //! A vehicle's state at an instant of the unit's own clock: a motion message with its stamp and position unwrapped.
 
 use crate::health::Cause;
+use crate::parameters::{ACCURACY_FACTOR, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
@@ -65,6 +66,18 @@ impl Sample {
         tag: 0,
     };
 
+    /// The largest error of its position: [`ACCURACY_FACTOR`] times what 95 % of the errors are below.
+    #[must_use]
+    pub fn position_error(&self) -> Distance {
+        self.position_accuracy.map_or(UNPUBLISHED_POSITION_ACCURACY, largest_error)
+    }
+
+    /// The largest error of its speed, likewise.
+    #[must_use]
+    pub fn speed_error(&self) -> Speed {
+        self.speed_accuracy.map_or(UNPUBLISHED_SPEED_ACCURACY, largest_speed_error)
+    }
+
     /// Of a motion message whose stamp was at `at`, near a position known otherwise.
     #[must_use]
     pub fn of(motion: &Motion, at: Instant, received: Instant, near: Option<Position>) -> Self {
@@ -86,4 +99,26 @@ impl Sample {
             tag: motion.tag,
         }
     }
+}
+
+/// By how much the largest error of a distance with this accuracy exceeds the accuracy. Whether there is room for another vehicle is
+/// asked without it: several accuracies would have to be exceeded at once, all in one direction.
+#[must_use]
+pub const fn excess(accuracy: Option<Distance>) -> Distance {
+    match accuracy {
+        Some(accuracy) => largest_error(accuracy).minus(accuracy),
+        None => Distance::ZERO,
+    }
+}
+
+/// The largest error of a distance with this accuracy.
+#[must_use]
+pub const fn largest_error(accuracy: Distance) -> Distance {
+    Distance::from_bits(accuracy.to_bits().saturating_mul(ACCURACY_FACTOR as i32))
+}
+
+/// The largest error of a speed with this accuracy.
+#[must_use]
+pub const fn largest_speed_error(accuracy: Speed) -> Speed {
+    Speed::from_bits(accuracy.to_bits().saturating_mul(ACCURACY_FACTOR as i32))
 }

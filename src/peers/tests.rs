@@ -151,10 +151,10 @@ fn a_slot_beyond_the_capacity_is_refused_and_a_station_is_found_by_its_name() {
         peers
     };
     assert_eq!(peers.get_mut(Slot(2)).err(), Some(Cause::UnknownSlot));
-    assert_eq!(peers.index_of(StationHash(1)), None);
+    assert_eq!(peers.predecessor(StationHash(1), None), None);
     let admitted = peers.get_mut(Slot(1)).map(|track| admit(track, sample(100, 100)));
     assert_eq!(admitted, Ok(Ok(Admission::News)));
-    assert_eq!(peers.index_of(StationHash(1)), Some(1));
+    assert_eq!(peers.predecessor(StationHash(1), None), Some(1));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::room;
 use super::scene::Scene;
-use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact};
+use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact, slowing};
 use crate::model::bound::AccelerationRange;
 use crate::model::{Reading, State};
 use crate::parameters::REACH;
@@ -41,11 +41,12 @@ pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     // The ego drives by what its sensor sees ahead then, and not by what it hears.
     let is_contradicted = scene.visible().is_some_and(|index| scene.is_contradicted(index, now));
     let target = match target {
+        _ if scene.is_request_lost(now) => TargetFact::Lost(FallbackCause::RequestLost),
         TargetFact::Lost(_) => target,
         _ if is_contradicted => TargetFact::Lost(FallbackCause::RangeDisagrees),
         _ => target,
     };
-    Facts { engaged: scene.request.as_ref().is_some_and(|request| request.engaged), ego, target }
+    Facts { engaged: scene.is_engaged(), ego, target }
 }
 
 /// The course of a mode; `gains` are those of the association with the target.
@@ -59,17 +60,47 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
 ) -> Course {
     match mode {
         Mode::Standby => Course::Yield { demand: scene.ego.as_ref().map_or(Acceleration::ZERO, |ego| ego.demand) },
-        Mode::Cooperative | Mode::Holdover { .. } => {
-            let next = now.plus(scene.config.period);
-            let target = target.and_then(|index| Some((scene.estimated(index, next)?, scene.peers.length_of(index))));
-            let cap = ego.map_or(Acceleration::MAX, |ego| room::careful(scene, now, ego));
-            Course::Law { driver: scene.ego_model_now(gains), target, cap }
+        Mode::Cooperative | Mode::Holdover { .. } => by_law(scene, now, target, gains, ego, Acceleration::MAX),
+        Mode::Fallback { cause: FallbackCause::RequestLost, since, .. } => {
+            hand_back(scene, now, since, target, gains, ego)
         }
         Mode::Fallback { .. } => match still_known(scene, now, target) {
             Some(ahead) => Course::Cruise { ahead, target_speed: scene.target_speed() },
-            None => Course::Caution,
+            None => Course::Caution { ahead: None },
         },
         Mode::Fault { .. } => Course::Brake,
+    }
+}
+
+/// The law, with no more acceleration than the cap, and than room leaves.
+fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    target: Option<usize>,
+    gains: Option<Gains>,
+    ego: Option<&State>,
+    cap: Acceleration,
+) -> Course {
+    let next = now.plus(scene.config.period);
+    let target = target.and_then(|index| Some((scene.estimated(index, next)?, scene.peers.length_of(index))));
+    let cap = ego.map_or(cap, |ego| room::careful(scene, now, ego).min(cap));
+    Course::Law { driver: scene.ego_model_now(gains), target, cap }
+}
+
+/// Slowing down since the request was lost. Behind a target that can still be driven by, by the law, which keeps the distance; else
+/// behind what is still known.
+fn hand_back<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    since: Instant,
+    target: Option<usize>,
+    gains: Option<Gains>,
+    ego: Option<&State>,
+) -> Course {
+    let is_driven_by = |index: &usize| scene.is_in_reach(*index, now) && !scene.is_contradicted(*index, now);
+    match target.filter(is_driven_by) {
+        Some(index) => by_law(scene, now, Some(index), gains, ego, slowing(&scene.config, now.since(since))),
+        None => Course::Caution { ahead: still_known(scene, now, target) },
     }
 }
 

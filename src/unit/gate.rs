@@ -8,9 +8,7 @@ use crate::envelope::{self, Obstacle, Reckoning, Spare};
 use crate::held::Held;
 use crate::model::State;
 use crate::model::bound::{AccelerationRange, Bound};
-use crate::parameters::{
-    DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY,
-};
+use crate::parameters::{DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position};
@@ -52,8 +50,8 @@ impl Gate {
         let sample = scene.ego.get().unwrap_or(Sample::UNKNOWN);
         let state = ego.copied().unwrap_or_default();
         let moved = state.position.ahead_of(sample.position.ring());
-        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY).plus(POSITION_ROUNDING);
-        let faster = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
+        let off = sample.position_error().plus(POSITION_ROUNDING);
+        let faster = sample.speed_error().plus(SPEED_ROUNDING);
         let late = sample.speed.plus(faster).over(scene.config.link.clock_error.seconds());
         let start = envelope::Start {
             at: sample.at,

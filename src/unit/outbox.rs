@@ -21,7 +21,7 @@ use crate::wire::horizon::{Knot, Knots};
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
-use crate::wire::status::Status;
+use crate::wire::status::{INTERFACE, Status};
 use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
 
 /// How many own motions go by from one message of the driving parameters to the next.
@@ -144,6 +144,7 @@ impl Outbox {
             detail: report.mode.detail(),
             synchronised: scene.is_synchronised(now),
             links_on: links_on(scene, now),
+            interface: INTERFACE,
         };
         self.emit(&Message::Status(status), health, frames);
     }
@@ -247,6 +248,7 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             _ => Predecessor::Unknown,
         },
         target_speed: scene.target_speed(),
+        catch_up: law.catch_up,
         time_gap,
         gain,
         damping,

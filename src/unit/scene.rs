@@ -21,7 +21,7 @@ use crate::envelope::Obstacle;
 use crate::estimator::Estimator;
 use crate::held::Held;
 use crate::model::bound::Bound;
-use crate::model::{Aim, Reading, Remainders, State, VehicleModel};
+use crate::model::{Aim, Reading, Remainders, State, VehicleModel, catch_up};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
@@ -42,7 +42,9 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub config: Config,
     pub clock: Clock,
     pub ego: Held<Sample>,
+    /// What the driver wants, and when it was received last.
     pub request: Held<DriverRequest>,
+    pub requested_at: Instant,
     pub peers: Peers<PEERS, SAMPLES>,
     pub estimator: Estimator<PEERS, STEPS>,
     pub coordination: Coordination<PEERS>,
@@ -62,6 +64,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             clock: Clock::new(),
             ego: Held::Nothing,
             request: Held::Nothing,
+            requested_at: Instant::ZERO,
             peers: Peers::idle(),
             estimator: Estimator::idle(),
             coordination: Coordination::idle(),
@@ -77,6 +80,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.clock = Clock::new();
         self.ego.clear();
         self.request.clear();
+        self.requested_at = Instant::ZERO;
         self.peers.start(config.link.period);
         self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
         self.coordination.reset();
@@ -142,6 +146,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.request.as_ref().map_or(self.config.law.target_speed, |request| request.target_speed)
     }
 
+    /// Whether the driver wants the unit to drive, as far as is known.
+    pub fn is_engaged(&self) -> bool {
+        self.request.as_ref().is_some_and(|request| request.engaged)
+    }
+
+    /// Whether the driver's request is too old to be obeyed.
+    pub fn is_request_lost(&self, now: Instant) -> bool {
+        self.request.as_ref().is_some() && now.since(self.requested_at) > self.config.link.request_timeout
+    }
+
     /// How the ego drives by the law: with these gains and this standstill distance behind a target, or on a free road.
     pub fn ego_model(&self, behind: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
         let (law, target_speed) = (&self.config.law, self.target_speed());
@@ -151,7 +165,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 damping: gains.damping,
                 time_gap: self.time_gap(),
                 standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
-                target_speed,
+                catch_up: catch_up(target_speed, law.catch_up),
             },
             None => Aim::Lead { largest: law.free_road_acceleration, target_speed },
         };
@@ -188,7 +202,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// The slot of the vehicle that the ego is to follow.
     pub fn target(&self) -> Option<usize> {
         match self.predecessor() {
-            Predecessor::Station(station) => self.peers.index_of(station),
+            Predecessor::Station(station) => self.peers.predecessor(station, self.ego.as_ref().map(|ego| ego.position)),
             Predecessor::None | Predecessor::Unknown => None,
         }
     }

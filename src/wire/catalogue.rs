@@ -168,7 +168,7 @@ pub struct Line {
     pub sender: Node,
     /// How often the message is sent.
     pub cycle_ms: u16,
-    /// Without it for this long, it counts as missing.
+    /// Without it for this long, it counts as missing; 0: what it said last holds.
     pub timeout_ms: u16,
     /// Frames on this identifier in every cycle.
     pub frames: u8,
@@ -218,22 +218,30 @@ const fn line(name: &'static str, offset: u16, content: Content, sender: Node, f
     Line { name, content, offset, sender, cycle_ms, timeout_ms, frames, within_ms, fields, comment }
 }
 
-/// Cycle, timeout and frames per cycle. A timeout is 5 cycles of what comes every 10 ms, else 3.
+/// Cycle, timeout and frames per cycle. The timeout of what the unit receives is that after which it reacts, by the default
+/// configuration, and 0 where no loss of that message alone has a reaction of its own: what was said last holds. The timeout of
+/// what it sends is 5 cycles of what comes every 10 ms, else 3.
 #[allow(clippy::cast_possible_truncation)] // 5 knots
 const fn timing(content: Content) -> (u16, u16, u8) {
     match content {
-        Content::Sync | Content::FollowUp => (500, 1500, 1),
+        Content::Sync | Content::FollowUp => (500, 5000, 1),
         Content::Command | Content::EstimateA | Content::EstimateB => (10, 50, 1),
         Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => (10, 50, 1),
-        Content::Range => (20, 60, 1),
+        Content::Range => (20, 200, 1),
         Content::Unserved => (200, 600, 1),
         Content::DriverRequest | Content::Status => (100, 300, 1),
+        Content::Said(Speaker::Peer, About::MotionA | About::MotionB) => (100, 250, 1),
         Content::Said(_, About::MotionA | About::MotionB) => (100, 300, 1),
-        Content::Said(_, About::Horizon) => (100, 300, horizon::KNOTS as u8),
-        Content::Said(_, About::Geo) => (100, 300, 2),
-        Content::Said(_, About::DrivingParameters) => (500, 1500, 3),
-        Content::Said(_, About::Route) => (200, 600, 2),
+        Content::Said(speaker, About::Horizon) => (100, held(speaker, 300), horizon::KNOTS as u8),
+        Content::Said(speaker, About::Geo) => (100, held(speaker, 300), 2),
+        Content::Said(speaker, About::DrivingParameters) => (500, held(speaker, 1500), 3),
+        Content::Said(speaker, About::Route) => (200, held(speaker, 600), 2),
     }
+}
+
+/// No timeout of what the unit receives.
+const fn held(speaker: Speaker, timeout_ms: u16) -> u16 {
+    if matches!(speaker, Speaker::Own) { timeout_ms } else { 0 }
 }
 
 /// How far apart the frames of one message may come: half of what a tag takes to come round, four cycles, where the cycle is

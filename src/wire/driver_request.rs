@@ -17,7 +17,7 @@ pub struct DriverRequest {
     pub predecessor: Predecessor,
     /// Speed wanted on a free road, `v_∞`; 0 to 65.534 m/s by 2 mm/s.
     pub target_speed: Speed,
-    /// Desired time gap, `t_g`; 0 to 3.995 s by 5 ms; `None`: the configured one.
+    /// Desired time gap, `t_g`; 0.1 to 3.995 s by 5 ms; `None`: the configured one.
     pub time_gap: Option<Seconds>,
 }
 

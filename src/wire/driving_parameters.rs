@@ -5,7 +5,7 @@ use super::bits::Payload;
 use super::field::{Field, TAG};
 use super::motion::speed;
 use super::predecessor;
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
 /// What a vehicle can and will do to its acceleration; all magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,9 @@ pub struct DrivingParameters {
     pub predecessor: Predecessor,
     /// Speed that it wants on a free road, `v_∞`; 0 to 65.534 m/s by 2 mm/s.
     pub target_speed: Speed,
-    /// Desired time gap, `t_g`; 0 to 3.995 s by 5 ms.
+    /// Share by which it exceeds that speed to catch up with a vehicle that it follows; 0 to 0.75 by 0.05.
+    pub catch_up: Fraction,
+    /// Desired time gap, `t_g`; 0.1 to 3.995 s by 5 ms.
     pub time_gap: Seconds,
     /// Gain `k` (with the adjacency `α` = 1); 0 to 3.999 /s² by 0.001.
     pub gain: Gain,
@@ -56,15 +58,16 @@ const TIME_GAP: Field = time_gap(16).part(1);
 const GAIN: Field = Field::unsigned("Gain", 26, 12).limits(0, 3999).steps(1000, "1/s2").part(1);
 const DAMPING: Field = Field::unsigned("Damping", 38, 12).limits(0, 3999).steps(1000, "s").part(1);
 const LAG: Field = Field::unsigned("Lag", 50, 10).limits(0, 999).steps(500, "s").part(1);
+const CATCH_UP: Field = Field::unsigned("CatchUp", 60, 4).steps(20, "").part(1);
 const ACCELERATION: Field = Field::unsigned("AccelerationLimit", 16, 10).steps(50, "m/s2").part(2);
 const BRAKING: Field = Field::unsigned("BrakingLimit", 26, 10).steps(50, "m/s2").part(2);
 const JERK: Field = Field::unsigned("JerkLimit", 36, 10).steps(20, "m/s3").part(2);
 const EMERGENCY: Field = Field::unsigned("EmergencyBraking", 46, 10).steps(50, "m/s2").part(2);
 const HORIZON: Field = Field::unsigned("HorizonLength", 56, 8).steps(10, "s").part(2);
 
-/// Desired time gap, shared with `DriverRequest`; 800 and above are reserved.
+/// Desired time gap, shared with `DriverRequest`; below 0.1 s, and 800 and above, are reserved.
 pub(super) const fn time_gap(start: u32) -> Field {
-    Field::unsigned("TimeGap", start, 10).limits(0, 799).steps(200, "s")
+    Field::unsigned("TimeGap", start, 10).limits(20, 799).steps(200, "s")
 }
 
 /// The three parts.
@@ -80,6 +83,7 @@ pub const FIELDS: &[Field] = &[
     GAIN,
     DAMPING,
     LAG,
+    CATCH_UP,
     ACCELERATION,
     BRAKING,
     JERK,
@@ -100,6 +104,7 @@ impl DrivingParameters {
         let b = GAIN.with(b, self.gain);
         let b = DAMPING.with(b, self.damping);
         let b = LAG.with(b, self.lag);
+        let b = CATCH_UP.with(b, self.catch_up);
         let c = ACCELERATION.with_up(begin(2), self.limits.acceleration);
         let c = BRAKING.with(c, self.limits.braking);
         let c = JERK.with(c, self.limits.jerk);
@@ -116,6 +121,7 @@ impl DrivingParameters {
             standstill: STANDSTILL.get(*a),
             predecessor: PREDECESSOR.get(*a),
             target_speed: TARGET_SPEED.get(*a),
+            catch_up: CATCH_UP.get(*b),
             time_gap: TIME_GAP.get(*b),
             gain: GAIN.get(*b),
             damping: DAMPING.get(*b),

@@ -5,10 +5,10 @@
 //! zero) or, for what must not be understated, up.
 
 use crate::fixed::{
-    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, SpeedFormat, quotient,
-    saturate_i32,
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, ShareFormat, SpeedFormat,
+    quotient, saturate_i32,
 };
-use crate::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
 /// A quantity that can stand in a field.
 pub trait Quantity: Copy + PartialOrd {
@@ -82,6 +82,7 @@ quantity!(
     Acceleration: AccelerationFormat,
     Distance: DistanceFormat,
     FineSeconds: FineSecondsFormat,
+    Fraction: ShareFormat,
     Gain: GainFormat,
     Jerk: AccelerationFormat,
     Seconds: SecondsFormat,

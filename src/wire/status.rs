@@ -21,7 +21,25 @@ pub struct Status {
     pub synchronised: bool,
     /// Peers whose link is on.
     pub links_on: u8,
+    /// [`INTERFACE`] of the sender.
+    pub interface: u8,
 }
+
+/// The version of the interface, 0 to 7: it changes with every change of the catalogue after which a node built for the catalogue
+/// before it would misread a signal, or miss one that it needs.
+pub const INTERFACE: u8 = 2;
+
+/// Every cause of a fallback and of a fault, with its number.
+const DETAILS: &[(i64, &str)] = &[
+    (0, "none"),
+    (1, "not associated"),
+    (2, "never heard"),
+    (3, "silent"),
+    (4, "range disagrees"),
+    (5, "request lost"),
+    (16, "ego missing"),
+    (17, "ego stale"),
+];
 
 /// Every cause with its number.
 static CAUSES: [(i64, &str); Cause::ALL.len()] = causes();
@@ -40,13 +58,14 @@ const fn causes() -> [(i64, &'static str); Cause::ALL.len()] {
 const CAUSE: Field = Field::unsigned("Cause", 12, 8).named(&CAUSES);
 const COUNT: Field = Field::unsigned("Count", 20, 24);
 const MODE: Field = ModeCode::field(44);
-const DETAIL: Field = Field::unsigned("Detail", 47, 5);
+const DETAIL: Field = Field { values: DETAILS, ..Field::unsigned("Detail", 47, 5) };
 const SYNCHRONISED: Field =
     Field::unsigned("Synchronised", 52, 1).named(&[(0, "no GNSS time"), (1, "GNSS time known")]);
 const LINKS_ON: Field = Field::unsigned("LinksOn", 53, 8);
+const INTERFACE_VERSION: Field = Field::unsigned("InterfaceVersion", 61, 3);
 
 /// The frame.
-pub const FIELDS: &[Field] = &[CAUSE, COUNT, MODE, DETAIL, SYNCHRONISED, LINKS_ON];
+pub const FIELDS: &[Field] = &[CAUSE, COUNT, MODE, DETAIL, SYNCHRONISED, LINKS_ON, INTERFACE_VERSION];
 
 impl Status {
     /// The frame's payload; what does not fit is limited to its field's range.
@@ -57,7 +76,8 @@ impl Status {
         let a = MODE.with_raw(a, self.mode as i64);
         let a = DETAIL.with_raw(a, i64::from(self.detail));
         let a = SYNCHRONISED.with_raw(a, i64::from(self.synchronised));
-        [LINKS_ON.with_raw(a, i64::from(self.links_on))]
+        let a = LINKS_ON.with_raw(a, i64::from(self.links_on));
+        [INTERFACE_VERSION.with_raw(a, i64::from(self.interface))]
     }
 
     /// From the frame's payload.
@@ -72,6 +92,7 @@ impl Status {
             detail: DETAIL.byte(*a),
             synchronised: SYNCHRONISED.raw(*a) != 0,
             links_on: LINKS_ON.byte(*a),
+            interface: INTERFACE_VERSION.byte(*a),
         })
     }
 }

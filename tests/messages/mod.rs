@@ -3,7 +3,7 @@
 
 use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
@@ -78,12 +78,13 @@ prop_compose! {
 prop_compose! {
     pub fn parameters()(
         length in steps(0..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
-        target_speed in speed(), time_gap in steps(0..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
+        target_speed in speed(), catch_up in steps::<Fraction>(0..=15, 20),
+        time_gap in steps(20..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
         damping in steps(0..=3999, 1000), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
         horizon_tenths: u8,
     ) -> DrivingParameters {
         DrivingParameters {
-            length, standstill, predecessor, target_speed, time_gap, gain, damping, lag, limits, horizon_tenths,
+            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, lag, limits, horizon_tenths,
         }
     }
 }
@@ -122,7 +123,7 @@ prop_compose! {
 prop_compose! {
     pub fn driver_request()(
         engaged: bool, predecessor in predecessor(), target_speed in speed(),
-        time_gap in option::of(steps::<Seconds>(0..=799, 200)),
+        time_gap in option::of(steps::<Seconds>(20..=799, 200)),
     ) -> DriverRequest {
         DriverRequest { engaged, predecessor, target_speed, time_gap }
     }
@@ -169,9 +170,9 @@ prop_compose! {
 prop_compose! {
     pub fn status()(
         cause in proptest::sample::select(&Cause::ALL[..]), count in 0u32..1 << 24, mode in mode(), detail in 0u8..32,
-        synchronised: bool, links_on: u8,
+        synchronised: bool, links_on: u8, interface in 0u8..8,
     ) -> Status {
-        Status { cause, count, mode, detail, synchronised, links_on }
+        Status { cause, count, mode, detail, synchronised, links_on, interface }
     }
 }
 

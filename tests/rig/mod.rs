@@ -199,6 +199,7 @@ pub fn parameters(acceleration: f64, emergency_braking: f64) -> DrivingParameter
         standstill: config.law.standstill,
         predecessor: Predecessor::None,
         target_speed: mps(30.0),
+        catch_up: config.law.catch_up,
         time_gap: config.law.time_gap,
         gain: config.law.gain,
         damping: config.law.damping,

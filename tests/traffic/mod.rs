@@ -9,7 +9,7 @@
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Cause;
 use holdover::time::{Duration, GnssTime, Instant};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::catalogue::{self, BaseId};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
@@ -191,6 +191,7 @@ pub fn leads() -> DrivingParameters {
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,
         target_speed: Speed::from_mm_per_s(10_000),
+        catch_up: Fraction::ZERO,
         time_gap: Seconds::from_millis(1000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2000),

@@ -87,6 +87,7 @@ impl TryFrom<Law> for config::Law {
             damping: Seconds::from_millis(milli(plain.damping_ms)),
             free_road_acceleration: Acceleration::from_mm_per_s2(milli(plain.free_road_acceleration_mm_s2)),
             target_speed: Speed::from_mm_per_s(milli(plain.target_speed_mm_s)),
+            catch_up: Fraction::from_milli(milli(plain.catch_up_milli)),
             max_speed: Speed::from_mm_per_s(milli(plain.max_speed_mm_s)),
         })
     }
@@ -122,6 +123,7 @@ impl From<Link> for config::Link {
             slot_reuse: micros(plain.slot_reuse_us),
             holdover: micros(plain.holdover_us),
             ego_timeout: micros(plain.ego_timeout_us),
+            request_timeout: micros(plain.request_timeout_us),
             sync_timeout: micros(plain.sync_timeout_us),
             assumed_delay: micros(plain.assumed_delay_us),
         }
@@ -203,6 +205,7 @@ impl From<&config::Law> for Law {
             damping_ms: magnitude(typed.damping.to_millis()),
             free_road_acceleration_mm_s2: magnitude(typed.free_road_acceleration.to_mm_per_s2()),
             target_speed_mm_s: magnitude(typed.target_speed.to_mm_per_s()),
+            catch_up_milli: magnitude(typed.catch_up.to_milli()),
             max_speed_mm_s: magnitude(typed.max_speed.to_mm_per_s()),
         }
     }
@@ -236,6 +239,7 @@ impl From<&config::Link> for Link {
             slot_reuse_us: whole(typed.slot_reuse),
             holdover_us: whole(typed.holdover),
             ego_timeout_us: whole(typed.ego_timeout),
+            request_timeout_us: whole(typed.request_timeout),
             sync_timeout_us: whole(typed.sync_timeout),
             assumed_delay_us: whole(typed.assumed_delay),
         }

@@ -4,7 +4,7 @@
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::{GnssTime, Stamp};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
@@ -73,6 +73,7 @@ fn parameters() -> DrivingParameters {
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,
         target_speed: Speed::from_mm_per_s(11_000),
+        catch_up: Fraction::from_milli(200),
         time_gap: Seconds::from_millis(1000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2000),

@@ -90,6 +90,8 @@ pub struct Vehicle {
     pub time_gap_s: f64,
     /// Distance that it keeps at standstill, `s_0`; 0 to 10.23 m.
     pub standstill_m: f64,
+    /// Share by which it exceeds the speed that it wants on a free road to catch up with the vehicle ahead; 0 to 0.75.
+    pub catch_up: f64,
     /// How well it knows its own motion, as it publishes it.
     pub accuracy: Accuracy,
     /// Its sensor of the vehicle ahead, if it has one.

@@ -40,6 +40,8 @@ pub struct HeardParameters {
     pub predecessor: Option<usize>,
     /// Speed that it wants on a free road, `v_∞`.
     pub target_speed_mps: f64,
+    /// Share by which it exceeds that to catch up.
+    pub catch_up: f64,
     /// Desired time gap, `t_g`.
     pub time_gap_s: f64,
     /// Gain `k` in 1/s², with the adjacency `α` = 1.
@@ -91,6 +93,7 @@ impl HeardParameters {
             leads: parameters.predecessor == Predecessor::None,
             predecessor,
             target_speed_mps: parameters.target_speed.get().to_num(),
+            catch_up: parameters.catch_up.get().to_num(),
             time_gap_s: parameters.time_gap.get().to_num(),
             gain: parameters.gain.get().to_num(),
             damping_s: parameters.damping.get().to_num(),
@@ -106,7 +109,7 @@ impl HeardParameters {
 mod tests {
     use super::*;
     use holdover::time::Stamp;
-    use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+    use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
     use holdover::wire::StationHash;
     use holdover::wire::driving_parameters::Limits;
     use holdover::wire::motion::WirePosition;
@@ -147,6 +150,7 @@ mod tests {
             standstill: Distance::from_bits(2 << 20),
             predecessor,
             target_speed: Speed::from_bits(11 << 23),
+            catch_up: Fraction::from_milli(250),
             time_gap: Seconds::from_bits(3 << 28),
             gain: Gain::from_bits(1 << 28),
             damping: Seconds::from_bits(5 << 27),
@@ -168,6 +172,7 @@ mod tests {
                 leads: false,
                 predecessor: Some(2),
                 target_speed_mps: 11.0,
+                catch_up: 0.25,
                 time_gap_s: 1.5,
                 gain: 0.5,
                 damping_s: 1.25,

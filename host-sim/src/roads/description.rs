@@ -76,6 +76,8 @@ pub struct Traffic {
     pub time_gap_s: f64,
     /// Distance kept at standstill, `s_0`.
     pub standstill_m: f64,
+    /// Share by which every vehicle exceeds that target speed to catch up with the vehicle ahead.
+    pub catch_up: f64,
     /// Least time between two arrivals on the same road.
     pub headway_s: f64,
     /// They appear so far before the first crossing point of their road.

@@ -1,7 +1,7 @@
 //! Physical quantities as the simulation has them, in float64, enter; the core's fixed-point formats leave.
 
 use holdover::time::Duration;
-use holdover::units::{Acceleration, Distance, FineSeconds, Position, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Position, Seconds, Speed};
 
 use super::time::micros;
 
@@ -39,6 +39,12 @@ pub fn seconds(s: f64) -> Seconds {
 #[must_use]
 pub fn fine_seconds(s: f64) -> FineSeconds {
     FineSeconds::from_bits((s * f64::from(1 << 30)).round() as i32)
+}
+
+/// To the nearest twentieth, as a share is published.
+#[must_use]
+pub fn share(of_one: f64) -> Fraction {
+    Fraction::from_milli((of_one * 20.0).round() as i32 * 50)
 }
 
 /// To the core's format, to nearest.

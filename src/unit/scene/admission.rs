@@ -1,18 +1,19 @@
 //! A peer's motion: a motion enters; what it would change leaves, or the cause for which it is refused; then that is changed, all
 //! of it or nothing. So a motion that is refused cannot harm what is held of anybody.
 //!
-//! The checks in their order, each once, and all before the first change: the slot; whether the station was heard in another
-//! slot just now; the age, too old or in the future; whether another station was heard in this slot just now, unless both are
-//! certain to be the same vehicle; with the place on the ego's axis, too far; twice, or too late; and whether it can be. On a way
-//! through intersections a new name is never the same vehicle, so there that comes before the age.
+//! The checks in their order, each once, and all before the first change: whether another station was heard in this slot just now,
+//! where a new name is never the same vehicle (on a way through intersections); the age, too old or in the future; whether a station
+//! of this name was heard in another slot just now, unless it is certain to be another vehicle; whether another station was heard in
+//! this slot just now, unless both are certain to be the same vehicle; with the place on the ego's axis, too far; twice, or too late;
+//! and whether it can be.
 
 use super::Scene;
 use crate::coordination::Axis;
 use crate::health::{Cause, Health};
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
-use crate::parameters::{REACH, SHORTEST, UNPUBLISHED_POSITION_ACCURACY};
+use crate::parameters::{REACH, SHORTEST};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
-use crate::peers::{Admission, Off, Sample, Track, timely};
+use crate::peers::{Admission, Off, Sample, Track, excess, timely};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
 use crate::wire::motion::Motion;
@@ -129,6 +130,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             let sample = Sample::of(&motion, stamped, at, ego.or_else(newest));
             (sample, self.judge(track, &sample, &placed))
         });
+        let is_new = holder != Some(motion.station);
+        if is_new && self.is_in_another_slot(at, index, motion.station, sample.as_ref().map(|(sample, _)| sample)) {
+            return Err(Cause::StationConflict);
+        }
         if seat.is_renamed
             && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
         {
@@ -144,17 +149,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return false;
         };
         let bound = bound.after(sample.at, &track.map_or(AccelerationRange::WORST, Track::reach));
-        let off = sample.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
+        let off =
+            sample.position_error().minus(excess(sample.position_accuracy)).minus(excess(newest.position_accuracy));
         let room = bound.highest_position().ahead_of(bound.lowest_position()).plus(off).plus(off);
         matches!(judgement.verdict, Ok(Belief::Agrees)) && sample.at > newest.at && room < SHORTEST
     }
 
-    /// A station speaks in one slot at a time, and a slot is one station's. If it was another one's, that one's time is over.
+    /// A slot is one station's. If it was another one's, that one's time is over.
     ///
     /// # Errors
-    /// [`Cause::StationConflict`]: the station was heard in another slot within `slot_reuse`, or the other one in this slot, and
-    /// it is not certain that both are the same vehicle ([`continues`](Self::continues)). Or else whoever takes its name could
-    /// end what is certain of it, and with that the check of whether what is said of it can be.
+    /// [`Cause::StationConflict`]: the other one was heard in this slot within `slot_reuse`, and it is not certain that both are the
+    /// same vehicle ([`continues`](Self::continues)). Or else whoever takes its slot could end what is certain of it, and with that
+    /// the check of whether what is said of it can be.
     fn seat(
         &self,
         at: Instant,
@@ -165,19 +171,40 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if holder == Some(station) {
             return Ok(Seat { is_taken_over: false, is_renamed: false, is_of_another: false, left: None });
         }
-        let left = self.peers.index_of(station);
-        let is_heard = |index: usize| {
-            let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
-            silence.is_some_and(|silence| silence < self.config.link.slot_reuse)
-        };
-        let is_renamed = holder.is_some() && is_heard(index);
+        let is_renamed = holder.is_some() && self.is_heard(at, index);
         // Where there are intersections a new name has to tell its way first.
-        if is_renamed && self.coordination.itinerary().is_some() || left.is_some_and(is_heard) {
+        if is_renamed && self.coordination.itinerary().is_some() {
             return Err(Cause::StationConflict);
         }
         let slot_reuse = self.config.link.slot_reuse;
         let is_of_another = self.peers.get(index).is_some_and(|track| track.is_of_another(at, slot_reuse));
+        let left = self.peers.named(station).find(|left| !self.is_heard(at, *left));
         Ok(Seat { is_taken_over: holder.is_some() && !is_renamed, is_renamed, is_of_another, left })
+    }
+
+    /// Whether a slot was heard within `slot_reuse`.
+    fn is_heard(&self, at: Instant, index: usize) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
+        silence.is_some_and(|silence| silence < self.config.link.slot_reuse)
+    }
+
+    /// Whether a station of this name is heard in another slot, and is not certain to be another vehicle: a station speaks in one
+    /// slot at a time. It is another vehicle if the motion is not where that one can be.
+    fn is_in_another_slot(&self, at: Instant, index: usize, station: StationHash, sample: Option<&Sample>) -> bool {
+        let is_namesake = |other: usize| {
+            let bound = sample.zip(self.bound_at(other, sample));
+            bound.is_some_and(|(sample, bound)| {
+                let off = sample.position_error();
+                sample.position.ahead(off) < bound.lowest_position()
+                    || sample.position.ahead(off.negated()) > bound.highest_position()
+            })
+        };
+        self.peers.named(station).any(|other| other != index && self.is_heard(at, other) && !is_namesake(other))
+    }
+
+    fn bound_at(&self, index: usize, sample: Option<&Sample>) -> Option<Bound> {
+        let track = self.peers.get(index)?;
+        Some(track.certainty().bound()?.after(sample?.at, &track.reach()))
     }
 
     /// A motion on the ego's axis.

@@ -14,12 +14,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         match message {
             Message::Sync(sync) => self.clock.sync(at, *sync),
             Message::FollowUp(follow_up) => self.clock.follow_up(at, *follow_up)?,
-            Message::Ego(Said::Motion(motion)) => self.take_ego(at, motion)?,
+            Message::Ego(Said::Motion(motion)) => {
+                if motion.station != self.config.station {
+                    health.count(Cause::EgoStation);
+                }
+                self.take_ego(at, motion)?;
+            }
             Message::DriverRequest(request) => {
                 if self.request.as_ref().map(|held| held.predecessor) != Some(request.predecessor) {
                     self.ranging.note_named(at);
                 }
                 self.request.set(*request);
+                self.requested_at = at;
             }
             Message::Peer(slot, said) => self.take_peer(at, *slot, said, health)?,
             Message::Range(seen) => self.take_range(at, *seen, health)?,

@@ -14,11 +14,8 @@ use super::Scene;
 use super::sight::{Sight, Verdict};
 use crate::health::{Cause, Health};
 use crate::model::bound::{Bound, Uncertainty};
-use crate::parameters::{
-    LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING, UNPUBLISHED_POSITION_ACCURACY,
-    UNPUBLISHED_SPEED_ACCURACY,
-};
-use crate::peers::Sample;
+use crate::parameters::{LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING};
+use crate::peers::{Sample, excess, largest_error, largest_speed_error};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
@@ -48,7 +45,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
         let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
-        let mut sight = Sight { at, rear, speed, uncertainty, station: None };
+        let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
+        let mut sight = Sight { at, rear, speed, uncertainty, excess, station: None };
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
@@ -77,15 +75,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let apart = Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid);
         let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
         let faster = swing.over(apart.fine_seconds());
-        let own = ego.position_accuracy.unwrap_or(UNPUBLISHED_POSITION_ACCURACY);
-        let own_speed = ego.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY);
+        let (own, own_speed) = (ego.position_error(), ego.speed_error());
         let clock_error = self.config.link.clock_error;
         let late = ego.speed.plus(own_speed).over(clock_error.plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
         Uncertainty {
-            position: seen.distance_accuracy.plus(own).plus(moved).plus(late).plus(roundings),
-            speed: seen.speed_accuracy.plus(own_speed).plus(faster).plus(SPEED_ROUNDING).plus(SPEED_ROUNDING),
+            position: largest_error(seen.distance_accuracy).plus(own).plus(moved).plus(late).plus(roundings),
+            speed: largest_speed_error(seen.speed_accuracy)
+                .plus(own_speed)
+                .plus(faster)
+                .plus(SPEED_ROUNDING)
+                .plus(SPEED_ROUNDING),
             earlier: clock_error,
             later: unsaid,
         }
@@ -124,9 +125,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
         let bound = before?;
         // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear.
-        let is_certain = bound.highest_position().ahead_of(seen.lowest_position()) < SHORTEST;
-        let track = self.peers.get_index_mut(index)?;
         let newest = track.newest().copied();
+        let beyond = sight.excess.plus(excess(newest.and_then(|newest| newest.position_accuracy)));
+        let is_certain = bound.highest_position().ahead_of(seen.lowest_position()).minus(beyond) < SHORTEST;
+        let track = self.peers.get_index_mut(index)?;
         if is_certain {
             track.narrow(&seen);
         } else {

@@ -16,7 +16,7 @@ use crate::held::Held;
 use crate::model::Reading;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
-use crate::units::{Position, Speed};
+use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
 
 /// A view older than this is not driven by, and shows no longer that nobody is nearer.
@@ -47,6 +47,8 @@ pub(in crate::unit) struct Sight {
     pub rear: Position,
     pub speed: Speed,
     pub uncertainty: Uncertainty,
+    /// How much of the uncertainty of the place is beyond the accuracies that were told.
+    pub excess: Distance,
     /// Whose it is, if it went into what is certain of that station.
     pub station: Option<StationHash>,
 }

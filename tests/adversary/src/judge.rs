@@ -13,8 +13,8 @@ const SPEED_TOLERANCE: f64 = 0.0011;
 pub const REFUSED: f64 = 1.0;
 /// Farther away it may be refused, m.
 const REACH: f64 = 1_400.0;
-/// How much faster than wanted it may get, as a factor and m/s: who follows catches up by up to a fifth.
-pub const HURRY: (f64, f64) = (1.2, 1.0);
+/// How much faster than wanted it may get, as a factor and m/s: what is wanted is a cap.
+pub const HURRY: (f64, f64) = (1.0, 1.0);
 /// How long a request of before counts, s.
 const WISHED: f64 = 15.0;
 

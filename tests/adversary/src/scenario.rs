@@ -53,7 +53,7 @@ impl Family {
     }
 }
 
-/// How a sensor errs within its accuracy.
+/// How a sensor errs, up to its largest error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Error {

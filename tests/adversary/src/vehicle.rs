@@ -314,15 +314,19 @@ fn told(a: u64, b: u64) -> Option<Told> {
 
 /// What a sensor says of a body.
 pub fn measured(sensor: &Sensor, body: &Body, times: f64, random: &mut Random) -> (f64, f64) {
-    let (position, speed) = (accuracy(sensor.position, 5.0), accuracy(sensor.speed, 1.5));
-    let off = error(sensor.error, random) * position * times;
-    let faster = error(sensor.speed_error, random) * speed * times;
+    let off = error(sensor.error, random) * largest(sensor.position, 5.0, random) * times;
+    let faster = error(sensor.speed_error, random) * largest(sensor.speed, 1.5, random) * times;
     (body.position + off, (body.speed + faster).max(0.0))
 }
 
-/// What holds where nothing is published.
-fn accuracy(published: f64, otherwise: f64) -> f64 {
-    if published < 0.0 { otherwise } else { published }
+/// The largest error this time: 95 times in a hundred the accuracy, else three times as much. What holds where nothing is published is
+/// never exceeded.
+pub fn largest(published: f64, otherwise: f64, random: &mut Random) -> f64 {
+    match published < 0.0 {
+        true => otherwise,
+        false if random.chance(0.05) => 3.0 * published,
+        false => published,
+    }
 }
 
 /// As it stands in a message: where nothing is published, no number.
@@ -331,7 +335,7 @@ pub fn published(sensor: &Sensor) -> (f64, f64) {
     (code(sensor.position), code(sensor.speed))
 }
 
-/// An error as a share of the accuracy, -1 to 1.
+/// An error as a share of the largest, -1 to 1.
 pub fn error(kind: Error, random: &mut Random) -> f64 {
     match kind {
         Error::None => 0.0,

@@ -9,7 +9,7 @@ use crate::judge;
 use crate::peer::{Message, Motion, Other, parameter_frames};
 use crate::random::Random;
 use crate::scenario::{Family, Scenario, Sensor};
-use crate::vehicle::{Vehicle, Verdict, error};
+use crate::vehicle::{Vehicle, Verdict, error, largest};
 use crate::verdict::{Fault, Outcome};
 use crate::wire::SLOTS;
 
@@ -233,8 +233,9 @@ impl<'a> World<'a> {
         let times = self.times(Assumption::RangeAccuracy);
         let difference = speed - self.ego.body.speed;
         let Sensor { position, speed, error: kind, speed_error } = range.sensor;
-        let distance = distance + error(kind, &mut self.range_random) * position * times;
-        let difference = difference + error(speed_error, &mut self.range_random) * speed * times;
+        let random = &mut self.range_random;
+        let distance = distance + error(kind, random) * largest(position, 0.0, random) * times;
+        let difference = difference + error(speed_error, random) * largest(speed, 0.0, random) * times;
         self.views.push((at + range.age, distance.max(0.0), difference, range.age));
     }
 

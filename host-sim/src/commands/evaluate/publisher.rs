@@ -92,6 +92,7 @@ impl<'a> Publisher<'a> {
             standstill: law.standstill,
             predecessor: Predecessor::Station(predecessor),
             target_speed: law.target_speed,
+            catch_up: law.catch_up,
             time_gap: Seconds::from_millis(1_000),
             gain: law.gain,
             damping: law.damping,

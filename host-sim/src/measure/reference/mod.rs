@@ -20,8 +20,6 @@ pub const FREE_EXPONENT: i32 = 4;
 pub const STOPPING_TARGET_SPEED_MPS: f64 = 0.1;
 /// Time constant with which the acceleration of a vehicle without a law fades.
 pub const FADING_S: f64 = 2.0;
-/// A follower catches up with at most so many times the speed that it wants on a free road.
-pub const CATCH_UP: f64 = 1.2;
 
 /// A vehicle's state on the lane at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -100,7 +98,7 @@ impl From<&HeardParameters> for Parameters {
             length_m: parameters.length_m,
             standstill_m: parameters.standstill_m,
             target_speed_mps: parameters.target_speed_mps,
-            catch_up_mps: CATCH_UP * parameters.target_speed_mps,
+            catch_up_mps: (1.0 + parameters.catch_up) * parameters.target_speed_mps,
             time_gap_s: parameters.time_gap_s,
             gain: parameters.gain,
             damping_s: parameters.damping_s,

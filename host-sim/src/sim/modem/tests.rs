@@ -2,7 +2,7 @@
 
 use super::*;
 use holdover::time::{Instant, Stamp};
-use holdover::units::{Acceleration, Distance, FineSeconds, Gain, Jerk, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use holdover::wire::driving_parameters::Limits;
 use holdover::wire::horizon::Knots;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -29,6 +29,7 @@ fn parameters(target_speed: i32) -> DrivingParameters {
         standstill: Distance::from_mm(2000),
         predecessor: Predecessor::None,
         target_speed: Speed::from_mm_per_s(target_speed),
+        catch_up: Fraction::from_milli(200),
         time_gap: Seconds::from_millis(1000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2000),

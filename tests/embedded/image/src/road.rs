@@ -3,7 +3,7 @@
 
 use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
-use holdover::units::{Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
+use holdover::units::{Fraction, Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
@@ -70,6 +70,7 @@ impl Road {
                 .checked_sub(1)
                 .map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
             target_speed: Speed::from_mm_per_s(13_400),
+            catch_up: Fraction::from_milli(200),
             time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
             gain: GAIN,
             damping: DAMPING,

@@ -136,6 +136,7 @@ mod tests {
             leads: false,
             predecessor: Some(0),
             target_speed_mps: 11.0,
+            catch_up: 0.2,
             time_gap_s: 1.0,
             gain: 0.25,
             damping_s: 2.0,

@@ -11,6 +11,7 @@ fn parameters(predecessor: Option<usize>, target_speed_mps: f64) -> HeardParamet
         leads: predecessor.is_none(),
         predecessor,
         target_speed_mps,
+        catch_up: 0.2,
         time_gap_s: 1.0,
         gain: 0.25,
         damping_s: 2.0,

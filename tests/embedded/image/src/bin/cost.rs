@@ -179,7 +179,7 @@ fn compare(counter: &Counter) {
         damping: law.damping,
         time_gap: Seconds::from_millis(1_000), // as in the other two
         standstill: law.standstill,
-        target_speed: law.target_speed,
+        catch_up: law.target_speed,
     };
     let stride = config.vehicle_model(aim).over(Duration::from_millis(10), config.length, &config.prediction.model);
     let speed = Speed::from_mm_per_s(11_000);
