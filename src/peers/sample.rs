@@ -6,7 +6,7 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::motion::Motion;
 
-/// Whether what was true at `at` and is received now is neither older than `stale` nor further in the future than `future`.
+/// Checks that a state at `at`, received at `received`, is neither older than `stale` nor further in the future than `future`.
 ///
 /// # Errors
 /// [`Cause::Stale`] and [`Cause::Future`].
@@ -25,7 +25,7 @@ pub fn timely(at: Instant, received: Instant, stale: Duration, future: Duration)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample {
-    /// When it was true.
+    /// The instant at which it was true.
     pub at: Instant,
     /// When it was received.
     pub received: Instant,
@@ -33,7 +33,7 @@ pub struct Sample {
     pub stamp: Stamp,
     /// Front bumper.
     pub position: Position,
-    /// Not negative.
+    /// Speed, not negative.
     pub speed: Speed,
     /// Acceleration.
     pub acceleration: Acceleration,
@@ -43,14 +43,14 @@ pub struct Sample {
     pub position_accuracy: Option<Distance>,
     /// 95 % accuracy of the speed, if published.
     pub speed_accuracy: Option<Speed>,
-    /// Whose it is.
+    /// The station that it is of.
     pub station: StationHash,
     /// Ties it to the horizon that was computed from it.
     pub tag: u8,
 }
 
 impl Sample {
-    /// At rest at the origin, of nobody: what stands for an ego that was never heard of.
+    /// At rest at the origin, of no station: for an ego of which nothing has been heard.
     pub const UNKNOWN: Self = Self {
         at: Instant::ZERO,
         received: Instant::ZERO,
@@ -65,7 +65,7 @@ impl Sample {
         tag: 0,
     };
 
-    /// Of a motion message whose stamp was at `at`, near a position known otherwise.
+    /// The sample of a motion message whose stamp was at `at`, near a position that is known otherwise.
     #[must_use]
     pub fn of(motion: &Motion, at: Instant, received: Instant, near: Option<Position>) -> Self {
         let position = match near {
