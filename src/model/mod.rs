@@ -1,8 +1,8 @@
-//! One vehicle, as everyone models it: its parameters enter; how its state goes on, step by step, and what it can be certain to do
-//! within its limits, leave.
+//! The model of one vehicle. Its parameters enter; how its state changes step by step, and the range of what it can do within its limits,
+//! leave.
 //!
-//! The prediction of a peer, the own controller and the last gate share this model, because a vehicle then drives exactly by what
-//! others predict of it. It knows of no messages, no peers and no time but a step's length.
+//! The prediction of a peer, the own controller and the last gate share this model, so that a vehicle drives exactly by what others
+//! predict of it. The model knows of no messages, no peers, and no time but the length of a step.
 //!
 //! | what | where |
 //! |---|---|
