@@ -1,4 +1,5 @@
-//! What the mode and the controller go by: the scene enters; the facts that decide the mode, and the course to be driven in it, leave.
+//! The basis of the mode and of the controller. The scene enters; the facts that decide the mode, and the course to be driven in it,
+//! leave.
 
 use super::room;
 use super::scene::Scene;
@@ -10,7 +11,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::Predecessor;
 
-/// What the mode is decided by; `is_readable` says whether the target has an estimate.
+/// The facts by which the mode is decided. `is_readable` says whether the target has an estimate.
 pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -38,7 +39,7 @@ pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
         }
         (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
     };
-    // The ego drives by what its sensor sees ahead then, and not by what it hears.
+    // The ego then drives by what its sensor sees ahead, and not by what it hears.
     let is_contradicted = scene.visible().is_some_and(|index| scene.is_contradicted(index, now));
     let target = match target {
         TargetFact::Lost(_) => target,
@@ -48,7 +49,7 @@ pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     Facts { engaged: scene.request.as_ref().is_some_and(|request| request.engaged), ego, target }
 }
 
-/// The course of a mode; `gains` are those of the association with the target.
+/// The course of a mode. `gains` are those of the association with the target.
 pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -73,9 +74,9 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     }
 }
 
-/// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it, or the near
-/// end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees that it is not there.
-/// Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the one that is nearer.
+/// The rear bumper of the vehicle ahead, as far as it is still known without messages. It is where the range sensor sees it, or the near
+/// end of what the sensor has seen standing, or the near end of the target's bound, unless the sensor sees that the target is not there.
+/// It is never a stale sample. A target on another leg is not what the sensor sees. Then it is the nearer of the two.
 fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -95,7 +96,7 @@ fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
 }
 
-/// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+/// `None` if it is too far away. The law takes positions modulo 4096 m, so that a vehicle left far behind must not turn up ahead.
 fn near<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     position: Position,
