@@ -61,8 +61,8 @@
 //! linear term). So it is largest at one of the two ends of the tolerance, and both ends are computed.
 //!
 //! In steady following behind a vehicle that brakes no less hard than the ego, the gate does nothing under two conditions. The newest
-//! sample is younger than `t_g - ρ`, with `ρ = T (1 + α/b) + (b + j h)²/(2 j b)`, `T` at its longest and `α` the uncertainty of the ego's
-//! acceleration. And the standstill distance covers the margin, the accuracies and `(b + j h)⁴/(8 j² b)`.
+//! sample is younger than `t_g - ρ`, with `ρ = T (1 + α/b) + (b + j h)²/(2 j b)`, `T` at its longest and `α` the uncertainty of the
+//! ego's acceleration. And the standstill distance covers the margin, the accuracies and `(b + j h)⁴/(8 j² b)`.
 //!
 //! # What it tolerates
 //!
@@ -75,16 +75,16 @@
 //! | the lag is as configured | ±25 % ([`Envelope::lag_tolerance`]) | +50 %: 0 and 0 collide, +100 %: 416 and 6; shorter: none |
 //! | a command is in force within its period, and no tick is missed | 30 ms, or three ticks in a row ([`Envelope::delay`]) | 100 ms late: 0 and 0; twelve ticks missed: 0 and 0 |
 //! | the ego's acceleration is as measured | 1 m/s² too low ([`UNPUBLISHED_ACCELERATION_ACCURACY`](crate::parameters::UNPUBLISHED_ACCELERATION_ACCURACY)) | 2 m/s²: 51 and 0, 3 m/s²: 330 and 5 |
-//! | its position and speed are | as accurate as it says | |
-//! | `EgoMotion` comes | no limit: it is carried on by its commands ([`Reckoning`]) | 2 s: 0 and 0 |
+//! | the ego's position and speed are as measured | errors up to the stated accuracies | |
+//! | `EgoMotion` comes | no limit: the ego is carried on by its commands ([`Reckoning`]) | 2 s: 0 and 0 |
 //! | the vehicle brakes with [`Envelope::braking`] on any road that it is on | none but margin and slack | 5 % less: 42 and 0, 10 %: 240 and 3, 20 %: 444 and 6 |
 //!
 //! # What is given away
 //!
 //! Compared with the least way from which emergency braking does not collide, found by simulation with nothing tolerated
 //! (`tests/envelope_lorry.rs`; 8 m/s², lag 0.3 s), the gate gives away at most 0.7 m behind a vehicle that brakes at least as hard. That
-//! is `½ b T²` of the lag's end and `j (τ + h)³/6` of the ramp. Behind a vehicle that brakes less hard it gives away at most 1.7 m at the
-//! same speed. It gives away up to 15 m where the ego closes in on a much slower vehicle and would stop a little before that vehicle
+//! is `½ b T²` of the lag's end and `j (τ + h)³/6` of the ramp. Behind a vehicle that brakes less hard it gives away at most 1.7 m at
+//! the same speed. It gives away up to 15 m where the ego closes in on a much slower vehicle and would stop a little before that vehicle
 //! does. There the points of rest with `c` itself would suffice. But whether they suffice depends on which vehicle stops first, and a
 //! condition that a faster vehicle ahead can break is a cliff.
 

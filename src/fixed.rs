@@ -46,7 +46,8 @@ pub type GainFormat = FixedI32<U29>;
 /// A share from 0 to 1, such as `e^(-δt/T)`.
 pub type ShareFormat = FixedI32<U30>;
 
-/// `a·b / 2³²`, rounded to nearest (ties towards +∞). It cannot overflow: the product of two 32-bit words is at most 2⁶² in magnitude.
+/// `a·b / 2³²`, rounded to nearest (ties towards +∞). It cannot overflow: the product of two 32-bit words is at most 2⁶² in
+/// magnitude.
 #[inline(always)]
 #[must_use]
 #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // proved in the doc comment
@@ -265,9 +266,9 @@ pub const fn per_million(dividend: u64) -> u64 {
     per_15_625(dividend >> 6)
 }
 
-/// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying with `m = ⌈2⁷⁷/5⁶⌉`. `5⁶ m` exceeds 2⁷⁷ by less than 5⁶. So the product
-/// exceeds the quotient by less than `2⁶³/2⁷⁷`, which is less than `1/5⁶`. The fraction of a quotient is at most `1 - 1/5⁶`, so that the
-/// product rounds down to the same word.
+/// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying with `m = ⌈2⁷⁷/5⁶⌉`. `5⁶ m` exceeds 2⁷⁷ by less than 5⁶.
+/// So the product exceeds the quotient by less than `2⁶³/2⁷⁷`, which is less than `1/5⁶`. The fraction of a quotient is at most `1
+/// - 1/5⁶`, so that the product rounds down to the same word.
 #[must_use]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴

@@ -3,7 +3,6 @@
 //!
 //! No vehicle passes another on a leg. So a vehicle that is ahead of another for certain stays ahead. Its rear bumper is at least where
 //! the front bumper of the other is, however long it is silent.
-//! other's front one is, however long it is silent.
 
 use super::Slots;
 use crate::held::Held;

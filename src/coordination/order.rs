@@ -107,7 +107,7 @@ impl Regard {
         }
         match other.claim {
             Predecessor::None => Self::Overlooks,
-            Predecessor::Unknown => Self::Heeds, // it has not arrived yet
+            Predecessor::Unknown => Self::Heeds, // the station has not arrived yet
             Predecessor::Station(claimed) => match all.find(|entry| entry.station == claimed) {
                 None => Self::Unclear,
                 Some(claimed) if claimed.is_before(own) => Self::Overlooks,

@@ -26,7 +26,7 @@
 //!
 //! 1 to 3 hold for **all** real values: each is an identity of polynomials whose remainder has no negative coefficient
 //! ([`crate::polynomial`]). The demand and the obstacle do not enter: the demand is arbitrary, and the near end is any that is not behind
-//! and not slower than the one of 3.
+//! and not slower than the near end of 3.
 //!
 //! 4, and 2 through the real plant (the lag solved exactly over a tick, standstill included), are tested at **points**, in intervals that
 //! are rounded outward:

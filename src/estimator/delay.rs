@@ -1,8 +1,8 @@
 //! Eqs 10-12, in paper mode only. The predecessor's step at `t+k-τ` and the delay `τ` enter; its state at `t+k`, as the paper adjusts it,
 //! leaves. Over 2 s eq. 12 alone costs metres. So the default brings a sample to now with the model instead.
 //!
-//! - *Speed:* with `τ < δt` it is taken unchanged (eq. 10). With `τ >= δt` it is `v + τ v̇` (eq. 11), with `v̇` the slope from that step
-//!   to the next. The printed `τ/δt` fits a `v̇` per step.
+//! - *Speed:* with `τ < δt` it is taken unchanged (eq. 10). With `τ >= δt` it is `v + τ v̇` (eq. 11), with `v̇` the slope from that
+//!   step to the next. The printed `τ/δt` fits a `v̇` per step.
 //! - *Position:* `r(t+k-τ) + v(t+k) τ`. Eq. 12 as printed is only dimensionally right at `τ = δt`.
 
 use crate::model::Step;

@@ -11,7 +11,7 @@
 //! | what limits, lag and integration make of a demand (Algorithm 3) | `actuator`, `exponential`, `position` |
 //! | the force or torque for an acceleration (eqs 1 to 3) | `body` |
 //! | the least and the most that it can do | `bound` |
-//! | which of this is used | `switches` |
+//! | which parts of the model are used | `switches` |
 
 mod actuator;
 mod body;

@@ -45,7 +45,7 @@ pub struct Sample {
     pub speed_accuracy: Option<Speed>,
     /// The station that it is of.
     pub station: StationHash,
-    /// Ties it to the horizon that was computed from it.
+    /// The tag, which ties the sample to the horizon that was computed from it.
     pub tag: u8,
 }
 

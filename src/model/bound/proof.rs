@@ -30,8 +30,8 @@
 //!
 //! # What is assumed
 //!
-//! Braking and acceleration are words of 1 µm/s² to 64 m/s². Times are at most an hour; for longer times the code itself gives up the far
-//! end, and the near end stands. Speeds are words of at most 256 m/s, or the sum of two such words.
+//! Braking and acceleration are words of 1 µm/s² to 64 m/s². Times are at most an hour; for longer times the code itself gives up the
+//! far end, and the near end stands. Speeds are words of at most 256 m/s, or the sum of two such words.
 
 mod motions;
 
@@ -51,8 +51,8 @@ fn twice<R: Ring>(x: R) -> R {
     R::from(2) * x
 }
 
-/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that leaves `r1`. `slower =
-/// v - lost` is not negative.
+/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that leaves `r1`. `slower
+/// = v - lost` is not negative.
 struct Braked<R> {
     /// `2M² (s - way)`.
     way: Certificate<R>,
@@ -113,8 +113,8 @@ fn rising<R: Ring>([v, a, t, gained, way, r1, r2, r3]: [R; 8]) -> [Certificate<R
     ]
 }
 
-/// `End::accelerated` at the top speed. At the start it lacked `lacking` of the top speed. It rises for `up = ⌈lacking M / a⌉`, which is
-/// too long by `r4/a`, and then holds the top speed for `held`, whose way is too large by `r5`. The lead of `rising` is `lead`. The true
+/// `End::accelerated` at the top speed. At the start it lacked `lacking` of the top speed. It rises for `up = ⌈lacking M / a⌉`, which
+/// is too long by `r4/a`, and then holds the top speed for `held`, whose way is too large by `r5`. The lead of `rising` is `lead`. The true
 /// vehicle rises for `lacking M / a`; its way is that of the top speed all the time, less a triangle. The claim: `2 a M²` times the lead.
 fn topped<R: Ring>([v, lacking, a, up, held, way, rest, lead, r4, r5]: [R; 10]) -> Certificate<R> {
     let m = million::<R>;

@@ -64,7 +64,7 @@ impl Plan {
 }
 
 /// Judges a sample where nothing is held of its station's place.
-#[inline(never)] // what it needs on the stack is not to be there beside what the other case needs
+#[inline(never)] // keeps its stack apart from that of the other case
 fn weigh_anew<const SAMPLES: usize>(
     track: Option<&Track<SAMPLES>>,
     sample: &Sample,
@@ -155,7 +155,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// [`Cause::StationConflict`]: the station was heard in another slot within `slot_reuse`; or the other station was heard in this slot
     /// within that time, and it is not certain that both are the same vehicle ([`continues`](Self::continues)). Otherwise any sender that
     /// takes a station's hash could end what is certain of that station, and with it the check of plausibility.
-    /// end what is certain of it, and with that the check of whether what is said of it can be.
     fn seat(
         &self,
         at: Instant,
@@ -224,7 +223,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Carries out all that a motion changes.
-    #[inline(never)] // likewise
+    #[inline(never)] // keeps its stack apart from that of the judgement
     fn carry_out(&mut self, index: usize, plan: &Plan) {
         if plan.seat.is_taken_over {
             self.vacate(index);
@@ -262,7 +261,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Keeps the evidence of a refused motion. After the motion of another station, other messages in the slot may be that station's.
-    #[inline(never)] // what it needs on the stack is not to stay there while a motion is judged
+    #[inline(never)] // keeps its stack apart from that of the judgement
     fn note_refused(&mut self, index: usize, is_own: bool, plan: Option<&Plan>) {
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if is_own {

@@ -21,7 +21,7 @@ pub(in crate::unit) struct Displaced {
 
 /// The vehicle that the driver has put ahead.
 #[derive(Clone, Copy, Debug)]
-#[repr(u32)] // a tag of its own, of which nobody is zero, as in [`crate::held`]
+#[repr(u32)] // with a tag in which zero is `Nobody`, as in [`crate::held`]
 pub(in crate::unit) enum Named {
     /// No vehicle, as far as is known.
     Nobody = 0,

@@ -204,6 +204,6 @@ pub(in crate::unit) enum Verdict {
     Agrees,
     /// The view is not of that station, or what is heard is wrong.
     Contradicts,
-    /// Likewise, and the station cannot be where it is held to be.
+    /// The same, and the station cannot be where it is held to be.
     SeesPast,
 }
