@@ -13,9 +13,9 @@
 //! command is emergency braking, and what was true stays true.
 //!
 //! With actuators that lag by `T`, `y = r + T v` and `z = v + T a` move exactly as a double integrator, `ẏ = z`, `ż = u`. For the near
-//! end likewise, with `q = p + T w`, `q̇ = w - T c`. If `y` is behind `q`, then `r` is behind `p`: since `T d(p - r)/dt + (p - r) = q -
-//! y`, a `p - r` that was not negative stays so while `q - y` is not negative. At the beginning it is not negative: there was no
-//! collision yet, and if a near end is behind the ego, its vehicle is at least where the ego is.
+//! end likewise, with `q = p + T w`, `q̇ = w - T c`. If `y` is behind `q`, then `r` is behind `p`: since
+//! `T d(p - r)/dt + (p - r) = q - y`, a `p - r` that was not negative stays so while `q - y` is not negative. At the beginning it is not
+//! negative: there was no collision yet, and if a near end is behind the ego, its vehicle is at least where the ego is.
 //!
 //! Emergency braking takes the demand `u` down to `-b` at jerk `j`, which takes `τ = (u + b)/j`. Before it begins, the demand may hold
 //! for the reaction time `h`. This is a tick, and the time by which a command may come into force late ([`Envelope::delay`]). Then, with
@@ -43,8 +43,8 @@
 //! - **by closing**, if `c < b`: `V <= S` with the way `S` from `y` to `q`.
 //!
 //! Both conditions are kept from tick to tick by braking at the latest when they would be broken. Both grow weaker if the near end is
-//! further ahead or faster than it was said to be. Solved for the demand, with the *speed to spare* `G = sqrt(2 b S) - z`, or `sqrt(2 (b
-//! - c) S) - Z`, both are
+//! further ahead or faster than it was said to be. Solved for the demand, with the *speed to spare* `G = sqrt(2 b S) - z`, or
+//! `sqrt(2 (b - c) S) - Z`, both are
 //!
 //! ```text
 //! u = sqrt( 2 j G ) - j h - b

@@ -267,8 +267,8 @@ pub const fn per_million(dividend: u64) -> u64 {
 }
 
 /// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying with `m = ⌈2⁷⁷/5⁶⌉`. `5⁶ m` exceeds 2⁷⁷ by less than 5⁶.
-/// So the product exceeds the quotient by less than `2⁶³/2⁷⁷`, which is less than `1/5⁶`. The fraction of a quotient is at most `1
-/// - 1/5⁶`, so that the product rounds down to the same word.
+/// So the product exceeds the quotient by less than `2⁶³/2⁷⁷`, which is less than `1/5⁶`. The fraction of a quotient is at most
+/// `1 - 1/5⁶`, so that the product rounds down to the same word.
 #[must_use]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴

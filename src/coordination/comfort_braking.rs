@@ -7,8 +7,8 @@ use crate::units::{Acceleration, Distance, Seconds, Speed};
 /// How hard the ego brakes, at most, to make way for a vehicle on another leg, whether that leg crosses the ego's or not. Of these, the
 /// ego takes the gentlest by which it still comes to a stand before the conflict area. The order may put a vehicle ahead of the ego that
 /// is just as near, and the law then asks for a gap of tens of metres. But the gap is needed at the crossing only. The gentler the ego
-/// brakes, the less it surprises a vehicle that drives behind it and cannot hear it. With the gentlest the ego loses `½ · 0.6 · 4² = 5
-/// m` in 4 s, of the 11 m of a time gap.
+/// brakes, the less it surprises a vehicle that drives behind it and cannot hear it. In 4 s the gentlest braking takes
+/// `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
 const GENTLE_MM_PER_S2: [i32; 3] = [1_500, 1_000, 600];
 
 /// The time until the brakes are on.

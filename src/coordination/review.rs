@@ -70,7 +70,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.choice.is_held = is_held;
     }
 
-    /// The ego yields to all stations that arrived before this arrival: it tells it as its own, if that is later.
+    /// The ego yields to all stations that arrived before `arrival`: it tells `arrival` as its own, if that is later.
     pub(crate) fn give_way(&mut self, arrival: Arrival) {
         if let Held::Value(registration) = &mut self.registration
             && registration.arrival.is_before(arrival)

@@ -8,9 +8,9 @@ use crate::units::{Distance, Speed};
 
 /// The cubic Hermite curve of an interval, ready to be read many times.
 ///
-/// Let `s = after/whole`, `w` the way, and `a` and `b` the ways that the speeds at the two ends would make. Then `r = s [ a + s ( 3w - 2a
-/// - b + s (a + b - 2w) ) ]` and `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`. The speed is computed as the mix of the
-/// speeds at both ends, plus the bend.
+/// Let `s = after/whole`, `w` the way, and `a` and `b` the ways that the speeds at the two ends would make. Then
+/// `r = s [ a + s ( 3w - 2a - b + s (a + b - 2w) ) ]` and `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`. The speed is
+/// computed as the mix of the speeds at both ends, plus the bend.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
     from: Reading,

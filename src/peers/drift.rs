@@ -6,9 +6,9 @@
 //! by the interval of each sample alone. A sample that leaves nothing of it does not fit. To cut it each time is as much as to compare
 //! every sample with every sample before it.
 //!
-//! With accelerations between `-b` and `a`, the bulge over a gap of `T`, between speeds of the slope `s`, is `(a - s) (b + s) / (a + b) ·
-//! T²/2`. The errors of both speeds count fully and not twice: if the error at one end were less, the bulge would grow, but by less than
-//! the mean falls, as long as `-b <= s <= a`.
+//! With accelerations between `-b` and `a`, the bulge over a gap of `T`, between speeds of the slope `s`, is
+//! `(a - s) (b + s) / (a + b) · T²/2`. The errors of both speeds count fully and not twice: if the error at one end were less, the bulge
+//! would grow, but by less than the mean falls, as long as `-b <= s <= a`.
 //!
 //! So a drift is found if it is faster than the sum of the published accuracy of the speed and `a b / (a + b) · T/2`. The latter is 0.1
 //! m/s for a car of 2.5 and 8 m/s² that is heard at 10 Hz. It is found when its excess of speed has made up twice the accuracy of the

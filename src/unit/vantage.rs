@@ -51,9 +51,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
 
     /// Of the vehicle just ahead in the order and the vehicle just ahead on the leg, the one that asks for more caution.
     ///
-    /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5, `k (q_j - r - (t_g + γ)
-    /// v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in the order, it brakes
-    /// with no more than `b`. So that vehicle asks for no less than `r + (t_g + γ) v - b/k`.
+    /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
+    /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in
+    /// the order, it brakes with no more than `b`. So that vehicle asks for no less than `r + (t_g + γ) v - b/k`.
     pub fn more_careful(&self, order: Option<usize>, lane: Option<usize>) -> Option<usize> {
         let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
         let law = &self.scene.config.law;

@@ -51,8 +51,8 @@ fn twice<R: Ring>(x: R) -> R {
     R::from(2) * x
 }
 
-/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that leaves `r1`. `slower
-/// = v - lost` is not negative.
+/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that leaves `r1`.
+/// `slower = v - lost` is not negative.
 struct Braked<R> {
     /// `2M² (s - way)`.
     way: Certificate<R>,
