@@ -103,7 +103,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.ego.as_ref().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout)
     }
 
-    /// The ego's state at now: its newest sample, moved on under the last demand.
+    /// The ego's state at now: its newest sample, moved on under the last demand if it is older than now.
     pub fn ego_at(&self, now: Instant, last_demand: Acceleration) -> Option<State> {
         let sample = self.ego.as_ref()?;
         let state = State {
