@@ -1,21 +1,20 @@
 //! The unit's knowledge of GNSS time: the two steps of a synchronisation enter, the mapping between the unit's clock and
 //! GNSS time leaves.
 //!
-//! The *reception* of `Sync` is the mark; `FollowUp` says when the mark was really sent. Two marks half a second apart
-//! bound the error by the clocks' relative drift (100 ppm · 0.5 s = 50 µs) and the reception's jitter, so that no rate is
-//! estimated.
+//! The *reception* of `Sync` is the mark. `FollowUp` says when the mark was really sent. With two marks half a second apart, the error is
+//! bounded by the relative drift of the clocks (100 ppm · 0.5 s = 50 µs) and the jitter of the reception. So no rate is estimated.
 //!
-//! A mark can be late, where a gateway or the unit itself was busy, and what a follow-up says can be wrong. So one that says that
-//! less time has passed than the unit's own clock says is doubted as late, and one that says that more has passed as early: it is
-//! refused, and the mark before it holds. If GNSS time itself steps, or the mark before was the one that was late, all marks are
-//! off from then on, by the same: the second in a row that is off by the same is believed. The price is half a second more of a
+//! A mark can be late, because a gateway or the unit itself was busy. What a follow-up says can be wrong. If a synchronisation says that
+//! less time has passed than the unit's own clock says, it is refused as late. If it says that more time has passed, it is refused as
+//! early. The mark before it then holds. If GNSS time itself steps, or if the mark before was the late one, all marks are off from then
+//! on, by the same amount. So the second mark in a row that is off by the same amount is believed. The price is half a second more of a
 //! wrong time.
 
 use crate::health::Cause;
 use crate::time::{Duration, GnssTime, Instant, Stamp};
 use crate::wire::sync::{FollowUp, Sync};
 
-/// The mapping, once there is one.
+/// The mapping between the unit's clock and GNSS time, once it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Fix {
@@ -38,7 +37,7 @@ impl Fix {
         GnssTime::from_micros(self.gnss.as_micros().saturating_add_signed(at.since(self.local).as_micros()))
     }
 
-    /// How much later than by this mark a later one is; nothing is known of that after a long time.
+    /// How late the mark `later` is by this mark; negative if it is early. `None` after [`MEMORY`], when this mark says nothing any more.
     fn lateness_of(&self, later: &Self) -> Option<Duration> {
         let (foretold, said) = (self.gnss(later.local).as_micros(), later.gnss.as_micros());
         let is_near = later.local.since(self.local) < MEMORY;
@@ -48,9 +47,9 @@ impl Fix {
 
 /// How long after its mark a follow-up may come.
 const FOLLOW_UP_TIMEOUT: Duration = Duration::from_millis(250);
-/// A mark may be so late, or so early, which is 5 cm at urban speed and far more than what the clocks drift apart while a mark is remembered.
+/// A mark may be this late or early. At urban speed this is 5 cm, and far more than the clocks drift apart while a mark is remembered.
 const LATE: Duration = Duration::from_millis(5);
-/// How long a mark says when others are late: 100 ppm of it are 0.5 ms.
+/// For how long a mark can tell whether a later one is late. The drift of 100 ppm makes 0.5 ms of it.
 const MEMORY: Duration = Duration::from_millis(5_000);
 
 impl Clock {
@@ -60,16 +59,16 @@ impl Clock {
         Self { mark: None, fix: None, doubted: None }
     }
 
-    /// First step.
+    /// Takes the first step, received at `at`.
     pub fn sync(&mut self, at: Instant, sync: Sync) {
         self.mark = Some((at, sync));
     }
 
-    /// Second step.
+    /// Takes the second step, received at `at`.
     ///
     /// # Errors
-    /// [`Cause::SyncSequence`] if its first step is missing, another one, or too long ago; [`Cause::SyncLate`] if that
-    /// came too late, by what the unit's own clock says, and [`Cause::SyncEarly`] if too early.
+    /// [`Cause::SyncSequence`] if the first step is missing, belongs to another sequence, or is too long ago. [`Cause::SyncLate`] and
+    /// [`Cause::SyncEarly`] if the first step came too late or too early, by the unit's own clock.
     pub fn follow_up(&mut self, at: Instant, follow_up: FollowUp) -> Result<(), Cause> {
         let (marked, sync) = self.mark.ok_or(Cause::SyncSequence)?;
         if sync.sequence != follow_up.sequence || at.since(marked) > FOLLOW_UP_TIMEOUT || at < marked {
@@ -89,7 +88,7 @@ impl Clock {
         Ok(())
     }
 
-    /// Whether GNSS time is known at this instant, with a synchronisation no older than that.
+    /// Whether GNSS time is known at this instant, by a synchronisation that is no older than `timeout`.
     #[must_use]
     pub fn is_synchronised(&self, now: Instant, timeout: Duration) -> bool {
         self.fix.is_some_and(|fix| now.since(fix.local) <= timeout)
@@ -171,8 +170,7 @@ mod tests {
     const LATER: Result<(), Cause> = Err(Cause::SyncLate);
     const EARLY: Result<(), Cause> = Err(Cause::SyncEarly);
 
-    /// Synchronisations, each so many milliseconds after the first was sent: how much later than sent it is marked, and what
-    /// becomes of it.
+    /// Synchronisations, as: milliseconds after the first was sent, by how much the mark is later than sent, and the expected result.
     fn marks(marks: &[(u64, i64, Result<(), Cause>)]) {
         let mut clock = Clock::new();
         for (number, (sent_ms, late_ms, expected)) in (0..).zip(marks) {
@@ -202,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_first_mark_that_was_late_is_corrected_by_the_next_two() {
-        // By one alone it is not known which of the two is wrong.
+        // A single mark does not tell which of the two is wrong.
         marks(&[(0, 30, TAKEN), (500, 0, EARLY), (1_000, 0, TAKEN), (1_500, 30, LATER), (2_000, 0, TAKEN)]);
     }
 

@@ -1,5 +1,4 @@
-//! The number formats of the core, each named once with its range, resolution and rounding; what enters are raw
-//! fixed-point words, what leaves are their products.
+//! The number formats of the core, each named once with its range, resolution and rounding, and their products.
 //!
 //! | format | quantity | range | resolution |
 //! |---|---|---|---|
@@ -22,8 +21,8 @@
 //! | distance × gain = acceleration | F20 × F29 → F49, `>> 24` → F25 | to nearest, saturating |
 //! | acceleration × share = acceleration | F25 × F30 → F55, `>> 30` → F25 | to nearest, saturating |
 //!
-//! Where hundreds of products are summed up, in the speed and the position of a horizon, the sum is kept with the 32 bits
-//! below its word ([`Rest`]) and nothing is rounded at all: adding a product is one instruction too (`SMLAL`).
+//! Hundreds of products are summed up in the speed and the position of a horizon. There the sum is kept with the 32 bits below its word
+//! ([`Rest`]), and nothing is rounded at all. Adding a product is one instruction too (`SMLAL`).
 //!
 //! Sums saturate, except in ring positions, which are modulo 4096 m on purpose ([`crate::units::RingPosition`]).
 
@@ -47,8 +46,8 @@ pub type GainFormat = FixedI32<U29>;
 /// A share from 0 to 1, such as `e^(-δt/T)`.
 pub type ShareFormat = FixedI32<U30>;
 
-/// `a·b / 2³²`, rounded to nearest (ties towards +∞). Cannot overflow: the product of two 32-bit words is at most
-/// 2⁶² in magnitude.
+/// `a·b / 2³²`, rounded to nearest (ties towards +∞). It cannot overflow: the product of two 32-bit words is at most 2⁶² in
+/// magnitude.
 #[inline(always)]
 #[must_use]
 #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // proved in the doc comment
@@ -56,8 +55,8 @@ pub const fn mul_hi(a: i32, b: i32) -> i32 {
     ((a as i64 * b as i64 + (1 << 31)) >> 32) as i32
 }
 
-/// The same for a factor `b` that is not negative. Vectors on x86-64 have no signed product before SSE4.1; there it is made of the
-/// unsigned one, which is `2³²·b` more where `a` is negative. Elsewhere the signed one is one instruction.
+/// The same for a factor `b` that is not negative. Vectors on x86-64 have no signed product before SSE4.1. There it is made from the
+/// unsigned product, which is larger by `2³²·b` where `a` is negative. Elsewhere the signed product is one instruction.
 #[inline(always)]
 #[must_use]
 #[allow(
@@ -83,7 +82,7 @@ pub const fn shl_saturating<const BITS: u32>(x: i32) -> i32 {
     limited::<BITS>(x) << BITS
 }
 
-/// The nearest of the words that can be shifted by so many bits: `SSAT`.
+/// The nearest word that can be shifted left by `bits` without overflow: `SSAT`.
 #[inline(always)]
 #[allow(clippy::arithmetic_side_effects)] // constants
 const fn limited<const BITS: u32>(x: i32) -> i32 {
@@ -133,8 +132,8 @@ pub const fn mul_shl<const BITS: u32>(a: i32, b: i32) -> i32 {
     ((((above as u32 as u64) << 32) | product as u32 as u64) >> (32 - BITS)) as i32
 }
 
-/// `a·b / 2^(32-BITS)`, rounded down, saturating to within `2^BITS` of the ends: two instructions less than [`mul_shl`], for
-/// where the last bit of a finer format does not count.
+/// `a·b / 2^(32-BITS)`, rounded down, saturating to within `2^BITS` of the ends. It takes two instructions less than [`mul_shl`]. It is
+/// for results whose last bit does not matter, because the format is finer than needed.
 #[inline(always)]
 #[must_use]
 #[allow(clippy::arithmetic_side_effects, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // as above
@@ -152,16 +151,15 @@ pub const fn product(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
 }
 
-/// The 32 bits below a word that products are summed up in, so that the sum is exact and only its word is rounded, to
-/// nearest.
+/// The 32 bits below the word of a sum of products. With them the sum is exact, and only its word is rounded, to nearest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rest(u32);
 
 impl Rest {
-    /// Nothing below the word. It stands as half a bit of the word, which is what rounds to nearest.
+    /// Nothing below the word. It is stored as half a bit of the word, so that the word is rounded to nearest.
     pub const NONE: Self = Self(1 << 31);
-    /// Of no word: all zero.
+    /// Not set: all zero.
     pub(crate) const UNSET: Self = Self(0);
 }
 
@@ -171,7 +169,7 @@ impl Default for Rest {
     }
 }
 
-/// A word and its rest with products added; the word saturates. The products are at most 2⁶² in magnitude.
+/// A word and its rest with products added. The word saturates. The products are at most 2⁶² in magnitude.
 #[inline(always)]
 #[must_use]
 #[allow(clippy::arithmetic_side_effects)] // a rest is below 2³²
@@ -180,7 +178,7 @@ pub const fn sum(word: i32, rest: Rest, products: i64) -> (i32, Rest) {
     (word.saturating_add(gain), rest)
 }
 
-/// The same modulo the range of the word.
+/// The same, modulo the range of the word.
 #[inline(always)]
 #[must_use]
 pub const fn sum_around(word: i32, rest: Rest, products: i64) -> (i32, Rest) {
@@ -225,8 +223,8 @@ pub const fn quotient(dividend: i64, divisor: i64) -> i64 {
     if (dividend < 0) != (divisor < 0) { magnitude.wrapping_neg() } else { magnitude }
 }
 
-/// `dividend / divisor`, 0 for a divisor of 0: one instruction where words have 64 bits, and elsewhere a few of 32
-/// bits by hand.
+/// `dividend / divisor`, 0 for a divisor of 0. It is one instruction where words have 64 bits. Elsewhere it is a few 32-bit divisions by
+/// hand.
 #[must_use]
 #[cfg_attr(target_pointer_width = "64", inline)]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
@@ -240,9 +238,9 @@ pub const fn divide(dividend: u64, divisor: u64) -> u64 {
     divide_by_bytes(dividend, divisor)
 }
 
-/// [`divide`] by hand. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s); for these it takes five 32-bit
-/// divisions by hand, which are an instruction each on a Cortex-M3 and up: the upper word, and the lower one byte by byte. A
-/// rest is below the divisor, which leaves room for the next byte.
+/// [`divide`] by hand. The divisors of the core are nearly all below 2²⁴ (times in µs up to 16 s). For these it takes five 32-bit
+/// divisions, each one instruction on a Cortex-M3 and up: the upper word, and the lower word byte by byte. A remainder is below the
+/// divisor, which leaves room for the next byte.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the words, and checked
 const fn divide_by_bytes(dividend: u64, divisor: u64) -> u64 {
@@ -268,8 +266,9 @@ pub const fn per_million(dividend: u64) -> u64 {
     per_15_625(dividend >> 6)
 }
 
-/// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying: a product with `⌈2⁷⁷/5⁶⌉`, whose 5⁶-fold is less than 5⁶ beyond
-/// 2⁷⁷, is off by less than `2⁶³/2⁷⁷` of a quotient, and its fraction is at most `1 - 1/5⁶`.
+/// `dividend / 5⁶` for a dividend below 2⁶³, by multiplying with `m = ⌈2⁷⁷/5⁶⌉`. `5⁶ m` exceeds 2⁷⁷ by less than 5⁶.
+/// So the product exceeds the quotient by less than `2⁶³/2⁷⁷`, which is less than `1/5⁶`. The fraction of a quotient is at most
+/// `1 - 1/5⁶`, so that the product rounds down to the same word.
 #[must_use]
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 #[allow(clippy::cast_possible_truncation, clippy::arithmetic_side_effects)] // the halves; their sums stay below 2⁶⁴

@@ -100,8 +100,13 @@ struct Sent {
     motion: Said,
 }
 
-/// Errors are at most so many times what is published, below which 95 % of them are.
-const LARGEST: f64 = 3.0;
+/// 95 % of the errors are within what is published, and none is more than three times as large. Where nothing is published, none is
+/// larger than what is taken then.
+fn error(random: &mut Random, published: Option<f64>, otherwise: f64) -> f64 {
+    let Some(accuracy) = published else { return random.extreme(-otherwise, otherwise) };
+    let largest = if random.happens(0.05) { 3.0 * accuracy } else { accuracy };
+    random.extreme(-largest, largest)
+}
 
 /// All messages of a case in the order of their arrival.
 fn messages(random: &mut Random, rig: &mut Rig, case: &Case, truth: &Truth) -> Vec<Sent> {

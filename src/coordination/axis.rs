@@ -1,10 +1,10 @@
-//! One peer's axis: where it says it is on its own lane, and how far that is from a crossing point, enter; the same motion on
-//! the ego's axis leaves.
+//! The axis of one peer. The peer's position on its own lane and its distance from a crossing point enter; the same motion on the ego's
+//! axis leaves.
 //!
-//! Every vehicle counts its position on an axis of its own. All legs of an intersection are laid on one virtual lane with their
-//! crossing points on one another: a peer that is 80 m from the crossing point is where the ego will be 80 m from it. So one
-//! number ties a peer's axis to the ego's for as long as that peer approaches this intersection, and it is known as soon as
-//! one message of the peer's motion and one of its route have the same stamp.
+//! Every vehicle counts its position on an axis of its own. All legs of an intersection are laid on one virtual lane, with their crossing
+//! points on one another: a peer that is 80 m from the crossing point is at the place where the ego is 80 m from it. So a single number
+//! ties the peer's axis to the ego's, for as long as the peer approaches this intersection. The number is known as soon as a message of
+//! the peer's motion and a message of its route have the same stamp.
 
 use crate::coordination::order::Arrival;
 use crate::held::Held;
@@ -13,25 +13,25 @@ use crate::units::{Distance, Position};
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::{Predecessor, StationHash};
 
-/// What a peer says of its place at an intersection.
+/// What a peer says of its approach to an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeerApproach {
-    /// The intersection's place on the ego's way.
+    /// The index of the intersection on the ego's way.
     pub crossing: usize,
-    /// Leg by which it comes.
+    /// The leg by which the peer comes.
     pub leg: u8,
-    /// When it arrived, if it says so.
+    /// When the peer arrived, if it says so.
     pub arrival: Option<Arrival>,
-    /// Whom it takes to be just ahead.
+    /// The vehicle that the peer takes to be just ahead of it in the order.
     pub claim: Predecessor,
-    /// When it said so.
+    /// When the peer said so.
     pub heard: Instant,
-    /// When it said for the first time that it comes to this intersection.
+    /// When the peer said for the first time that it comes to this intersection.
     pub since: Instant,
 }
 
-/// What ties the two axes: at the stamp the peer was at this place of the ego's axis, and stood there.
+/// What ties the two axes: the place of the peer on the ego's axis at the stamp, and its approach then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Tie {
@@ -47,12 +47,12 @@ pub struct Axis {
     newest: Held<(StationHash, Stamp, WirePosition)>,
     tie: Held<Tie>,
     standing: Held<PeerApproach>,
-    /// What is added to its positions, in millimetres modulo 2²⁵.
+    /// What is added to the peer's positions, in millimetres modulo 2²⁵.
     offset: Held<i32>,
 }
 
-/// Ties that differ by no more than this are the same: the roundings of two positions on the globe and what is left of
-/// their filtering. An axis that does not move costs less than one that is right to the millimetre.
+/// Two ties that differ by no more than this are taken as the same. The difference is the rounding of two positions on the globe and what
+/// their filtering leaves. It is better that an axis does not move than that it is right to the millimetre.
 const SAME_TIE_MM: i32 = 25;
 
 impl Axis {
@@ -60,15 +60,15 @@ impl Axis {
     pub const UNKNOWN: Self =
         Self { newest: Held::Nothing, tie: Held::Nothing, standing: Held::Nothing, offset: Held::Nothing };
 
-    /// What the peer says, once its axis is known.
+    /// What the peer says of its approach, once its axis is known.
     #[must_use]
     pub fn standing(&self) -> Option<&PeerApproach> {
         self.offset.as_ref().and(self.standing.as_ref())
     }
 
-    /// Takes in a place: at `stamp` the peer was `distance` before the crossing point, which lies at `crossing` on the ego's
-    /// axis. Gives how far the peer's axis moved by that, unless it is new. All of it holds from the peer's motion of the same
-    /// stamp on: only that says who speaks, and before it the positions that are held are not of this place.
+    /// Takes in a place: at `stamp` the peer was `distance` before the crossing point, which lies at `crossing` on the ego's axis.
+    /// Returns how far the peer's axis moved by that; `None` if the axis is new. The place holds from the peer's motion with the same
+    /// stamp on, for two reasons: only the motion names the station, and the positions held before it are not at this place.
     pub fn place(
         &mut self,
         stamp: Stamp,
@@ -81,13 +81,12 @@ impl Axis {
         self.retie()
     }
 
-    /// Takes note that the peer is at no intersection of the ego's way.
+    /// Notes that the peer is at no intersection of the ego's way.
     pub fn leave(&mut self) {
         (self.tie, self.standing, self.offset) = (Held::Nothing, Held::Nothing, Held::Nothing);
     }
 
-    /// Takes note that another station was refused in the slot: the place that was said since this one's last motion is not this
-    /// one's.
+    /// Notes that another station was refused in this slot. A place that was said since this peer's last motion is then not this peer's.
     pub fn dispute(&mut self) {
         let stamp = self.newest.get().map(|(_, stamp, _)| stamp);
         if self.tie.as_ref().is_some_and(|tie| Some(tie.stamp) != stamp) {
@@ -95,7 +94,7 @@ impl Axis {
         }
     }
 
-    /// Takes in a motion: the same on the ego's axis, if that is known, and how far the axis moved.
+    /// Takes in a motion. Returns the same motion on the ego's axis, if the axis is known, and how far the axis moved.
     pub fn translate(&mut self, motion: &Motion) -> (Option<Motion>, Option<Distance>) {
         if self.newest.get().is_some_and(|(station, ..)| station != motion.station) {
             self.offset.clear();
@@ -176,7 +175,7 @@ mod tests {
             let first = translated(&mut axis, &motion(3, 7, -16_777_000));
             assert_eq!(first, is_route_first.then_some(420_000));
             place(&mut axis, 7, 500_000, 80_000);
-            // Later motions need no route; the wire's positions come round meanwhile.
+            // Later motions need no route. The positions on the wire wrap around meanwhile.
             assert_eq!(translated(&mut axis, &motion(3, 8, -16_778_000)), Some(419_000), "{is_route_first}");
             assert!(axis.standing().is_some());
         }

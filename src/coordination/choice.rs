@@ -1,33 +1,34 @@
-//! Whom the ego has to mind: what a review finds enters; whom the ego follows, and whose way it must not get into, leaves.
+//! The vehicles that the ego has to mind. The findings of a review enter; the vehicle to follow, and the vehicles to yield to, leave.
 
 use super::ComfortBraking;
 
-/// Whom the ego has to mind, as of the last review.
+/// The vehicles that the ego has to mind, as of the last review.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Choice {
-    /// The slot of whom the ego follows.
+    /// The slot of the vehicle that the ego follows.
     pub target: Option<u8>,
-    /// The slot of the one just ahead in the order.
+    /// The slot of the vehicle just ahead in the order.
     pub order: Option<u8>,
-    /// The slot of the one that is estimated to be just ahead on the same leg.
+    /// The slot of the vehicle that is estimated to be just ahead on the ego's own leg.
     pub lane: Option<u8>,
-    /// Whether the ego is to stop before the next conflict area, whomever it follows.
+    /// Whether the ego has to stop before the next conflict area, whichever vehicle it follows.
     pub is_held: bool,
     /// How gently the ego brakes for the target.
     pub comfort: ComfortBraking,
-    /// All that are ahead in the order; also those that are only estimated to have left.
+    /// All vehicles that are ahead in the order, also those that are only estimated to have left.
     pub ahead: Slots,
-    /// All that are ahead on the same leg. Nobody passes there: who was ahead for certain is, whatever is believed of him since.
+    /// All vehicles that are ahead on the ego's own leg. No vehicle passes another there. So a vehicle that was ahead for certain stays
+    /// ahead, whatever is estimated of it since.
     pub leading: Slots,
-    /// Of those, who was out of the radio's reach when it was heard last.
+    /// Those of `leading` that were out of the radio's reach when they were heard last.
     pub beyond: Slots,
-    /// Who is estimated to have got out of reach far ahead, and has not been heard since: it is not followed.
+    /// The vehicles that are estimated to be out of reach far ahead, and have not been heard since. The ego does not follow them.
     pub lost: Slots,
 }
 
 impl Choice {
-    /// Nobody: all zero.
+    /// No vehicle: all zero.
     pub(crate) const NONE: Self = Self {
         target: None,
         order: None,
@@ -52,22 +53,22 @@ impl Choice {
     }
 }
 
-/// Some of the first 16 slots.
+/// A set of the first 16 slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Slots(u16);
 
 impl Slots {
-    /// None of them.
+    /// The empty set.
     pub(crate) const NONE: Self = Self(0);
 
-    /// Whether a slot is one of them.
+    /// Whether a slot is in the set.
     #[must_use]
     pub fn contains(self, index: usize) -> bool {
         self.0 & bit(index) != 0
     }
 
-    /// Takes a slot in or out.
+    /// Adds a slot to the set, or removes it.
     pub(crate) fn set(&mut self, index: usize, is_in: bool) {
         self.0 = if is_in { self.0 | bit(index) } else { self.0 & !bit(index) };
     }

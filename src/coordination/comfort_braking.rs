@@ -1,30 +1,31 @@
-//! How gently the ego makes way for one that comes by another leg: the way to the conflict area and its speed enter, a limit on
-//! its braking leaves.
+//! How gently the ego makes way for a vehicle on another leg. The way to the conflict area and the ego's speed enter; a limit on the
+//! ego's braking leaves.
 
 use crate::fixed::{quotient, saturate_i32};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
 
-/// How hard the ego brakes, at most, to make way for one on another leg, whether that crosses the ego's or not: the last of these
-/// by which it would still come to a stand before the conflict area. The order may put somebody ahead who is just as near, and
-/// the law then asks for a gap of tens of metres; but it is needed at the crossing only. Whoever drives behind the ego and cannot
-/// hear it has the less to be surprised by: in 4 s of the last, `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
+/// How hard the ego brakes, at most, to make way for a vehicle on another leg, whether that leg crosses the ego's or not. Of these, the
+/// ego takes the gentlest by which it still comes to a stand before the conflict area. The order may put a vehicle ahead of the ego that
+/// is just as near, and the law then asks for a gap of tens of metres. But the gap is needed at the crossing only. The gentler the ego
+/// brakes, the less it surprises a vehicle that drives behind it and cannot hear it. In 4 s the gentlest braking takes
+/// `½ · 0.6 · 4² = 5 m` of the 11 m of a time gap.
 const GENTLE_MM_PER_S2: [i32; 3] = [1_500, 1_000, 600];
 
-/// What it takes until the brakes are on.
+/// The time until the brakes are on.
 const GENTLE_REACTION: Seconds = Seconds::from_millis(1_000);
 
-/// How gently the ego brakes for its target: the place of its limit, or 0, as hard as its configuration
-/// lets its controller. So the harder is the smaller one.
+/// How gently the ego brakes for its target: the 1-based index of its limit, or 0 for as hard as the configuration lets the controller
+/// brake. So the smaller number brakes harder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ComfortBraking(u8);
 
 impl ComfortBraking {
-    /// As the configuration says.
+    /// No gentler than the configuration says.
     pub(crate) const NONE: Self = Self(0);
 
     /// The gentlest braking by which the ego comes to a stand within this way.
-    #[allow(clippy::cast_possible_truncation)] // of three
+    #[allow(clippy::cast_possible_truncation)] // at most three
     pub(crate) fn within(way: Distance, speed: Speed) -> Self {
         let (mm_per_s, left) = (i64::from(speed.to_mm_per_s()), way.minus(speed.over(GENTLE_REACTION)));
         let stands = |mm_per_s2: &&i32| {
@@ -34,7 +35,7 @@ impl ComfortBraking {
         Self(GENTLE_MM_PER_S2.iter().take_while(stands).count() as u8)
     }
 
-    /// The braking that it allows of what the configuration does.
+    /// The limit on braking: `braking` is the limit that is configured.
     pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
         let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.get(place));
         gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))

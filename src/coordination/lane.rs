@@ -1,8 +1,8 @@
-//! Who is behind whom on the ego's leg: pairs that are certain, and how far each has come, enter; how far those ahead of them have come
-//! at least leaves.
+//! The order of the vehicles on the ego's leg. Pairs that are certain, and how far each vehicle has come, enter; how far the vehicles
+//! ahead have come at least leaves.
 //!
-//! Nobody passes on a leg. So once the one is ahead of the other for certain it remains so, and its rear bumper is at least where the
-//! other's front one is, however long it is silent.
+//! No vehicle passes another on a leg. So a vehicle that is ahead of another for certain stays ahead. Its rear bumper is at least where
+//! the front bumper of the other is, however long it is silent.
 
 use super::Slots;
 use crate::held::Held;
@@ -11,24 +11,24 @@ use crate::units::Position;
 /// What is known of the order on the ego's leg.
 #[derive(Clone, Debug)]
 pub(super) struct Lane<const PEERS: usize> {
-    /// Of each: who is behind it for certain.
+    /// For each slot: the vehicles that are behind it for certain.
     behind: [Slots; PEERS],
-    /// Of each: how far its rear bumper has come for certain, as somebody behind it is there.
+    /// For each slot: how far its rear bumper has come for certain, because a vehicle behind it has come there.
     passed: [Held<Position>; PEERS],
 }
 
 impl<const PEERS: usize> Lane<PEERS> {
-    /// Nothing: all zero.
+    /// Nothing is known: all zero.
     pub(super) const UNKNOWN: Self = Self { behind: [Slots::NONE; PEERS], passed: [Held::Nothing; PEERS] };
 
-    /// Takes note that the one is ahead of the other.
+    /// Notes that the vehicle `ahead` is ahead of the vehicle `behind`.
     pub(super) fn note_behind(&mut self, ahead: usize, behind: usize) {
         if let Some(slots) = self.behind.get_mut(ahead) {
             slots.set(behind, true);
         }
     }
 
-    /// Takes note that one has come there at least: everyone ahead of it has.
+    /// Notes that a vehicle has come at least to `near`. Every vehicle ahead of it has come there too.
     pub(super) fn note_passed(&mut self, index: usize, near: Position) {
         for (behind, passed) in self.behind.iter().zip(&mut self.passed) {
             if behind.contains(index) && passed.get().is_none_or(|before| before < near) {
@@ -37,12 +37,12 @@ impl<const PEERS: usize> Lane<PEERS> {
         }
     }
 
-    /// How far the rear bumper of one has come at least, by where those behind it are.
+    /// How far the rear bumper of a vehicle has come at least, by the vehicles behind it.
     pub(super) fn passed(&self, index: usize) -> Option<Position> {
         self.passed.get(index)?.get()
     }
 
-    /// Nothing that is known of that one holds any more.
+    /// Forgets all that is known of a vehicle.
     pub(super) fn forget(&mut self, index: usize) {
         self.behind.iter_mut().for_each(|behind| behind.set(index, false));
         if let (Some(behind), Some(passed)) = (self.behind.get_mut(index), self.passed.get_mut(index)) {

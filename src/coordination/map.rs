@@ -1,5 +1,5 @@
-//! The map that the caller provides as constants: intersections with the legs that feed them, and the way of the ego through
-//! some of them. Nothing enters; constants leave.
+//! The map, which the caller provides as constants: the intersections with the legs that lead to them, and the ego's way through some of
+//! them.
 
 use super::path::Path;
 use crate::units::{Distance, Position};
@@ -7,17 +7,17 @@ use crate::units::{Distance, Position};
 /// Legs that an intersection can have.
 pub const LEGS: u8 = 8;
 
-/// A leg that feeds an intersection.
+/// A leg of an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Approach {
     /// Its number in messages; below [`LEGS`].
     pub leg: u8,
-    /// The path of those who come by it.
+    /// The path of the vehicles that come by this leg.
     pub path: &'static Path,
     /// Where the crossing point lies on that path.
     pub crossing: Position,
-    /// The legs that its way crosses, a bit each.
+    /// The legs that this leg's way crosses, one bit each.
     pub conflicts: u8,
 }
 
@@ -27,11 +27,12 @@ pub struct Approach {
 pub enum MapError {
     /// The itinerary has no crossing, or more than 65,535.
     Crossings,
-    /// An intersection is met twice, or the crossings do not lie one behind the other.
+    /// An intersection is met twice, or the crossings are not in the order in which they are met.
     Order,
     /// A leg is numbered [`LEGS`] or more.
     Leg,
-    /// Half a conflict area is negative, or longer than 5.115 m: twice that has to fit the standstill distance of `DrivingParameters`.
+    /// Half a conflict area is negative, or longer than 5.115 m. Twice that has to fit into the standstill distance of
+    /// `DrivingParameters`.
     Area,
     /// A path has no segment.
     Path,
@@ -43,14 +44,14 @@ pub enum MapError {
 pub struct Intersection {
     /// Its number in messages.
     pub id: u8,
-    /// The conflict area reaches from so far before the crossing point to so far behind it, on every leg.
+    /// The conflict area on every leg is this far before and behind the crossing point.
     pub half: Distance,
     /// The legs.
     pub approaches: &'static [Approach],
 }
 
 impl Intersection {
-    /// Whether two legs' ways cross. A leg that is not on the map crosses all.
+    /// Whether the ways of two legs cross. A leg that is not on the map crosses all legs.
     #[must_use]
     pub fn conflict(&self, a: u8, b: u8) -> bool {
         let approach = |leg| self.approaches.iter().find(|approach| approach.leg == leg);
@@ -69,7 +70,7 @@ pub struct Crossing {
     pub intersection: &'static Intersection,
     /// The leg by which the ego comes.
     pub leg: u8,
-    /// Where its crossing point lies on the ego's path.
+    /// Where the crossing point lies on the ego's path.
     pub at: Position,
 }
 
@@ -79,12 +80,12 @@ pub struct Crossing {
 pub struct Itinerary {
     /// Its path.
     pub path: &'static Path,
-    /// The intersections on it, in the order in which they are met; at least one, no intersection twice.
+    /// The intersections on it, in the order in which they are met: at least one, and no intersection twice.
     pub crossings: &'static [Crossing],
 }
 
 impl Itinerary {
-    /// Whether it can be driven by.
+    /// Checks that the ego can drive by it.
     ///
     /// # Errors
     /// The first thing that is wrong with it.
@@ -115,7 +116,7 @@ impl Itinerary {
         Ok(())
     }
 
-    /// The crossing of this intersection, and its place on the way.
+    /// The crossing of this intersection, and its index on the way.
     #[must_use]
     pub fn find(&self, intersection: u8) -> Option<(usize, &'static Crossing)> {
         self.crossings.iter().enumerate().find(|(_, crossing)| crossing.intersection.id == intersection)

@@ -1,17 +1,19 @@
-//! Coordination at intersections without signals: the map, the ego's place on the globe and what the peers say of theirs enter;
-//! whom the ego follows leaves.
+//! Coordination at intersections without signals. The map, the ego's place on the globe and what the peers say of theirs enter; the
+//! vehicle that the ego follows leaves.
 //!
 //! Theory of operation:
 //!
-//! * *Where:* the ego's position on the globe ties its own axis to the path of its itinerary ([`path`]). With the map it then
-//!   knows where on its axis every crossing point lies. A peer says how far it is from a crossing point (`PeerRoute`), or where
-//!   it is on the globe (`PeerPosition`); either ties its axis to the ego's, and from then on it is translated where it comes
-//!   in ([`axis`]). So estimator, controller and envelope know of one lane only, the virtual one.
-//! * *Who:* whoever names the same intersection is in its order ([`order`]); the last one ahead is the *order predecessor*. The
-//!   nearest one ahead on the ego's own leg, at this intersection or another, is the *lane predecessor*. Of the two the ego
-//!   follows the one that asks for more caution. Where the choice changes, both ask for the same, so that it costs no jump.
-//! * *Until when:* a vehicle is at an intersection until its rear has left the conflict area, and arrives at the next one then.
-//!   Beyond the last one it is in no order any more, but goes on saying where it is. Of a peer that is silent, its estimate tells. What is heard or left is reviewed ten times a second.
+//! * *Where:* the ego's position on the globe ties its own axis to the path of its itinerary ([`path`]). With the map, the ego then knows
+//!   where every crossing point lies on its axis. A peer says how far it is from a crossing point (`PeerRoute`), or where it is on the
+//!   globe (`PeerPosition`). Either ties the peer's axis to the ego's. From then on the peer's positions are translated on reception
+//!   ([`axis`]). So estimator, controller and envelope know of one lane only, the virtual lane.
+//! * *Which vehicle:* every station that names the same intersection is in its order ([`order`]). The last station ahead of the ego in
+//!   the order is the *order predecessor*. The nearest vehicle ahead on the ego's own leg, at this intersection or another, is the *lane
+//!   predecessor*. Of the two, the ego follows the one that asks for more caution. Where the choice changes, both ask for the same
+//!   acceleration, so that the change costs no jump.
+//! * *Until when:* a vehicle is at an intersection until its rear has left the conflict area. Then it arrives at the next intersection.
+//!   Beyond the last intersection the vehicle is in no order any more, but still says where it is. For a silent peer, its estimate tells
+//!   all this. The order is reviewed ten times a second.
 
 pub mod axis;
 mod choice;
@@ -40,8 +42,8 @@ use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
 use crate::wire::{Predecessor, StationHash};
 
-/// Behind a vehicle that comes by a crossing leg the standstill distance is the length of the conflict area, if that is longer:
-/// then at whatever speed the two pass, the one's rear has left the area when the other's front enters it.
+/// The standstill distance behind a vehicle that comes by a crossing leg is the length of the conflict area, if that is longer than the
+/// law's. Then the rear of the vehicle ahead has left the area when the front of the ego enters it, at any speed.
 #[must_use]
 pub fn standstill_behind(law: Distance, crossing: &Crossing, leg: u8) -> Distance {
     let intersection = crossing.intersection;
@@ -51,23 +53,23 @@ pub fn standstill_behind(law: Distance, crossing: &Crossing, leg: u8) -> Distanc
 /// Time from one review to the next.
 pub(crate) const REVIEW: Duration = Duration::from_millis(100);
 
-/// The ego follows one that comes by another leg only so long after it has heard of it, if it still can stop gently then, and
-/// its own horizon says so from the beginning: as long as the longest silence that nobody is to be surprised by, and until
-/// the next message is heard.
+/// The ego follows a vehicle on another leg only this long after it has heard of it, if the ego can still stop gently then; the ego's own
+/// horizon says so from the beginning. The time is the longest silence that is to surprise no vehicle, and the time until the next
+/// message is heard.
 pub(crate) const ANNOUNCED: Duration = Duration::from_millis(4_500);
 
-/// Fixes that differ from the tie by more than this are another place; others are averaged over 16, which takes the rounding
-/// of a position on the globe (11 mm) out.
+/// A fix that differs from the tie by more than this is another place. Other fixes are averaged over 16, which removes the rounding of a
+/// position on the globe (11 mm).
 const RELOCATED: Distance = Distance::from_mm(5_000);
 const AVERAGED: i64 = 16;
 
-/// The ego at its next crossing.
+/// The registration of the ego at its next crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Registration {
-    /// When it arrived, as it tells the others.
+    /// When the ego arrived, as it tells the others.
     pub arrival: Arrival,
-    /// When it arrived, by the unit's own clock.
+    /// When the ego arrived, by the unit's own clock.
     pub since: Instant,
 }
 
@@ -75,20 +77,20 @@ pub struct Registration {
 #[derive(Clone, Debug)]
 pub struct Coordination<const PEERS: usize> {
     itinerary: Option<&'static Itinerary>,
-    /// Where the path begins on the ego's axis.
+    /// The position of the path's origin on the ego's axis.
     tie: Held<Position>,
-    /// Which crossing is next; as many as there are: none.
+    /// The index of the next crossing; the number of crossings if there is no next one.
     current: usize,
     registration: Held<Registration>,
     axes: [Axis; PEERS],
-    /// With those that do not heed the ego.
+    /// For each slot: how long the station has not heeded the ego.
     yield_timer: [YieldTimer; PEERS],
     lane: Lane<PEERS>,
     claim: Held<StationHash>,
     choice: Choice,
-    /// When the next review is due: others have been told what will be found then.
+    /// When the next review is due. The horizon that the ego sends tells the others what will be found then.
     due: Held<Instant>,
-    /// Whether there is one before that.
+    /// Whether a review is due before that.
     at_once: bool,
 }
 
@@ -113,7 +115,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// Sets out on a way, from its beginning.
     ///
     /// # Errors
-    /// What is wrong with the map; nothing is changed then.
+    /// The error in the map. Nothing is changed then.
     pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
         itinerary.check()?;
         self.reset();
@@ -141,19 +143,19 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary
     }
 
-    /// The crossing that the ego is at or comes to next.
+    /// The crossing that the ego is at, or comes to next.
     #[must_use]
     pub fn crossing(&self) -> Option<&'static Crossing> {
         self.itinerary?.crossings.get(self.current)
     }
 
-    /// Its place on the way; as many as there are: none.
+    /// The index of the next crossing; the number of crossings if there is no next one.
     #[must_use]
     pub(crate) const fn next(&self) -> usize {
         self.current
     }
 
-    /// The place of the crossing that is next with the ego's front bumper there, if it was that one before.
+    /// The index of the next crossing when the ego's front bumper is at `front`; `before` was the next crossing before.
     #[must_use]
     pub(crate) fn next_of(&self, before: usize, front: Position, length: Distance) -> usize {
         let rear = front.ahead(length.negated());
@@ -164,37 +166,37 @@ impl<const PEERS: usize> Coordination<PEERS> {
         next
     }
 
-    /// Where the conflict area of that crossing ends on the ego's axis.
+    /// Where the conflict area of a crossing ends on the ego's axis.
     pub(crate) fn end_of(&self, place: usize) -> Option<Position> {
         let crossing = self.itinerary?.crossings.get(place)?;
         Some(self.crossing_point(crossing)?.ahead(crossing.intersection.half))
     }
 
-    /// The crossing that the ego tells the others of: the next one, or the last one for as long as it has not set out anew.
+    /// The crossing that the ego names to the others: the next one, or the last one until the ego sets out anew.
     #[must_use]
     pub fn named(&self) -> Option<&'static Crossing> {
         self.crossing().or_else(|| self.itinerary?.crossings.last())
     }
 
-    /// When the ego arrived there.
+    /// When the ego arrived at the next crossing.
     #[must_use]
     pub fn registration(&self) -> Option<Registration> {
         self.registration.get()
     }
 
-    /// Whom the ego has to mind.
+    /// The vehicles that the ego has to mind.
     #[must_use]
     pub const fn choice(&self) -> &Choice {
         &self.choice
     }
 
-    /// What a peer says of its place.
+    /// What a peer says of its approach.
     #[must_use]
     pub fn standing(&self, index: usize) -> Option<&PeerApproach> {
         self.axes.get(index)?.standing()
     }
 
-    /// Whom the ego takes to be just ahead of it in the order; unknown before it has arrived.
+    /// The vehicle that the ego takes to be just ahead of it in the order; unknown before the ego has arrived.
     #[must_use]
     pub fn claim(&self) -> Predecessor {
         match (self.registration.as_ref(), self.claim.get()) {
@@ -204,21 +206,21 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
-    /// Where a crossing point of the ego's way lies on its own axis.
+    /// Where a crossing point of the ego's way lies on the ego's axis.
     #[must_use]
     pub fn crossing_point(&self, crossing: &Crossing) -> Option<Position> {
         let tie = self.tie.get()?;
         Some(Position::from_bits(tie.to_bits().saturating_add(crossing.at.to_bits())))
     }
 
-    /// Whether the ego and a station that stands there come by the same leg.
+    /// Whether a peer with this approach comes by the ego's leg.
     #[must_use]
     pub(crate) fn is_on_lane(&self, standing: &PeerApproach) -> bool {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(standing.crossing));
         crossing.is_some_and(|crossing| crossing.leg == standing.leg)
     }
 
-    /// Whether a station is at the crossing that is next for the ego.
+    /// Whether a peer with this approach is at the crossing that is next for the ego.
     #[must_use]
     pub(crate) const fn is_here(&self, standing: &PeerApproach) -> bool {
         standing.crossing == self.current
@@ -229,12 +231,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.axes.get(index)
     }
 
-    /// The axis of a slot, to be changed.
+    /// The axis of a slot, mutable.
     pub(crate) fn axis_mut(&mut self, index: usize) -> Option<&mut Axis> {
         self.axes.get_mut(index)
     }
 
-    /// Ties the ego's axis to the path: it was there on both at the same time.
+    /// Ties the ego's axis to the path: `on_axis` and `along` are the same place at the same time.
     pub(crate) fn locate(&mut self, on_axis: Position, along: Position) {
         let tie = Position::from_bits(on_axis.to_bits().saturating_sub(along.to_bits()));
         let Some(held) = self.tie.get() else { return self.tie.set(tie) };
@@ -255,12 +257,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.due.get()
     }
 
-    /// What was found at the last review does not hold any more: there is one more before the next.
+    /// Asks for an extra review before the next one that is due, because the findings of the last review do not hold any more.
     pub(crate) fn review_at_once(&mut self) {
         self.at_once = true;
     }
 
-    /// Brings the ego on to the crossing that its front bumper at this position, and its length, make the next one.
+    /// Updates the next crossing of the ego, with its front bumper at `front` and its length.
     pub(crate) fn advance(&mut self, front: Position, length: Distance, now: Instant, arrival: Arrival) {
         if self.tie.get().is_none() {
             return;
@@ -279,7 +281,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
-    /// Another station has this slot now: what was decided of the one before it does not hold for it.
+    /// Another station has this slot now. What was decided of the station before does not hold for it.
     pub(crate) fn vacate(&mut self, index: usize) {
         self.choice.vacate(index);
         if let Some(yield_timer) = self.yield_timer.get_mut(index) {
@@ -288,44 +290,45 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.forget_lane(index);
     }
 
-    /// Nothing is known any more of who is behind that one on the ego's leg, and of whom it is behind.
+    /// Forgets which vehicles are behind this one on the ego's leg, and which are ahead of it.
     pub(crate) fn forget_lane(&mut self, index: usize) {
         self.lane.forget(index);
     }
 
-    /// Chooses whom to follow, and how gently to brake for it, and takes note of who is ahead on the lane.
+    /// Sets the vehicle to follow, how gently to brake for it, and the vehicle just ahead on the lane.
     pub(crate) fn choose(&mut self, target: Option<usize>, comfort: ComfortBraking, lane: Option<usize>) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
         (self.choice.target, self.choice.comfort, self.choice.lane) = (slot(target), comfort, slot(lane));
     }
 
-    /// Takes note of who is ahead on the same leg, and who of them is beyond the radio's reach.
+    /// Notes the vehicles that are ahead on the ego's leg, and those of them that are beyond the radio's reach.
     pub(crate) fn note_leading(&mut self, leading: Slots, beyond: Slots) {
         (self.choice.leading, self.choice.beyond) = (leading, beyond);
     }
 
-    /// Takes note that the one is ahead of the other on the same leg, for certain. Nobody passes there: it remains so.
+    /// Notes that one vehicle is ahead of another on the ego's leg, for certain. No vehicle passes another there, so that this remains
+    /// so.
     pub(crate) fn note_behind(&mut self, ahead: usize, behind: usize) {
         self.lane.note_behind(ahead, behind);
     }
 
-    /// Takes note that one on the same leg has come there at least: everyone ahead of it has.
+    /// Notes that a vehicle on the ego's leg has come at least to `near`. Every vehicle ahead of it has come there too.
     pub(crate) fn note_passed(&mut self, index: usize, near: Position) {
         self.lane.note_passed(index, near);
     }
 
-    /// How far the rear bumper of one that was ahead of somebody else has come at least, by where that one is.
+    /// How far the rear bumper of a vehicle has come at least, by the vehicles that are known to be behind it.
     pub(crate) fn passed(&self, index: usize) -> Option<Position> {
         self.lane.passed(index)
     }
 
-    /// Takes note of who got out of reach.
+    /// Notes the vehicles that are out of reach.
     pub(crate) fn note_lost(&mut self, lost: Slots) {
         self.choice.lost = lost;
     }
 
-    /// How gently the ego, with its front bumper there, at this speed and with that crossing next, may brake for one that stands
-    /// there: if that one comes by another leg, the more so the farther the conflict area is.
+    /// How gently the ego may brake for a peer with this approach, with the ego's front bumper at `front`, at this speed, and with `next`
+    /// as its next crossing. If the peer comes by another leg, the ego brakes the more gently, the farther away the conflict area is.
     pub(crate) fn comfort(
         &self,
         standing: &PeerApproach,
@@ -342,9 +345,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
         ComfortBraking::within(point.ahead_of(front).minus(crossing.intersection.half), speed)
     }
 
-    /// Whether the ego, with its front bumper there, at this speed and with that crossing next, follows one that stands there: who
-    /// comes by another leg is followed when the others have been told for long enough, or else only where the ego could not
-    /// stop gently any more.
+    /// Whether the ego follows a peer with this approach, with the ego's front bumper at `front`, at this speed, and with `next` as its
+    /// next crossing. A peer on the ego's own leg, or at another crossing, is always followed. A peer on another leg is followed once the
+    /// ego has announced it for long enough, or earlier where the ego could not stop gently any more.
     pub(crate) fn is_announced(
         &self,
         standing: &PeerApproach,

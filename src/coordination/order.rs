@@ -1,37 +1,38 @@
-//! The order at an intersection: first come, first served. What the stations at it say of themselves enters; the one that the
-//! ego has to let pass just before itself leaves.
+//! The order at an intersection: first come, first served. What the stations at the intersection say of themselves enters; the station
+//! that passes just before the ego leaves.
 //!
-//! Every station tells when it arrived and whom it takes to be just ahead of it (its *claim*). Arrivals are told by those who
-//! arrived, so all who heard the same stations agree, whenever they heard them; equal arrivals are decided by the station's
-//! number. A station that does not say when it arrived is let pass.
+//! Every station tells when it arrived, and which station it takes to be just ahead of it (its *claim*). Each station tells its own
+//! arrival. So all stations that heard the same stations agree, whenever they heard them. Equal arrivals are decided by the number of the
+//! station. The ego yields to a station that does not say when it arrived.
 //!
-//! Those who heard different stations do not agree, and it shows: one that arrived later than the ego and yet claims somebody
-//! from before the ego, or nobody, has not heard of the ego and heads for the ego's place; one that claims somebody who is not
-//! here, by what the ego has heard, may. If that lasts, the ego gives way: it tells a new arrival, just after that one's. So a station only ever moves back, the order is that of the arrivals told
-//! at all times, and as soon as everyone hears everyone again there is one order, whatever happened before.
+//! Stations that heard different stations do not agree, and their claims show it. Take a station that arrived later than the ego. If it
+//! claims no station, or one that is before the ego, it has not heard of the ego and heads for the ego's place. If it claims a station
+//! that is not here, by what the ego has heard, it may head for that place. If this lasts, the ego yields: it tells a new arrival, just
+//! after the arrival of the other station. So a station only ever moves back. The order is that of the told arrivals at all times. As
+//! soon as every station hears every other one again, there is one order, whatever happened before.
 
 use core::cmp::Ordering;
 
 use crate::wire::{Predecessor, StationHash};
 
-/// When a station arrived: GNSS time by 10 ms, modulo 2²⁰ (2.9 h). Of two, the earlier is the one from which the other is
-/// reached within half of that.
+/// When a station arrived: GNSS time in steps of 10 ms, modulo 2²⁰ (2.9 h). Of two arrivals, the earlier is the one from which the other
+/// is reached within half of that range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Arrival(pub u32);
 
 impl Arrival {
-    /// Bits of it.
+    /// Number of bits.
     const BITS: u32 = 20;
 
-    /// Of GNSS time in microseconds.
+    /// The arrival of a GNSS time in microseconds.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // masked
     pub const fn of_micros(micros: u64) -> Self {
         Self((micros / 10_000) as u32 & ((1 << Self::BITS) - 1))
     }
 
-    /// The next one.
+    /// The next arrival, 10 ms later.
     #[must_use]
     pub const fn next(self) -> Self {
         Self(self.0.wrapping_add(1) & ((1 << Self::BITS) - 1))
@@ -57,11 +58,11 @@ impl Arrival {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Entry {
-    /// Who.
+    /// The station.
     pub station: StationHash,
-    /// When it arrived; `None`: it does not say.
+    /// When it arrived; `None` if it does not say.
     pub arrival: Option<Arrival>,
-    /// Whom it takes to be just ahead of it.
+    /// The station that it takes to be just ahead of it.
     pub claim: Predecessor,
 }
 
@@ -83,21 +84,22 @@ impl Entry {
     }
 }
 
-/// What becomes of the ego's place by what another station claims.
+/// What the claim of another station means for the ego's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Regard {
-    /// It arrived before the ego, or goes after the ego or somebody who does.
+    /// It arrived before the ego, or it goes after the ego or after a station that goes after the ego.
     Heeds,
-    /// It arrived after the ego and claims somebody who is not at this crossing by what the ego has heard: one between the
-    /// two, or one before the ego.
+    /// It arrived after the ego, and claims a station that is not at this crossing by what the ego has heard. That station may be between
+    /// the two, or before the ego.
     Unclear,
-    /// It arrived after the ego and acts as if the ego were not there: it claims nobody, or somebody who was there before the ego.
+    /// It arrived after the ego and ignores the ego: it claims no station, or one that was there before the ego.
     Overlooks,
 }
 
 impl Regard {
-    /// How another station regards the ego; all that the ego has heard of are there to tell whom it claims.
+    /// How another station regards the ego. `all` are the stations that the ego has heard of; among them is the claimed one, if the ego
+    /// knows it.
     #[must_use]
     pub fn of<'a>(other: &Entry, own: &Entry, mut all: impl Iterator<Item = &'a Entry>) -> Self {
         if other.is_before(own) || other.claims(own) {
@@ -105,7 +107,7 @@ impl Regard {
         }
         match other.claim {
             Predecessor::None => Self::Overlooks,
-            Predecessor::Unknown => Self::Heeds, // it has not arrived yet
+            Predecessor::Unknown => Self::Heeds, // the station has not arrived yet
             Predecessor::Station(claimed) => match all.find(|entry| entry.station == claimed) {
                 None => Self::Unclear,
                 Some(claimed) if claimed.is_before(own) => Self::Overlooks,

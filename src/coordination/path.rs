@@ -1,16 +1,15 @@
 //! A path over ground: a position on the globe enters, the way along the path and the distance from it leave.
 //!
-//! A path is a chain of straight segments, prepared off line: each holds what one step of 1e-7° to the north and to the
-//! east is worth along it and across it, in metres with 36 fraction bits. So a projection is integer products of
-//! coordinate differences; no angle function is needed on the unit, whose single-precision ones would be metres off over a
-//! few kilometres. The scales are those at the segment's middle latitude: for segments of up to 500 m the error of that is
-//! below a millimetre up to 60° of latitude.
+//! A path is a chain of straight segments, prepared off line. Each segment holds what a step of 1e-7° to the north and to the east is
+//! worth along it and across it, in metres with 36 fraction bits. So a projection is integer products of coordinate differences. The unit
+//! needs no angle function; in single precision these would be off by metres over a few kilometres. The scales are those at the middle
+//! latitude of the segment. For segments of up to 500 m the error of that is below a millimetre, up to 60° of latitude.
 
 use crate::fixed::saturate_i32;
 use crate::units::{Distance, Position};
 use crate::wire::geo::GeoPosition;
 
-/// What one step of 1e-7° is worth in some direction, in metres with 36 fraction bits: at most 0.0112 m, below 2³⁰.
+/// What a step of 1e-7° is worth in some direction, in metres with 36 fraction bits: at most 0.0112 m, which is below 2³⁰.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Scale {
@@ -33,19 +32,19 @@ impl Scale {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Segment {
-    /// Where it begins, degrees north by 1e-7.
+    /// Latitude of its beginning, degrees north in steps of 1e-7.
     pub latitude: i32,
-    /// Where it begins, degrees east by 1e-7.
+    /// Longitude of its beginning, degrees east in steps of 1e-7.
     pub longitude: i32,
-    /// The way along the path up to there.
+    /// The way along the path up to its beginning.
     pub begins: Position,
     /// Its length; up to 500 m.
     pub length: Distance,
-    /// Worth of a step along it.
+    /// What a step is worth along it.
     pub along: Scale,
-    /// Worth of a step across it, positive to the right.
+    /// What a step is worth across it, positive to the right.
     pub across: Scale,
-    /// Its direction, degrees clockwise from north by 0.0125; 0 to 28,799.
+    /// Its direction, degrees clockwise from north in steps of 0.0125; 0 to 28,799.
     pub heading: u16,
 }
 
@@ -67,16 +66,16 @@ pub struct Place {
     pub across: Distance,
 }
 
-/// Farther than this beside a path, or beyond its ends, a vehicle is not on it.
+/// A vehicle that is farther than this beside a path, or beyond its ends, is not on the path.
 pub const ASIDE: Distance = Distance::from_mm(10_000);
 
-/// Turned away from a segment by more than 60°, a vehicle is not driving along it.
+/// A vehicle that is turned away from a segment by more than 60° does not drive along it.
 const TURNED: u16 = 4_800;
 /// A full turn.
 const TURN: u16 = 28_800;
 
 impl Path {
-    /// Where a vehicle is: on the nearest segment that it drives along. `None` if it is on none.
+    /// Where a vehicle is on the path: on the nearest segment that it drives along. `None` if it is on no segment.
     #[must_use]
     pub fn place(&self, geo: &GeoPosition) -> Option<Place> {
         let mut nearest: Option<(Distance, Place)> = None;

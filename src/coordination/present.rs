@@ -1,4 +1,4 @@
-//! Who is at the ego's next crossing: what a review finds of a station enters; what the order is decided by leaves.
+//! A station at the ego's next crossing, as the review finds it and as the order is decided by it.
 
 use super::Entry;
 use crate::time::Instant;
@@ -9,26 +9,27 @@ use crate::time::Instant;
 pub(crate) struct Present {
     /// Its slot.
     pub index: usize,
-    /// What it says.
+    /// What it says of itself.
     pub entry: Entry,
     /// When it said so.
     pub heard: Instant,
-    /// Whether its rear is estimated to have left the conflict area. Nobody follows it then; it is certain only by the bound.
+    /// Whether its rear is estimated to have left the conflict area. No vehicle follows it then. Only the bound makes it certain.
     pub has_left: bool,
-    /// Whether the ego is so far ahead that it is out of the conflict area before this one is there, or cannot keep out of it.
+    /// Whether the ego is so far ahead that it has left the conflict area before this station is there, or whether the ego cannot stop
+    /// before the area any more.
     pub is_far_behind: bool,
     /// Whether the ego may follow it.
     pub is_announced: bool,
-    /// Whether it comes by the ego's own leg: ahead of the ego, or behind it.
+    /// Whether it is ahead of the ego or behind it, if it comes by the ego's own leg.
     pub lane: Option<Side>,
 }
 
-/// Which side of the ego on its own leg.
+/// A side of the ego on its own leg.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) enum Side {
-    /// It is ahead.
+    /// Ahead of the ego.
     Ahead,
-    /// It is behind.
+    /// Behind the ego.
     Behind,
 }

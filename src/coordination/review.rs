@@ -1,4 +1,5 @@
-//! The review of an order: who is at the ego's next crossing enters; who is ahead of the ego, and whether the ego gives way, leaves.
+//! The review of an order. The stations at the ego's next crossing enter; the stations ahead of the ego, and whether the ego yields,
+//! leave.
 
 use super::{Arrival, Coordination, Entry, Present, REVIEW, Regard, Registration, Side, Slots};
 use crate::held::Held;
@@ -6,7 +7,7 @@ use crate::time::Instant;
 use crate::wire::StationHash;
 
 impl<const PEERS: usize> Coordination<PEERS> {
-    /// Reviews who is here. Gives whether the ego gave way to one that did not heed it.
+    /// Reviews the stations that are present. Returns whether the ego yielded to a station that did not heed it.
     pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
         self.at_once = false;
         self.due.set(match self.due.get() {
@@ -16,8 +17,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
         });
         let Some(registration) = self.registration.get() else { return false };
         let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
-        // Nobody passes on the same leg: who is behind there gives way to whom the ego gives way, whatever it has heard, and who
-        // is ahead takes the ego along. Or else three could wait for one another, two by the order and two on the leg.
+        // No vehicle passes another on the same leg. So a vehicle that is behind the ego on its leg yields to every vehicle that the ego
+        // yields to, whatever it has heard. A vehicle that is ahead on the leg takes the ego along. Otherwise three vehicles could wait
+        // for one another, two by the order and two on the leg.
         let ahead = present.iter().filter(|other| other.lane == Some(Side::Ahead) && !other.has_left);
         let after = ahead.filter(|other| ego.is_before(&other.entry)).filter_map(|other| other.entry.arrival);
         if let Some(latest) = after.reduce(|a, b| if a.is_before(b) { b } else { a }) {
@@ -29,7 +31,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         for Present { index, entry, heard, is_far_behind, .. } in
             present.iter().filter(|other| other.lane != Some(Side::Behind))
         {
-            // What was said before the ego could be heard of does not count.
+            // What a station said before it could hear of the ego does not count.
             let counts = !is_far_behind && heard.since(registration.since) >= REVIEW;
             let regard = Regard::of(entry, &ego, present.iter().map(|other| &other.entry));
             let regard = if counts { regard } else { Regard::Heeds };
@@ -63,12 +65,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         given_way.is_some()
     }
 
-    /// Takes note of whether the ego is to stop before the next conflict area.
+    /// Notes whether the ego has to stop before the next conflict area.
     pub(crate) fn hold(&mut self, is_held: bool) {
         self.choice.is_held = is_held;
     }
 
-    /// The ego lets all go first who arrived before then: it tells that arrival, if it is later than its own.
+    /// The ego yields to all stations that arrived before `arrival`: it tells `arrival` as its own, if that is later.
     pub(crate) fn give_way(&mut self, arrival: Arrival) {
         if let Held::Value(registration) = &mut self.registration
             && registration.arrival.is_before(arrival)

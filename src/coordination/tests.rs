@@ -19,7 +19,7 @@ const fn approach(leg: u8, conflicts: u8) -> Approach {
     Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
 }
 
-// Leg 2 comes the other way along the same street.
+// Leg 2 comes along the same street from the other side.
 static INTERSECTION: Intersection = Intersection {
     id: 1,
     half: Distance::from_mm(4_000),
@@ -72,7 +72,7 @@ fn who_arrived_later_and_claims_somebody_before_the_ego_or_nobody_overlooks_it_a
     assert_eq!(regard(&before), Regard::Heeds);
 }
 
-/// Stations at one intersection, each with its own coordination, and what each last heard of each other.
+/// Stations at one intersection, each with its own coordination, and what each station heard last of every other.
 struct Meeting {
     stations: Vec<(Entry, Coordination<8>)>,
     heard: Vec<Vec<Option<(Entry, Instant)>>>,
@@ -100,7 +100,7 @@ impl Meeting {
         Self { stations: stations.collect(), heard: vec![vec![None; arrivals.len()]; arrivals.len()] }
     }
 
-    /// Everyone hears whom it hears, then reviews. Gives how many gave way.
+    /// Every station hears the stations that `hears` lets it hear, and then reviews. Returns how many stations yielded.
     fn tick(&mut self, tick: u64, mut hears: impl FnMut(usize, usize) -> bool) -> usize {
         let mut gave_way = 0;
         for to in 0..self.stations.len() {
@@ -133,7 +133,7 @@ impl Meeting {
         gave_way
     }
 
-    /// Whom each takes to be just ahead, by index.
+    /// The station that each station takes to be just ahead, by index.
     fn claims(&self) -> Vec<Option<usize>> {
         let index = |claim| match claim {
             Predecessor::Station(StationHash(station)) => Some(usize::from(station) - 1),
@@ -142,7 +142,7 @@ impl Meeting {
         self.stations.iter().map(|(_, coordination)| index(coordination.claim())).collect()
     }
 
-    /// The stations in the order of the chain of claims, if they are one chain.
+    /// The stations in the order of the chain of claims; `None` if the claims are not one chain.
     fn chain(&self) -> Option<Vec<usize>> {
         let claims = self.claims();
         let mut chain = vec![claims.iter().position(Option::is_none)?];
@@ -156,7 +156,7 @@ impl Meeting {
     }
 }
 
-/// A generator of its own, so that a failure can be repeated.
+/// A seeded generator, so that a failure can be repeated.
 struct Dice(u64);
 
 impl Dice {
@@ -212,7 +212,7 @@ fn after_any_deafness_all_agree_again_on_one_order() {
 
 #[test]
 fn one_of_two_that_head_for_the_same_place_gives_way() {
-    // The last one cannot hear the second one, whoever the others are: the second one makes room.
+    // One station cannot hear another one, whichever the others are. Of two with the same claim, one makes room.
     let mut dice = Dice(3);
     for _ in 0..2_000 {
         let arrivals = arrivals(&mut dice);
@@ -231,7 +231,7 @@ fn one_of_two_that_head_for_the_same_place_gives_way() {
 
 #[test]
 fn one_whose_claim_is_of_a_stranger_for_longer_than_a_silence_lasts_is_given_way() {
-    // The first two hear nothing of one another, and the last one nothing of the second, which hears it.
+    // The first two stations do not hear one another. The last does not hear the second, and the second hears the last.
     let deaf = [(0, 1), (1, 0), (2, 1)];
     let mut meeting = Meeting::of(&[1, 2, 3]);
     for tick in 0..100 {
@@ -240,7 +240,7 @@ fn one_whose_claim_is_of_a_stranger_for_longer_than_a_silence_lasts_is_given_way
         let claims = if tick < 61 { [None, None, Some(0)] } else { [None, Some(2), Some(0)] };
         assert_eq!(meeting.claims(), claims, "{tick}");
     }
-    // A silence of 4 s is not that long.
+    // A silence of 4 s is shorter than that.
     let mut meeting = Meeting::of(&[1, 2, 3]);
     for tick in 0..100 {
         assert_eq!(meeting.tick(tick, |to, from| tick > 41 || !deaf.contains(&(to, from))), 0, "{tick}");
@@ -284,14 +284,14 @@ fn a_review_at_once_does_not_move_the_times_of_the_others() {
     assert_eq!(review(0), Some(after(100)));
     assert_eq!(review(70), Some(after(100)));
     assert_eq!(review(99), Some(after(100)));
-    // A tick that comes late does not move them either, unless it is one too many.
+    // A tick that comes late does not move the due times either, unless it misses one.
     assert_eq!(review(103), Some(after(200)));
     assert_eq!(review(299), Some(after(300)));
     assert_eq!(review(450), Some(after(550)));
 }
 
-/// The ego, station 9, arrived at 20; after so many reviews of the same others, each 100 ms after the last: when it has arrived
-/// by then, and whom it claims.
+/// The ego is station 9 and arrived at 20. After `times` reviews of the same others, 100 ms apart: the arrival that it tells then, and
+/// its claim.
 fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
     let mut coordination: Coordination<8> = Coordination::idle();
     coordination.set_out(&ITINERARY).unwrap();
@@ -315,8 +315,8 @@ fn whoever_is_ahead_on_the_same_leg_takes_the_ego_along_until_it_has_left() {
     let further = there(1, entry(2, 40, Some(1)), Some(Side::Ahead));
     assert_eq!(reviewed(1, &[further, ahead]), (41, Predecessor::Station(StationHash(2))));
     assert_eq!(reviewed(1, &[Present { has_left: true, ..ahead }]), (20, Predecessor::None));
-    // Of two that tell the same arrival the smaller number is first, and behind on the leg it must not be: each would wait for
-    // the other, one by the order and one on the leg, as soon as a third one told that arrival too.
+    // Of two stations with the same arrival, the one with the smaller number is first. On the leg it must not be behind. Otherwise each
+    // would wait for the other, one by the order and one on the leg, as soon as a third station told that arrival too.
     let together = |station| there(0, entry(station, 20, None), Some(Side::Ahead));
     assert_eq!(reviewed(1, &[together(12)]), (21, Predecessor::Station(StationHash(12))));
     assert_eq!(reviewed(1, &[together(3)]), (20, Predecessor::Station(StationHash(3))));

@@ -1,33 +1,34 @@
-//! How long the ego bears with one that does not heed it: how another station regards the ego enters, at every review; whether
-//! that has lasted too long leaves.
+//! How long the ego waits before it yields to a station that does not heed it. How the station regards the ego enters, at every review;
+//! whether that has lasted too long leaves.
 
 use super::Regard;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 
-/// A later arrival has to overlook the ego for this long to be given way: five of the messages that tell it, so that what is
-/// only on its way, or lost once or twice, costs nothing.
+/// The ego yields to a later arrival that has overlooked it for this long. These are five of the messages that tell the ego's arrival. So
+/// a message that is still under way, or is lost once or twice, costs nothing.
 pub(crate) const OVERLOOKED: Duration = Duration::from_millis(1_000);
 
-/// And one whose claim is unclear to the ego for this long: by then whoever is claimed has not only been silent, but is out of
+/// The ego yields to a station whose claim is unclear for this long. By then the claimed station has not only been silent, but is out of
 /// the ego's hearing.
 pub(crate) const UNCLEAR: Duration = Duration::from_millis(6_000);
 
-/// With one station.
+/// The timer of one station.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct YieldTimer {
-    /// Since when it has not heeded the ego, in one way or the other.
+    /// Since when the station has not heeded the ego, in one way or the other.
     unheeded: Held<Instant>,
-    /// Since when it has overlooked the ego.
+    /// Since when the station has overlooked the ego.
     overlooked: Held<Instant>,
 }
 
 impl YieldTimer {
-    /// Nothing to bear with.
+    /// The station heeds the ego.
     pub(crate) const FULL: Self = Self { unheeded: Held::Nothing, overlooked: Held::Nothing };
 
-    /// Whether a station has regarded the ego so for too long, by when it said so: what a silent one said last may be out of date.
+    /// Whether a station has regarded the ego in this way for too long. The time counts by when the station said so, because the last
+    /// words of a silent station may be out of date.
     pub(crate) fn is_over(&mut self, heard: Instant, regard: Regard) -> bool {
         let unheeded = lasts(&mut self.unheeded, regard != Regard::Heeds, heard);
         let overlooked = lasts(&mut self.overlooked, regard == Regard::Overlooks, heard);
@@ -35,7 +36,7 @@ impl YieldTimer {
     }
 }
 
-/// For how long it has been so; `None`: it is not.
+/// For how long `is_so` has held; `None` if it does not hold.
 fn lasts(since: &mut Held<Instant>, is_so: bool, heard: Instant) -> Option<Duration> {
     if !is_so {
         since.clear();
@@ -50,7 +51,7 @@ fn lasts(since: &mut Held<Instant>, is_so: bool, heard: Instant) -> Option<Durat
 mod tests {
     use super::*;
 
-    /// When patience is over with a station that is heard every 100 ms, in tenths of a second.
+    /// When the timer is over for a station that is heard every 100 ms, in tenths of a second.
     fn over_at(mut regard: impl FnMut(u64) -> Regard) -> Option<u64> {
         let mut yield_timer = YieldTimer::FULL;
         (0..200).find(|tick| yield_timer.is_over(Instant::from_micros(tick * 100_000), regard(*tick)))

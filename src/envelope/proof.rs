@@ -1,48 +1,49 @@
-//! Proof of the gate's arithmetic: the fixed-point gate and the theory at the top of [`crate::envelope`] enter; that the one
-//! keeps what the other says leaves. The names are those there; `H` is the reaction time, a tick `h` and what is left of the delay `d`.
+//! Proof of the gate's arithmetic: that the fixed-point gate keeps what the theory at the top of [`crate::envelope`] says. The names are
+//! those of the theory. `H` is the reaction time: a tick `h` and what is left of the delay `d`.
 //!
 //! # What is proved
 //!
-//! Let `X = Z + ½ j (τ + H)²`, with `Z` the speed of closing (of `y`, or of `y` on `q`), `b` the braking (less `c`, if the one
-//! ahead goes on braking), `S` the way. **Safe** is `S >= 0` and `X <= 0` or `X² <= 2 b S`.
+//! Let `X = Z + ½ j (τ + H)²`, with `Z` the closing speed (of `y`, or of `y` on `q`), `b` the braking (less `c`, if the vehicle ahead
+//! goes on braking), and `S` the way. **Safe** is `S >= 0` and `X <= 0` or `X² <= 2 b S`.
 //!
-//! 1. **A command that comes into force late.** What is safe with the whole reaction time `h + d` when a command is computed is
-//!    safe with `h + d - δ` when that comes into force `δ <= d` later, if what was in force until then had been commanded no
+//! 1. **A command that comes into force late.** If it is safe with the whole reaction time `h + d` when it is computed, it is safe with
+//!    `h + d - δ` when it comes into force `δ <= d` later. The condition is that what was in force until then had been commanded no
 //!    faster than at jerk `j`.
-//! 2. **A tick.** Safe with the command `u = jτ - b` and a reaction time `h + ρ` is, after a tick of length `h`, safe with the
-//!    floor that then holds, `max(u - jh, -b)`, and the same reaction time; and `S >= 0` at every moment in between. A tick that
-//!    is longer by `m <= ρ` uses up that much of `ρ`; one that is shorter uses up nothing; and while `-b` is in force none does,
-//!    however long it is. Without an allowance nothing is kept through a tick that is too long.
-//! 3. **The one ahead does what it can.** `S` only grows and `Z` only falls if it is further ahead or faster than its near end.
-//!    Reckoned with a harder braking than it has, the point of rest of a near end only moves on.
-//! 4. **Rounding.** What the code calls safe is safe, and every command up to the code's cap is, for every lag within the
-//!    tolerance.
+//! 2. **A tick.** Let it be safe with the command `u = jτ - b` and a reaction time `h + ρ`. After a tick of length `h` it is safe with
+//!    the floor that then holds, `max(u - jh, -b)`, and the same reaction time; and `S >= 0` at every moment in between. A tick that is
+//!    longer by `m <= ρ` uses up `m` of `ρ`. A shorter tick uses up nothing. While `-b` is in force, no tick uses up any, however long it
+//!    is. Without an allowance nothing is kept through a tick that is too long.
+//! 3. **The vehicle ahead does what it can.** `S` only grows and `Z` only falls if the vehicle is further ahead or faster than its near
+//!    end. If a near end is reckoned with a harder braking than it has, its point of rest only moves on.
+//! 4. **Rounding.** What the code calls safe is safe, and so is every command up to the code's cap, for every lag within the tolerance.
 //!
-//! So the gate keeps *safe*: either the command is up to the cap, and 4 and 1 make it safe anew when it comes into force; or it is
-//! the floor, and 2 has said that it is safe. What is safe never meets the near end: `S >= 0` until rest. The reaction time
-//! that is reckoned with has to last from one command up to the cap to the end of the emergency braking's ramp: ticks that are
-//! missed, and changes in how late commands are, come to no more than `d` together in that time, `(u + b)/j`.
+//! So the gate keeps *safe*. Either the command is up to the cap, and 4 and 1 make it safe anew when it comes into force; or it is the
+//! floor, and 2 has said that it is safe. A safe ego never meets the near end: `S >= 0` until rest. The reaction time that is reckoned
+//! with has to last from a command up to the cap to the end of the emergency braking's ramp. So missed ticks, and changes in how late
+//! commands are, must come to no more than `d` together in that time, `(u + b)/j`.
 //!
 //! # How
 //!
-//! 1 to 3 hold for **all** real values: each is an identity of polynomials whose rest has no negative coefficient
-//! ([`crate::polynomial`]). The demand and the obstacle are no part of it: any demand, and any near end that is not behind and
-//! not slower than the one of 3.
+//! 1 to 3 hold for **all** real values: each is an identity of polynomials whose remainder has no negative coefficient
+//! ([`crate::polynomial`]). The demand and the obstacle do not enter: the demand is arbitrary, and the near end is any that is not behind
+//! and not slower than the near end of 3.
 //!
-//! 4, and 2 through the real plant (the lag solved exactly over a tick, standstill included), are tried at **points**, in
-//! intervals that are rounded outward:
+//! 4, and 2 through the real plant (the lag solved exactly over a tick, standstill included), are tested at **points**, in intervals that
+//! are rounded outward:
 //!
-//! - `lattice`: speeds 0 to 65.5 m/s, braking 0.5 m/s² to what a command can say, jerks 1 to 63.9 m/s³, lags 0 to 1.998 s with their
-//!   tolerance, periods 1 to 100 ms, delays 0 to 0.5 s, ahead 0.1 to 20.46 m/s²; at each the gap is bisected to the nearest one
-//!   that the code calls safe, which is where it can fail, and widened by a word to 29 m from there. The code by itself calls
-//!   safe after the tick what it called safe before to within 31 µm of the gap, for a lag that is known.
+//! - `lattice`: speeds 0 to 65.5 m/s, braking 0.5 m/s² to the hardest that a command can say, jerks 1 to 63.9 m/s³, lags 0 to 1.998 s
+//!   with their tolerance, periods 1 to 100 ms, delays 0 to 0.5 s, braking of the vehicle ahead 0.1 to 20.46 m/s². At each point the gap
+//!   is bisected to the nearest one that the code calls safe, because that is where the code can fail. The gap is then widened, from one
+//!   bit of the word to 29 m. For a known lag, what the code called safe before a tick it calls safe after the tick, to within 31 µm of
+//!   the gap.
 //! - `extremes`: words at the ends of every format, and words that no decimal makes.
 //! - `drives`: whole drives in float64, with late commands, missed ticks and lags within the tolerances.
 //!
-//! # What is not
+//! # What is not proved
 //!
-//! A braking below 2 mm/s² is none, as no command can say it; and jerks below 1 m/s³ are in `extremes` alone. That the state is
-//! known (`Reckoning`), that the near end is behind the truth (`crate::model::bound`), and what is ahead at all, are others'.
+//! A braking below 2 mm/s² counts as none, because no command can say it. Jerks below 1 m/s³ are in `extremes` alone. Three things are
+//! proved or assumed elsewhere: that the state is known (`Reckoning`), that the near end is behind the real vehicle
+//! (`crate::model::bound`), and what is ahead at all.
 
 mod drives;
 mod extremes;
@@ -59,22 +60,22 @@ fn square(x: &Polynomial) -> Polynomial {
     x.clone() * x.clone()
 }
 
-/// A command `u = jτ - b` in force for a time. What was in force for a part of it had been commanded earlier and was higher, which
-/// made the ego `faster` and brought it `farther` by no more than half of this.
+/// A command `u = jτ - b` in force for a time. For a part of that time an earlier and higher command was in force. It made the ego faster
+/// by at most half of `faster`, and brought it farther by at most half of `farther`.
 struct Tick {
     jerk: Polynomial,
     braking: Polynomial,
     lasts: Polynomial,
-    /// `τ` of the command, and of the floor after it.
+    /// `τ` of the command, and `τ` of the floor after it.
     ramps: [Polynomial; 2],
-    /// The reaction time that is reckoned with, before and after.
+    /// The reaction time that is reckoned with, before and after the tick.
     reactions: [Polynomial; 2],
     faster: Polynomial,
     farther: Polynomial,
 }
 
 impl Tick {
-    /// `2 (X - Z)`, before or after.
+    /// `2 (X - Z)`, before or after the tick.
     fn ramp(&self, when: usize) -> Polynomial {
         self.jerk.clone() * square(&(self.ramps[when].clone() + self.reactions[when].clone()))
     }
@@ -83,12 +84,12 @@ impl Tick {
         self.jerk.clone() * self.ramps[0].clone() - self.braking.clone()
     }
 
-    /// `2 b h`, which is the least by which `2X` has to fall.
+    /// `2 b h`: the least by which `2X` has to fall.
     fn due(&self) -> Polynomial {
         number(2) * self.braking.clone() * self.lasts.clone()
     }
 
-    /// By how much more `2X` falls.
+    /// By how much more than that `2X` falls.
     fn falls_more(&self) -> Polynomial {
         let gained = number(2) * self.command() * self.lasts.clone() + self.faster.clone();
         self.ramp(0) - self.ramp(1) - gained - self.due()
@@ -101,14 +102,14 @@ impl Tick {
         number(4) * self.braking.clone() * twice
     }
 
-    /// Whether it keeps what is safe. `2 b S = X² + spare` before it if `X >= 0`; all of the variables are not negative.
+    /// Whether the tick keeps what is safe. Before it `2 b S = X² + spare`, if `X >= 0`. No variable is negative.
     fn keeps(&self, spare: &Polynomial, x: &Polynomial) -> bool {
-        // 8 b S' - 4 X'² for X' >= 0, x = 2X'.
+        // 8 b S' - 4 X'² for X' >= 0, with x = 2X'.
         let before = x.clone() + self.due() + self.falls_more();
         let both = number(4) * spare.clone() + square(&before) - self.way(&before) - square(x);
-        // 8 b S' for X >= 0, x = 2X, whatever X' is: a square, and what is not negative.
+        // 8 b S' for X >= 0, with x = 2X, whatever X' is: a square, and a part that is not negative.
         let alone = number(4) * spare.clone() + square(x) - self.way(x) - square(&(x.clone() - self.due()));
-        // 8 b (S' - S) for X < 0, x = -2X: less way than nothing.
+        // 8 b (S' - S) for X < 0, with x = -2X: the way is not positive.
         let backwards = number(0) - self.way(&(number(0) - x.clone()));
         [self.falls_more(), both, alone, backwards].iter().all(Polynomial::is_plainly_not_negative)
     }
@@ -117,7 +118,7 @@ impl Tick {
 #[test]
 fn a_command_up_to_the_cap_is_still_safe_when_it_comes_into_force() {
     let [jerk, braking, period, tau, late, rest, spare, x] = Polynomial::variables();
-    // What was in force until then was up to j (h + what is left of the delay) higher.
+    // What was in force until then was higher by up to j (h + what is left of the delay).
     let higher = jerk.clone() * late.clone() * (late.clone() + number(2) * period.clone());
     let left = period + rest;
     let wait = Tick {
@@ -132,8 +133,8 @@ fn a_command_up_to_the_cap_is_still_safe_when_it_comes_into_force() {
     assert!(wait.keeps(&spare, &x));
 }
 
-/// The two cases of a floor after a command that was in force for a period and so much more, with reaction times so much
-/// longer than the period before and after it.
+/// The two cases of a floor after a command that was in force for a period and the time `longer`. `allowances` is by how much the
+/// reaction time is longer than the period, before and after.
 fn ticks(longer: Polynomial, allowances: [Polynomial; 2], [jerk, braking, time, more]: [Polynomial; 4]) -> [Tick; 2] {
     let ramp_goes_on = (time.clone(), [time.clone() + more.clone(), more.clone()]);
     let ramp_ends = (time.clone() + more, [time, number(0)]);
@@ -164,7 +165,7 @@ fn a_shorter_tick_keeps_what_is_safe() {
     let [jerk, braking, lasts, lacks, more, rest, spare, x] = Polynomial::variables();
     let period = lasts.clone() + lacks.clone();
     let reaction = period.clone() + rest;
-    // The ramp goes on; or it ends within the time that this lasts, or that a period would.
+    // The ramp goes on; or it ends within the time that the tick lasts, or that a period would last.
     for ramps in
         [[period.clone() + more.clone(), more.clone()], [lasts.clone(), number(0)], [period.clone(), number(0)]]
     {
@@ -190,8 +191,8 @@ fn the_hardest_braking_stays_safe_however_long_a_tick_is() {
     assert!(tick.keeps(&spare, &x));
 }
 
-/// Of a near end that brakes with `c` while its point of rest is reckoned with the ego's harder `b`: `2 b` times how far that
-/// point moves on in a time `t`, at the end of which it still has the speed `left`; and `2 b c` times it if it comes to rest.
+/// A near end brakes with `c` while its point of rest is reckoned with the ego's harder `b`. The claim: `2 b` times how far that point
+/// moves on in a time `t` at whose end the near end still has the speed `left`; and `2 b c` times it if the near end comes to rest.
 #[test]
 fn the_point_of_rest_of_who_brakes_less_hard_only_moves_on() {
     let [c, harder, time, left] = Polynomial::variables();

@@ -1,16 +1,16 @@
-//! Where the ego is at the latest between two of its own samples: a sample at the less safe end of its accuracies and the
-//! commands since enter, the ego of the gate leaves.
+//! Where the ego is at the latest between two of its own samples. A sample at the less safe end of its accuracies, and the commands since
+//! then, enter; the ego as the gate sees it leaves.
 //!
-//! `y = r + T v` and `z = v + T a` move as a double integrator under the commands alone (see [`crate::envelope`]), so that both
-//! are known without the lag: with `v'` the integral of the commands from the sample's speed on and `r'` that of `v'` from its
-//! position on, at an age `A`
+//! `y = r + T v` and `z = v + T a` move as a double integrator under the commands alone (see [`crate::envelope`]). So both are known
+//! without the lag. Let `v'` be the integral of the commands, starting from the sample's speed, and `r'` the integral of `v'`, starting
+//! from the sample's position. Then at an age `A`
 //!
 //! ```text
 //! z = v' + T a,    y = r' + T (v + A a)
 //! ```
 //!
-//! with the speed `v` and the acceleration `a` of the sample. It needs no new sample to stay right: what the vehicle does
-//! besides, on a slope, grows with the age at [`UNPUBLISHED_ACCELERATION_ACCURACY`].
+//! with the speed `v` and the acceleration `a` of the sample. The result stays right without a new sample: what the vehicle does besides,
+//! such as on a slope, is covered by a speed that grows with the age at [`UNPUBLISHED_ACCELERATION_ACCURACY`].
 
 use super::Ego;
 use crate::config::Envelope;
@@ -26,13 +26,13 @@ pub struct Start {
     pub at: Instant,
     /// Front bumper, as far ahead as it may be.
     pub position: Position,
-    /// As high as it may be.
+    /// Speed, as high as it may be.
     pub speed: Speed,
-    /// As it was measured.
+    /// Acceleration as it was measured.
     pub acceleration: Acceleration,
 }
 
-/// The ego as it is carried on.
+/// The ego as it is carried on by the commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reckoning {
     start: Start,
@@ -43,13 +43,14 @@ pub struct Reckoning {
 }
 
 impl Reckoning {
-    /// From a sample on, or on from the one before if it is the same one, to now; the command in force since then or since the
-    /// last tick.
+    /// Carries the ego on to `now`: from the sample, or from where it was carried to before if the sample is the same. `last` is the
+    /// command that was in force since then, or since the last tick.
     pub fn carry(held: &mut Held<Self>, start: &Start, now: Instant, last: Acceleration, envelope: &Envelope) -> Self {
         let before = held.get().filter(|held| held.start == *start);
         let from = before.unwrap_or(Self { start: *start, at: start.at, position: start.position, speed: start.speed });
         let since = now.since(from.at).max(Duration::ZERO);
-        // A command may be late, and a sample from before the last one: the one in force was a jerk higher for each moment of that.
+        // A command may come into force late, and a sample may be from before the last command. Until the last command the one in force
+        // was higher, by the jerk for each moment of that.
         let before_last = if before.is_some() { Duration::ZERO } else { since };
         let higher = envelope.jerk.over(envelope.delay.plus(before_last).fine_seconds());
         let reckoning = from.on(since, last.plus(higher).plus(UNPUBLISHED_ACCELERATION_ACCURACY));
@@ -58,23 +59,23 @@ impl Reckoning {
     }
 
     fn on(self, since: Duration, command: Acceleration) -> Self {
-        // As long as the formats hold; what is left of a longer time is taken up tick by tick.
+        // No longer than the formats hold. The rest of a longer time is taken up tick by tick.
         let since = since.min(Duration::from_millis(1_900));
         let speed = self.speed.plus(command.over(since.fine_seconds())).max(Speed::ZERO);
-        // The higher one of both ends: on the safe side by half a tick.
+        // The higher speed of both ends, which is on the safe side by half a tick.
         let way = self.speed.max(speed).over(since.seconds());
         Self { at: self.at.plus(since), position: self.position.ahead(way), speed, ..self }
     }
 
-    /// The ego of the gate, with the longest lag that the envelope tolerates.
+    /// The ego as the gate sees it, with the longest lag that the envelope tolerates.
     #[must_use]
     pub fn ego(&self, envelope: &Envelope, last: Acceleration, lag: FineSeconds) -> Ego {
         let acceleration = self.start.acceleration.plus(UNPUBLISHED_ACCELERATION_ACCURACY);
         let age = self.at.since(self.start.at).fine_seconds();
-        // `y` is to be made of `v'`, but is of `v + A a`.
+        // `y` needs `v'` in the place of `v + A a`.
         let short = self.start.speed.plus(acceleration.over(age)).minus(self.speed).max(Speed::ZERO);
         let longest = lag.plus(lag.share(envelope.lag_tolerance));
-        // 23 + 30 - 32 = 21 bits, and one more than half of that.
+        // 23 + 30 - 32 = 21 bits, which is one more than the format has: halved.
         let product = crate::fixed::mul_hi(short.to_bits(), longest.to_bits());
         let way = Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1));
         Ego { position: self.position.ahead(way), speed: self.speed, acceleration, last, lag }

@@ -163,7 +163,7 @@ fn a_crossing_vehicle_is_waited_for_until_its_rear_has_left() {
     }
 }
 
-/// Way that is made if this demand holds for one tick and emergency braking follows, in float64 with 1 ms steps.
+/// The way until rest, if this demand holds for one tick and emergency braking follows; in float64, with steps of 1 ms.
 fn braking_way(limits: &Envelope, speed: f64, acceleration: f64, first: f64) -> f64 {
     let (b, j) = (f64::from(limits.braking.to_mm_per_s2()) / 1e3, f64::from(limits.jerk.to_mm_per_s3()) / 1e3);
     let (mut v, mut a, mut u, mut way) = (speed, acceleration, first, 0.0);
@@ -198,8 +198,7 @@ fn the_largest_acceleration_leaves_enough_room_to_stop_and_not_much_more() {
                 }
                 let (first, v): (f64, f64) = (cap.get().to_num(), f64::from(speed) / 1e3);
                 let left = room as f64 / 1e3 - braking_way(&LIMITS, v, f64::from(acceleration) / 1e3, first);
-                // The margin, the delay, what the bounds on the lag's end and on the ramp give away, and the ramp's
-                // staircase.
+                // The margin, the delay, what the bounds on the lag's end and on the ramp give away, and the steps of the ramp.
                 let rise = (first + b) / j;
                 let given_away = 0.5 * b * lag * lag + j * (rise + h).powi(3) / 6.0;
                 let z = (v + lag * f64::from(acceleration) / 1e3).max(0.0);

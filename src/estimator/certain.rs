@@ -1,13 +1,13 @@
-//! Inside what is certain: a sample, a received horizon or a reading enters with the bound of its vehicle; what of it can be
-//! true leaves.
+//! Keeps estimates inside what is certain. A sample, a received horizon or a reading enters with the bound of its vehicle; the part of it
+//! that can be true leaves.
 //!
-//! The truth is inside the bound, so whatever is moved to the bound's nearer end comes nearer to the truth and never gets
-//! farther from it. What is exact is inside already and stays as it is.
+//! The true state is inside the bound. So whatever is moved to the nearer end of the bound comes nearer to the true state, and never gets
+//! farther from it. What is exact is inside already, and stays as it is.
 //!
-//! * A *sample* is moved at its stamp, before the model starts from it: then the model starts right. So a poor sample counts for
-//!   no more than it adds to the good ones before it.
-//! * A *horizon* that was sent is used as it is or not at all: a path that its sender cannot take at one of its knots is no
-//!   forecast of it anywhere.
+//! * A *sample* is moved at its stamp, before the model starts from it, so that the model starts right. So a poor sample counts for no
+//!   more than it adds to the good samples before it.
+//! * A *horizon* that was sent is used as it is or not at all. If its sender cannot reach it at one of its knots, it predicts nothing
+//!   anywhere.
 //! * A *reading* is limited at its instant, whatever it comes from.
 
 use crate::model::Reading;
@@ -17,15 +17,15 @@ use crate::time::Duration;
 use crate::units::{Distance, Speed};
 use crate::wire::horizon::{Knots, SHARES_PER_MILLE};
 
-/// A bound that is later than a sample by more than this, because another sensor narrowed it since, says too little of the
-/// sample's own instant; the reading alone is limited then.
+/// If the bound is later than a sample by more than this, because another sensor narrowed it since, it says too little of the sample's
+/// own instant. Then only the reading is limited.
 const CARRIED: Duration = Duration::from_millis(100);
 
-/// A horizon is rebuilt from its knots to within this, in metres and in metres per second.
+/// The largest error with which a horizon is rebuilt from its knots, in metres and in metres per second.
 const REBUILT: Distance = Distance::from_mm(10);
 const REBUILT_SPEED: Speed = Speed::from_mm_per_s(10);
 
-/// A reading at the bound's instant, at the nearer end of the bound where it is outside.
+/// A reading at the bound's instant, moved to the nearer end of the bound where it is outside.
 #[must_use]
 pub fn limited(reading: Reading, bound: &Bound) -> Reading {
     Reading {
@@ -34,14 +34,14 @@ pub fn limited(reading: Reading, bound: &Bound) -> Reading {
     }
 }
 
-/// A sample that was outside the bound, moved into it; `None` where nothing is to be moved.
+/// A sample that was outside the bound, moved into it; `None` if it is inside.
 pub(super) fn moved(sample: &Sample, bound: &Bound, reach: &AccelerationRange) -> Option<Sample> {
     let bound = bound.after(sample.at, reach);
     let later = bound.at().since(sample.at);
     if later > CARRIED {
         return None;
     }
-    // On to the bound's instant, which is later by the clock's error or a little more, at the sample's own acceleration.
+    // Carried on to the bound's instant, which is later by the clock's error or a little more, at the sample's own acceleration.
     let gained = sample.acceleration.over(later.fine_seconds());
     let mean = sample.speed.plus(Speed::from_bits(gained.to_bits() / 2)).max(Speed::ZERO);
     let carried = Reading {
@@ -56,8 +56,8 @@ pub(super) fn moved(sample: &Sample, bound: &Bound, reach: &AccelerationRange) -
     })
 }
 
-/// Whether its sender can take the path of a horizon of so many tenths of a second that begins with the sample, as far as its
-/// knots are rebuilt.
+/// Whether its sender can take the path of a horizon of `tenths` tenths of a second that begins with the sample. It is checked at the
+/// knots, to within the error with which they are rebuilt.
 pub(super) fn is_reachable(
     knots: &Knots,
     tenths: u8,

@@ -1,5 +1,5 @@
-//! The order in which horizons are computed: whom each peer follows enters, an order in which everyone comes after the
-//! one that it follows leaves.
+//! The order in which horizons are computed. The vehicle that each peer follows enters; an order in which every peer comes after the peer
+//! that it follows leaves.
 
 /// An order of the slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,11 +15,11 @@ impl<const PEERS: usize> Chain<PEERS> {
         Self { order: core::array::from_fn(|index| index as u8) }
     }
 
-    /// No order yet.
+    /// No order yet: all zero.
     pub const NONE: Self = Self { order: [0; PEERS] };
 
-    /// The order of a chain. Stations that claim to follow one another in a circle come last, in the order of their slots:
-    /// each is then computed from what is held of the other.
+    /// The order of a chain. Stations that claim to follow one another in a circle come last, in the order of their slots. Each of these
+    /// is computed from the horizon that is held of the other.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // as above
     pub fn of(ahead: [Option<usize>; PEERS]) -> Self {

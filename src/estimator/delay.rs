@@ -1,15 +1,15 @@
-//! Eqs 10-12, in paper mode only: the predecessor's step at `t+k-τ` and the delay `τ` enter, its state at `t+k` as the
-//! paper adjusts it leaves. Over 2 s eq. 12 alone costs metres, which is why the default brings a sample to now with
-//! the model instead.
+//! Eqs 10-12, in paper mode only. The predecessor's step at `t+k-τ` and the delay `τ` enter; its state at `t+k`, as the paper adjusts it,
+//! leaves. Over 2 s eq. 12 alone costs metres. So the default brings a sample to now with the model instead.
 //!
-//! With `τ < δt` the speed is taken unchanged (eq. 10); with `τ >= δt` it is `v + τ v̇` (eq. 11; the printed `τ/δt` fits a
-//! `v̇` per step) with `v̇` the slope from that step to the next; the position is `r(t+k-τ) + v(t+k) τ` (eq. 12 as printed is only dimensionally right at `τ = δt`).
+//! - *Speed:* with `τ < δt` it is taken unchanged (eq. 10). With `τ >= δt` it is `v + τ v̇` (eq. 11), with `v̇` the slope from that
+//!   step to the next. The printed `τ/δt` fits a `v̇` per step.
+//! - *Position:* `r(t+k-τ) + v(t+k) τ`. Eq. 12 as printed is only dimensionally right at `τ = δt`.
 
 use crate::model::Step;
 use crate::time::Duration;
 use crate::units::{RingPosition, Speed};
 
-/// The predecessor's state at `t+k` from its steps at `t+k-τ` and one after that. Delays beyond 4 s saturate.
+/// The predecessor's state at `t+k`, from its step at `t+k-τ` and the step after that. Delays beyond 4 s saturate.
 #[must_use]
 pub fn adjusted(earlier: Step, next: Step, delay: Duration, step: Duration) -> (RingPosition, Speed) {
     let tau = delay.max(Duration::ZERO);

@@ -1,5 +1,5 @@
-//! One vehicle's horizon from one source of news: a sample, or a horizon that the vehicle sent, or nothing new enters; the
-//! horizon brought up to now leaves.
+//! The horizon of one vehicle from one source. A sample, a horizon that the vehicle sent, or no news enters; the horizon brought up to
+//! now leaves.
 
 use super::delay::adjusted;
 use super::horizon::{Anchor, Grid, Horizon};
@@ -11,22 +11,22 @@ use crate::wire::curve::{Curve, Run};
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
 
-/// Whose horizon a follower's is computed from.
+/// Whose horizon is ahead: a follower's horizon is computed from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ahead {
-    /// A peer's, by its slot.
+    /// The horizon of the peer in this slot.
     Peer(usize),
     /// The ego's own.
     Own,
 }
 
-/// All that one vehicle's horizon is computed with.
+/// What the horizon of one vehicle is computed with.
 pub struct Forecast<'a, const STEPS: usize> {
     /// The unit's grid.
     pub grid: &'a Grid,
-    /// Steps to keep.
+    /// Number of steps that a horizon keeps.
     pub length: usize,
-    /// What is in the model.
+    /// The parts of the model that are used.
     pub model: &'a Model,
     /// How the vehicle drives, over a whole step.
     pub stride: &'a Stride,
@@ -44,18 +44,18 @@ pub struct News<'a> {
     pub received: Option<(&'a Knots, &'a DrivingParameters)>,
     /// How the vehicle drives.
     pub driver: VehicleModel,
-    /// Length of its predecessor; of no account without one.
+    /// Length of its predecessor; not used without a predecessor.
     pub length_ahead: Distance,
 }
 
 impl<const STEPS: usize> Forecast<'_, STEPS> {
-    /// Starts the horizon anew from a sample, and from the vehicle's own horizon if it sent one with its driving parameters.
+    /// Starts the horizon anew: from the vehicle's own horizon, if it sent that and its driving parameters, or else from the sample.
     pub fn anchor(&self, horizon: &mut Horizon<STEPS>, present: i64, news: &News<'_>) {
         let sample = news.sample;
         let anchor =
             Anchor { at: sample.at, position: sample.position, speed: sample.speed, acceleration: sample.acceleration };
         horizon.clear();
-        // A horizon that ends is kept from its sample on: eqs 10-12 look back into it by the delay.
+        // A horizon that ends is kept from its sample on, because eqs 10-12 look back into it by the delay.
         let from = if self.model.endless { present } else { i64::MIN };
         let mut filling = Filling { horizon, present: from, anchor };
         let next = news
@@ -67,20 +67,20 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
     }
 
-    /// Drops the steps that have passed, and in an endless horizon computes as many at the far end.
+    /// Drops the steps that have passed. In an endless horizon, computes as many at the far end.
     pub fn extend(&self, horizon: &mut Horizon<STEPS>, present: i64) {
         if horizon.is_empty() || !self.model.endless {
             return;
         }
         if horizon.len() == self.length && self.length > 1 && present.wrapping_sub(horizon.first()) == 1 {
-            // What every quiet tick comes to.
+            // The usual case of a tick without news.
             let end = horizon.last().wrapping_add(1);
             return horizon.turn(self.stride.take(horizon.tip(), self.ahead_at(end)));
         }
         let (last, state) = (horizon.last(), horizon.tip());
         let end = present.saturating_add(steps(self.length)).saturating_sub(1);
         if end.saturating_sub(last) > steps(STEPS) {
-            // A pause longer than the horizon: what was to be computed from is gone.
+            // The pause was longer than the horizon, so that the steps to compute from are gone.
             horizon.clear();
             return;
         }
@@ -91,7 +91,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         self.carry_on(&mut Filling { horizon, present, anchor }, last, state, end);
     }
 
-    /// Carries a horizon on, from its last step to this one.
+    /// Carries a horizon on from its last step to the step `end`.
     pub fn carry(&self, horizon: &mut Horizon<STEPS>, end: i64) {
         if !horizon.is_empty() {
             let (from, state, anchor) = (horizon.last(), horizon.tip(), *horizon.anchor());
@@ -99,13 +99,13 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
     }
 
-    /// The last index to compute: a horizon's length from now, or from the sample in a horizon that ends.
+    /// The last index to compute. An endless horizon counts its length from now, a horizon that ends from its sample.
     fn end(&self, present: i64, sample: &Sample) -> i64 {
         let from = if self.model.endless { present } else { self.grid.nearest(sample.at) };
         from.saturating_add(steps(self.length)).saturating_sub(1)
     }
 
-    /// Source (b): from the sample to the first step on the grid. Without stamps that is the nearest one, as it is.
+    /// Source (b): from the sample to the first step on the grid. Without stamps the sample is taken unchanged at the nearest step.
     fn depart(&self, filling: &mut Filling<'_, STEPS>, news: &News<'_>) -> Option<(i64, State)> {
         let sample = news.sample;
         let mut state = State {
@@ -130,7 +130,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         Some((index, state))
     }
 
-    /// Source (a): the sent horizon on the grid, from now to its end. One that ended before now is of no use.
+    /// Source (a): the sent horizon on the grid, from now to its end. A sent horizon that ended before now is not used.
     fn resample(
         &self,
         filling: &mut Filling<'_, STEPS>,
@@ -151,7 +151,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let mut runs = curve.runs(after, self.grid.step);
         let mut run = following(&mut runs)?;
         filling.put(first, at(run.next()?));
-        // Apart from a horizon longer than the ring, that is all of them.
+        // These are all of the steps, unless the sent horizon is longer than the ring.
         filling.horizon.run(STEPS, |mut tip, mut out| {
             let mut done = 0usize;
             while let Some((now, later)) = out.split_at_mut_checked(run.len().min(out.len())) {
@@ -170,11 +170,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         Some((filling.horizon.last(), filling.horizon.tip()))
     }
 
-    /// Steps from an index to the end of the horizon: one by one until the horizon has begun and its predecessor's has,
-    /// and from there on all in one go.
+    /// Computes the steps from an index to the end of the horizon. They are computed one by one until both this horizon and its
+    /// predecessor's have begun, and from there on all in one go.
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
-        // What lies before the predecessor's first step is made once for all the steps that are.
+        // The curve before the predecessor's first step is made once, for all steps that are before it.
         let begins = self.ahead.filter(|_| self.delay.is_none()).map_or(from, Horizon::first);
         let approach =
             self.ahead.filter(|_| from.saturating_add(1) < begins).and_then(|ahead| ahead.approach(self.grid));
@@ -212,7 +212,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
     }
 
-    /// The predecessor at a step; nobody if it is out of reach.
+    /// The predecessor at a step; `None` if its horizon does not reach it.
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
     fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
         let ahead = self.ahead?;
@@ -227,14 +227,14 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<(RingPosition, Speed)> {
-        // Before its first step and after its last one those are held.
+        // Before its first step the first one is held, and after its last step the last one.
         let behind = self.grid.nearest(self.grid.time_of(index).minus(delay)).min(ahead.last()).max(ahead.first());
         let after = behind.saturating_add(1).min(ahead.last());
         Some(adjusted(ahead.at(behind)?, ahead.at(after)?, delay, self.grid.step))
     }
 }
 
-/// A horizon that is being filled: steps before the present are only passed through.
+/// A horizon that is being filled. Steps before the present are only passed through.
 struct Filling<'a, const STEPS: usize> {
     horizon: &'a mut Horizon<STEPS>,
     present: i64,
@@ -256,7 +256,7 @@ impl<const STEPS: usize> Filling<'_, STEPS> {
     }
 }
 
-/// The next run. Apart, because making one is large, and is asked for in two places.
+/// The next run. It is a function of its own, because making a run is much code and is needed in two places.
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
     runs.next()

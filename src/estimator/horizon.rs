@@ -1,8 +1,8 @@
-//! The horizon of one vehicle: a ring buffer of positions and speeds on the unit's time grid. Steps enter at the far end
-//! and leave at the near end as time passes; a reading at any instant leaves.
+//! The horizon of one vehicle: a ring buffer of positions and speeds on the unit's time grid. Steps enter at the far end and leave at the
+//! near end as time passes; a reading at any instant leaves.
 //!
-//! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step,
-//! and between steps, a reading is the cubic that meets both positions and both speeds.
+//! A horizon starts from an anchor, the vehicle's state at the stamp of a sample. Between the anchor and the first step, and between
+//! steps, a reading is on the cubic that meets both positions and both speeds.
 
 use super::interpolation::{Approach, Cubic};
 use crate::fixed::quotient;
@@ -14,7 +14,7 @@ use crate::units::{Acceleration, Distance, Position, RingPosition, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Grid {
-    /// Where step 0 is.
+    /// The instant of step 0.
     pub origin: Instant,
     /// `δt`.
     pub step: Duration,
@@ -25,7 +25,7 @@ impl Grid {
     #[must_use]
     pub fn at_or_before(&self, at: Instant) -> i64 {
         let (since, step) = (at.since(self.origin).as_micros(), self.step.as_micros());
-        // Towards -∞: a step before the origin has a negative index.
+        // Rounded towards -∞: a step before the origin has a negative index.
         let towards_zero = quotient(since, step);
         if since < 0 && towards_zero.saturating_mul(step) != since {
             towards_zero.saturating_sub(1)
@@ -47,7 +47,7 @@ impl Grid {
         self.at_or_before(at.plus(Duration::from_micros(self.step.as_micros() / 2)))
     }
 
-    /// When a step is.
+    /// The instant of a step.
     #[must_use]
     pub fn time_of(&self, index: i64) -> Instant {
         self.origin.plus(self.step.times(index))
@@ -72,7 +72,7 @@ pub struct Anchor {
 #[derive(Clone, Debug)]
 pub struct Horizon<const STEPS: usize> {
     steps: [Step; STEPS],
-    /// Ring place of the first step.
+    /// Index in the ring of the first step.
     head: usize,
     len: usize,
     /// Grid index of the first step.
@@ -110,7 +110,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         }
     }
 
-    /// Whether there is nothing to read.
+    /// Whether it has no steps.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
@@ -127,7 +127,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.len = 0;
     }
 
-    /// What it started from.
+    /// The state that it started from.
     #[must_use]
     pub const fn anchor(&self) -> &Anchor {
         &self.anchor
@@ -139,19 +139,19 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.tip
     }
 
-    /// Grid index of the first step; meaningless while it is empty.
+    /// Grid index of the first step; without meaning while the horizon is empty.
     #[must_use]
     pub const fn first(&self) -> i64 {
         self.first
     }
 
-    /// Grid index of the last step; one before the first while it is empty.
+    /// Grid index of the last step; one before the first while the horizon is empty.
     #[must_use]
     pub fn last(&self) -> i64 {
         self.first.saturating_add(i64::try_from(self.len).unwrap_or(0)).saturating_sub(1)
     }
 
-    /// Starts anew from an anchor, with the first step at this grid index; `position` is the state's own, unwrapped.
+    /// Starts anew from an anchor. The first step has this grid index and this state; `position` is the state's position, unwrapped.
     pub fn start(&mut self, anchor: Anchor, index: i64, position: Position, state: State) {
         self.anchor = anchor;
         self.head = 0;
@@ -175,7 +175,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.tip = state;
     }
 
-    /// Drops the first step and adds one at the far end; for a horizon of at least two.
+    /// Drops the first step and adds one at the far end. The horizon has at least two steps.
     pub(super) fn turn(&mut self, state: State) {
         let (far, second) = (self.place(self.len), self.place(1));
         if let (Some(old), Some(new)) = (self.steps.get(self.head), self.steps.get(second)) {
@@ -189,9 +189,9 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.tip = state;
     }
 
-    /// Lets `take` add steps after the last one, up to so many and as far as the ring is not full and does not turn: from the
-    /// state at the last step to the one at its own last step, and how many it took. How many those were; none of an empty
-    /// horizon.
+    /// Lets `take` add steps after the last one: at most `most`, no more than the ring has room for, and not across the end of the array.
+    /// `take` gets the state at the last step and the room for new steps. It returns the state at its own last step, and how many steps
+    /// it took. Returns that number; 0 for an empty horizon.
     pub(super) fn run(&mut self, most: usize, take: impl FnOnce(State, &mut [Step]) -> (State, usize)) -> usize {
         if self.is_empty() {
             return 0;
@@ -205,7 +205,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         done
     }
 
-    /// The steps from this index on, in two runs; `None` if it does not hold that step.
+    /// The steps from this index on, in two runs; `None` if the horizon does not hold the step of this index.
     pub(super) fn from(&self, index: i64) -> Option<(&[Step], &[Step])> {
         let offset = usize::try_from(index.wrapping_sub(self.first)).ok().filter(|offset| *offset < self.len)?;
         let (turned, straight) = self.steps.split_at_checked(self.head)?;
@@ -226,7 +226,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.first = self.first.saturating_add(1);
     }
 
-    /// Every step moves that far ahead.
+    /// Moves every step ahead by this way.
     pub fn shift(&mut self, way: Distance) {
         self.steps.iter_mut().for_each(|step| step.position = step.position.ahead(way));
         self.base = self.base.ahead(way);
@@ -242,14 +242,14 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.nth(offset)
     }
 
-    /// The absolute position of a place near this horizon's first step.
+    /// The absolute position of a position that is near this horizon's first step.
     #[must_use]
     pub fn absolute(&self, position: RingPosition) -> Position {
         self.base.ahead(position.ahead_of(self.base.ring()))
     }
 
-    /// Where the vehicle is at an instant. Before the anchor: from there back at constant speed. Beyond the last step: the
-    /// last position and speed are held, which only happens in a horizon that is not endless.
+    /// Where the vehicle is at an instant. Before the anchor it moves at the anchor's speed. Beyond the last step the last position and
+    /// speed are held; this happens only in a horizon that is not endless.
     #[must_use]
     pub fn read(&self, at: Instant, grid: &Grid, interpolate: bool) -> Option<Reading> {
         if !interpolate {
@@ -269,7 +269,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         }
     }
 
-    /// What there is before the first step.
+    /// The curve before the first step.
     pub(super) fn approach(&self, grid: &Grid) -> Option<Approach> {
         let first = self.nth(0)?;
         let Anchor { at: start, position, speed, .. } = self.anchor;
@@ -277,7 +277,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         Some(Approach::new(start, Reading { position, speed }, way, first.speed, grid.time_of(self.first).since(start)))
     }
 
-    /// The step nearest to an index among those there are.
+    /// The step of an index, or the first or last one if the index is outside.
     fn held(&self, index: i64) -> Option<Reading> {
         let index = index.min(self.last()).max(self.first);
         self.at(index).map(|step| self.reading(step))
@@ -292,7 +292,7 @@ impl<const STEPS: usize> Horizon<STEPS> {
         if n < self.len { self.steps.get(self.place(n)).copied() } else { None }
     }
 
-    /// Ring place of the n-th step, for n up to the capacity.
+    /// Index in the ring of the n-th step, for n up to the capacity.
     #[inline(always)]
     fn place(&self, n: usize) -> usize {
         let place = self.head.wrapping_add(n); // head < STEPS and n <= STEPS: no overflow

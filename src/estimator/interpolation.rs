@@ -8,9 +8,9 @@ use crate::units::{Distance, Speed};
 
 /// The cubic Hermite curve of an interval, ready to be read many times.
 ///
-/// With `s = after/whole`, `w` the way, `a` and `b` the ways at the two ends' speeds:
-/// `r = s [ a + s ( 3w - 2a - b + s (a + b - 2w) ) ]`, `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`, taken as
-/// the two ends' speeds mixed plus the bend.
+/// Let `s = after/whole`, `w` the way, and `a` and `b` the ways that the speeds at the two ends would make. Then
+/// `r = s [ a + s ( 3w - 2a - b + s (a + b - 2w) ) ]` and `v = ( a + 2 s (3w - 2a - b) + 3 s² (a + b - 2w) ) / whole`. The speed is
+/// computed as the mix of the speeds at both ends, plus the bend.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic {
     from: Reading,
@@ -26,7 +26,7 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// From a reading over a way to an end speed, in this time.
+    /// The curve from a reading, over this way, to an end speed, in this time.
     #[must_use]
     pub fn new(from: Reading, way: Distance, end_speed: Speed, whole: Duration) -> Self {
         let seconds = whole.seconds();
@@ -35,7 +35,7 @@ impl Cubic {
         Self { from, way, end_speed, whole, line, square: way.minus(line).minus(cubic), cubic }
     }
 
-    /// The reading so long after its start. Times outside the interval are taken at its ends; the speed is not negative.
+    /// The reading at this time after the start. Times outside the interval are taken at its ends. The speed is never negative.
     #[must_use]
     pub fn at(&self, after: Duration) -> Reading {
         let Self { from, way, end_speed, whole, line, square, cubic } = *self;
@@ -51,15 +51,14 @@ impl Cubic {
         let position = share(line.plus(share(square.plus(share(cubic)))));
         // dr/dt = [ a + s (2 square + 3 s cubic) ] / whole
         let bend = share(square.plus(square).plus(share(cubic.plus(cubic).plus(cubic))));
-        // 20 to 23 fraction bits is a factor of 8; per second instead of per microsecond one of 1e6.
+        // From 20 to 23 fraction bits is a factor of 8; from per microsecond to per second is a factor of 1e6.
         let bend = i64::from(bend.to_bits()).saturating_mul(8_000_000);
         let bend_speed = Speed::from_bits(saturate_i32(ratio(bend, whole.as_micros(), 0)));
         Reading { position: from.position.ahead(position), speed: from.speed.plus(bend_speed).max(Speed::ZERO) }
     }
 }
 
-/// Where a vehicle is before the first step of its horizon: between the state that the horizon starts from and that step, and
-/// before that state.
+/// Where a vehicle is before the first step of its horizon: between the horizon's anchor and that step, and before the anchor.
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
     start: Instant,
@@ -67,20 +66,20 @@ pub struct Approach {
 }
 
 impl Approach {
-    /// From a state at an instant over a way to a speed, in this time.
+    /// The curve from a state at an instant, over this way, to a speed, in this time.
     #[must_use]
     pub fn new(start: Instant, from: Reading, way: Distance, end_speed: Speed, whole: Duration) -> Self {
         Self { start, curve: Cubic::new(from, way, end_speed, whole) }
     }
 
-    /// The reading at an instant: before the state, from there back at constant speed.
+    /// The reading at an instant. Before the anchor the vehicle moves at the anchor's speed.
     #[must_use]
     pub fn at(&self, at: Instant) -> Reading {
         let since = at.since(self.start);
         if since >= Duration::ZERO {
             return self.curve.at(since);
         }
-        // At most the age of a sample; a second's product fits the format, longer ones saturate at 4 s.
+        // The time is at most the age of a sample. For a second the product fits the format; longer times saturate at 4 s.
         let Reading { position, speed } = self.curve.from;
         Reading { position: position.ahead(speed.over(since.seconds())), speed }
     }

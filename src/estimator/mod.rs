@@ -2,16 +2,16 @@
 //!
 //! Theory of operation, once a tick:
 //!
-//! * *News* of a peer (a newer sample, its own horizon, other driving parameters) re-anchors its horizon: from (a) the horizon that
-//!   it computed itself and sent, resampled onto the unit's grid, and from its end on, or else from its state at the
-//!   stamp, by (b) the unit's own model of it: Algorithm 2 for a leader, Algorithm 4 for a follower whose predecessor is
-//!   known, the fading acceleration for anyone else.
-//! * *No news:* the step that has passed is dropped and one more is computed at the far end by the same model, so that a
-//!   horizon never runs out.
+//! * *News* of a peer (a newer sample, a horizon of its own, other driving parameters) re-anchors its horizon. Source (a) is the horizon
+//!   that the peer computed itself and sent: it is resampled onto the unit's grid, and the unit's model carries it on from its end.
+//!   Otherwise source (b) is the unit's own model of the peer, from the peer's state at the stamp: Algorithm 2 for a leader, Algorithm 4
+//!   for a follower whose predecessor is known, the fading acceleration for any other peer.
+//! * *No news:* the step that has passed is dropped, and one more is computed at the far end by the same model. So a horizon never runs
+//!   out.
 //!
-//! What starts a horizon, and what is read from it, is inside what is certain of the vehicle (`certain`).
+//! The state that a horizon starts from, and every reading of it, is inside what is certain of the vehicle (`certain`).
 //!
-//! Peers are taken in the order of the chain `0..j`, each after the one that it follows.
+//! The peers are taken in the order of the chain `0..j`: each peer after the peer that it follows.
 
 pub mod certain;
 mod chain;
@@ -35,9 +35,9 @@ use crate::wire::{Predecessor, StationHash};
 
 /// What a horizon is brought up to now from.
 enum Source<'a> {
-    /// The peer's newest sample, which is news.
+    /// The peer's newest sample, which is new.
     Heard(&'a Sample),
-    /// What another sensor made of its state.
+    /// The peer's state as another sensor corrected it.
     Seen(&'a Sample),
     /// No news.
     Nothing,
@@ -46,7 +46,7 @@ enum Source<'a> {
 /// How the ego drives, over a step of its own horizon.
 #[derive(Clone, Copy, Debug)]
 pub struct Manner {
-    /// The slot of whom it follows.
+    /// The slot of the vehicle that the ego follows.
     pub target: Option<usize>,
     driver: VehicleModel,
     length_ahead: Distance,
@@ -58,15 +58,15 @@ pub struct Manner {
 pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     grid: Grid,
     model: Model,
-    /// Steps that a horizon is kept at.
+    /// Number of steps that a horizon keeps.
     length: usize,
     horizons: [Horizon<STEPS>; PEERS],
-    /// The step of each peer, until its driving parameters or its predecessor changes.
+    /// The prediction step of each peer, until its driving parameters or its predecessor changes.
     strides: [Held<Stride>; PEERS],
-    /// Whom each peer follows.
+    /// The vehicle that each peer follows.
     aheads: [Held<Ahead>; PEERS],
     news: [bool; PEERS],
-    /// What another sensor made of a peer's state, until it is used.
+    /// The state of a peer as another sensor corrected it, until it is used.
     correction: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
     station: StationHash,
@@ -93,7 +93,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }
     }
 
-    /// Nothing known. `length` is the number of steps that a horizon is kept at.
+    /// Starts with nothing known. `length` is the number of steps that a horizon keeps.
     pub fn start(&mut self, prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) {
         self.grid = Grid { origin: Instant::ZERO, step: prediction.step };
         self.model = prediction.model;
@@ -109,24 +109,24 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.chain = Chain::new();
     }
 
-    /// Puts step 0 of the grid at an instant: the first tick, so that ticks lie on steps.
+    /// Puts step 0 of the grid at the instant of the first tick, so that ticks are on steps.
     pub fn start_grid(&mut self, origin: Instant) {
         self.grid.origin = origin;
     }
 
-    /// Takes note that there is news of a peer.
+    /// Notes that there is news of a peer.
     pub fn note_news(&mut self, index: usize) {
         if let Some(news) = self.news.get_mut(index) {
             *news = true;
         }
     }
 
-    /// Takes note of a peer's state as another sensor corrected it; news of the peer itself in the same tick goes first.
+    /// Notes a peer's state as another sensor corrected it. News of the peer itself in the same tick takes precedence.
     pub fn note_correction(&mut self, index: usize, sample: Sample) {
         self.correction.set((index, sample));
     }
 
-    /// Takes note that a peer drives by another law, or behind somebody else.
+    /// Notes that a peer drives by another law, or behind another vehicle.
     pub fn note_change<const SAMPLES: usize>(&mut self, peers: &Peers<PEERS, SAMPLES>) {
         self.strides = [Held::Nothing; PEERS];
         self.aheads = core::array::from_fn(|index| self.ahead(peers, index).into());
@@ -136,7 +136,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }));
     }
 
-    /// What is held of a peer's place moves that far ahead: its axis did.
+    /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
     pub fn shift(&mut self, index: usize, way: Distance) {
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.shift(way);
@@ -156,8 +156,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.strides = [Held::Nothing; PEERS];
     }
 
-    /// Brings every peer's horizon up to now. How many horizons that were sent it did not use, because their senders cannot
-    /// drive so.
+    /// Brings every peer's horizon up to now. Returns how many sent horizons were not used, because their senders cannot drive them.
     pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) -> u32 {
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
@@ -190,7 +189,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     ) -> bool {
         let Self { grid, model, length, horizons, strides, own, own_length, aheads, .. } = self;
         let ahead = aheads.get(index).and_then(Held::get);
-        // How it drives is asked only when its step has to be made, or its horizon starts anew.
+        // How the peer drives is needed only when its prediction step is made, or when its horizon starts anew.
         let course = || {
             let length_ahead = match ahead {
                 Some(Ahead::Peer(other)) => peers.length_of(other),
@@ -210,7 +209,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             stride.set(driver.over(grid.step, length_ahead, model));
         }
         let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return true };
-        // The horizon is taken out of the array's borrow together with the one that it is computed from.
+        // The horizon and the one that it is computed from are borrowed from the array together.
         let (horizon, ahead) = match ahead {
             Some(Ahead::Peer(other)) => pair(horizons, index, other),
             Some(Ahead::Own) => (horizons.get_mut(index), Some(&*own)),
@@ -228,7 +227,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
                 return true;
             }
         };
-        // Without stamps, which is for reproducing the paper, nothing is held to what is certain.
+        // Without stamps, which is for reproducing the paper, nothing is limited to what is certain.
         let bound = track.certainty().bound().filter(|_| model.stamped);
         let reach = track.reach();
         let moved = bound.and_then(|bound| certain::moved(sample, bound, &reach));
@@ -241,7 +240,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         usable.is_some() == received.is_some()
     }
 
-    /// How the ego drives behind a peer, if any, for its own horizon.
+    /// How the ego drives behind this peer, or without a target, for the ego's own horizon.
     pub fn manner<const SAMPLES: usize>(
         &self,
         driver: VehicleModel,
@@ -252,7 +251,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
     }
 
-    /// Computes the ego's own horizon from its own state: the whole of it, or up to an instant.
+    /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.
     pub fn foresee_own(&mut self, now: Instant, until: Option<Instant>, sample: &Sample, manner: &Manner) {
         let present = self.grid.at_or_before(now);
         let whole = steps(self.length);
@@ -265,13 +264,13 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         });
     }
 
-    /// Carries the ego's own horizon on up to an instant, and no farther than a horizon that begins now is long.
+    /// Carries the ego's own horizon on up to an instant, but no farther than a horizon that begins now reaches.
     pub fn carry_own_on(&mut self, now: Instant, until: Instant, manner: &Manner) {
         let end = self.grid.at_or_before(until).min(self.end(now));
         self.own_forecast(manner, self.length, |forecast, own| forecast.carry(own, end));
     }
 
-    /// Whether the ego's own horizon ends sooner than one that begins now.
+    /// Whether the ego's own horizon ends earlier than a horizon that begins now.
     #[must_use]
     pub fn is_own_short(&self, now: Instant) -> bool {
         !self.own.is_empty() && self.own.last() < self.end(now)
@@ -330,7 +329,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         &self.grid
     }
 
-    /// How far ahead a horizon reaches at any time, for the unit's own one: two steps are for interpolation.
+    /// How far ahead a horizon reaches at any time, for the unit's own horizon. Two of its steps are needed for interpolation.
     #[must_use]
     pub fn reach(&self) -> Duration {
         self.grid.step.times(i64::try_from(self.length.saturating_sub(2)).unwrap_or(0))
@@ -351,7 +350,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 }
 
-/// One of many to be changed, and another one.
+/// One element to be changed, and another one to be read.
 fn pair<T>(all: &mut [T], one: usize, other: usize) -> (Option<&mut T>, Option<&T>) {
     match all.split_at_mut_checked(one.max(other)) {
         Some((low, high)) if one < other => (low.get_mut(one), high.first()),

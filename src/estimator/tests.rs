@@ -38,7 +38,7 @@ fn follower() -> DrivingParameters {
     DrivingParameters { predecessor: Predecessor::Station(StationHash(1)), ..leader() }
 }
 
-/// So long before the grid's step 0.
+/// A sample of this age before the grid's step 0.
 fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
     let at = GRID.origin.minus(Duration::from_micros(age_us));
     Sample {
@@ -56,7 +56,7 @@ fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
     }
 }
 
-/// A driver with its stride behind a car.
+/// A vehicle model, with its prediction step behind a car.
 fn course(driver: VehicleModel, model: &Model) -> (VehicleModel, Stride) {
     (driver, driver.over(GRID.step, CAR, model))
 }

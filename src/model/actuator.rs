@@ -1,5 +1,5 @@
-//! What a vehicle's controller and actuators make of a desired acceleration: it enters, limited in size and jerk
-//! and delayed by the actuators' lag; the state one step later leaves. The prediction and the controller share it,
+//! What the controller and the actuators of a vehicle make of a desired acceleration. The desired acceleration enters; it is limited in
+//! size and jerk, and delayed by the lag of the actuators. The state one step later leaves. The prediction and the controller share this,
 //! because the model must be the controller.
 
 use super::exponential::Decay;
@@ -17,7 +17,7 @@ use crate::wire::driving_parameters::Limits;
 pub struct Actuator {
     path: Path,
     step: FineSeconds,
-    /// `e^(-δt/T)` in 31 fraction bits, so that its product needs no more than a doubling.
+    /// `e^(-δt/T)` with 31 fraction bits, so that its product needs only a doubling.
     keep: i32,
     slip: FineSeconds,
     floor: Acceleration,
@@ -26,7 +26,7 @@ pub struct Actuator {
 }
 
 impl Actuator {
-    /// For steps of length `step` of a vehicle with this lag and these limits.
+    /// For steps of length `step`, of a vehicle with this lag and these limits.
     #[must_use]
     pub fn over(step: Duration, lag: Duration, limits: &Limits, model: &Model) -> Self {
         let lag = if model.lag { lag } else { Duration::ZERO };
@@ -43,8 +43,8 @@ impl Actuator {
         }
     }
 
-    /// The demand that comes of a desired acceleration: at most the jerk limit away from the last one, and within the limits on
-    /// acceleration as far as the jerk limit lets it get there.
+    /// The demand for a desired acceleration. It differs from the last demand by the jerk limit at most. It is within the limits on
+    /// acceleration, as far as the jerk limit lets it get there.
     #[inline(always)]
     #[must_use]
     pub fn limit(&self, desired: Acceleration, last: Acceleration) -> Acceleration {
@@ -53,14 +53,14 @@ impl Actuator {
         desired.min(high).max(low)
     }
 
-    /// The gain in speed at an acceleration over the step.
+    /// The gain in speed over the step at this acceleration.
     #[must_use]
     pub const fn gained(&self, acceleration: Acceleration) -> Speed {
         acceleration.over(self.step)
     }
 
-    /// The state after one step under a demand that holds for the whole step: the lag `ȧ = (u - a)/T` solved exactly,
-    /// a speed that never becomes negative, and Algorithm 3.
+    /// The state after one step under a demand that holds for the whole step. The lag `ȧ = (u - a)/T` is solved exactly, the speed never
+    /// becomes negative, and the position follows Algorithm 3.
     #[inline(always)]
     #[must_use]
     pub fn drive(&self, state: State, demand: Acceleration) -> State {
@@ -70,10 +70,10 @@ impl Actuator {
     #[inline(always)]
     fn go<const TRAPEZOID: bool>(&self, state: State, demand: Acceleration) -> State {
         let behind = state.acceleration.minus(demand);
-        // Between the demand and the acceleration, so the sum cannot overflow.
+        // The result is between the demand and the acceleration, so that the sum cannot overflow.
         let left = mul_hi(behind.to_bits(), self.keep).wrapping_mul(2);
         let mut acceleration = Acceleration::from_bits(demand.to_bits().wrapping_add(left));
-        // Less than 2⁶¹ each: 64 m/s² in 25 bits, for 1 s in 30 bits.
+        // Each is less than 2⁶¹: 64 m/s² with 25 bits, for 1 s with 30 bits.
         let gained =
             product(demand.to_bits(), self.step.to_bits()).wrapping_add(product(behind.to_bits(), self.slip.to_bits()));
         let (word, mut rest) = sum(state.speed.to_bits(), state.remainders.speed, gained);
@@ -99,7 +99,8 @@ impl Actuator {
         self.path.is_trapezoid()
     }
 
-    /// Steps by a law: each writes where it ends, and may see what is beside it. The state at the last of them.
+    /// Steps by a law. Each step writes its end into its element of `steps`, and the law gets what is beside that. Returns the state at
+    /// the last step.
     #[inline(always)]
     pub(super) fn run<'a, A>(
         &self,
@@ -125,15 +126,15 @@ impl Actuator {
     }
 }
 
-/// What is left of an acceleration when a vehicle comes to rest. Apart, because it is rare: the step then has a branch
-/// that is not taken instead of computing this in vain.
+/// The acceleration of a vehicle that comes to rest. It is a function of its own because it is rare: the step then has a branch that is
+/// not taken, and does not compute this in vain.
 #[cold]
 #[inline(never)]
 fn at_rest(acceleration: Acceleration) -> Acceleration {
     acceleration.max(Acceleration::ZERO)
 }
 
-/// How far the jerk limit lets the demand move in a step of up to 1 s.
+/// By how much the jerk limit lets the demand change in a step of up to 1 s.
 fn slew(jerk: Jerk, step: Duration) -> Acceleration {
     jerk.over(step.fine_seconds())
 }

@@ -1,9 +1,8 @@
-//! A vehicle's body, eqs 1-3: an acceleration and a speed enter, the net engine force or the brake torque that brings it about
-//! leaves.
+//! The body of a vehicle, eqs 1-3. An acceleration and a speed enter; the net engine force or the brake torque for them leaves.
 //!
-//! Eq. 1: `a = (F_net - R·T_br - c_v v² - c_f v - d_m)/m`. Driving (eq. 2): `F_net = m a + c_v v² + c_f v + d_m`. Braking:
-//! eq. 3 read as `T_br = -(m a + c_v v² + c_f v + d_m)/R >= 0`; as printed it has the speed for the acceleration, two
-//! names for the friction coefficient, and the sign of a brake that accelerates.
+//! Eq. 1: `a = (F_net - R·T_br - c_v v² - c_f v - d_m)/m`. Driving (eq. 2): `F_net = m a + c_v v² + c_f v + d_m`. Braking: eq. 3 is read
+//! as `T_br = -(m a + c_v v² + c_f v + d_m)/R >= 0`. As printed it has the speed in the place of the acceleration, two names for the
+//! friction coefficient, and the sign of a brake that accelerates.
 
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::Effort;
@@ -45,15 +44,15 @@ impl Body {
             && self.mechanical_n <= 10_000
     }
 
-    /// Eqs 2 and 3: rounded to nearest N or N·m, saturating at the wire's 65,534. Bodies that are not sane saturate too.
+    /// Eqs 2 and 3, rounded to nearest N or N·m, saturating at the wire's 65,534. Bodies outside their ranges saturate too.
     #[must_use]
     pub fn effort(&self, acceleration: Acceleration, speed: Speed) -> Effort {
         let force = self.net_force(acceleration, speed);
         if force >= 0 { self.drive(force) } else { self.brake(force) }
     }
 
-    /// What brings the acceleration about, in nano-newtons, so that every term is an integer: kg·mm/s² is 1e6 nN,
-    /// mN/(m/s)² by (mm/s)² is 1e3·1e-6·1e9. Engine if positive, brakes if negative.
+    /// The force for the acceleration: engine if positive, brakes if negative. It is in nano-newtons, so that every term is an integer:
+    /// kg·mm/s² is 1e6 nN, and mN/(m/s)² by (mm/s)² is 1e3·1e-6·1e9.
     pub(crate) fn net_force(&self, acceleration: Acceleration, speed: Speed) -> i64 {
         let v = speed.to_mm_per_s().max(0) as i64;
         let scaled = |x: u32| x as i64;

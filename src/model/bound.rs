@@ -1,26 +1,26 @@
-//! The bound: what is certain of a vehicle's position and speed. A sample with its accuracies, and the vehicle's published
-//! limits, enter; the lowest and the highest position and speed at any later instant leave. The truth is between them as
-//! long as the sample was within its accuracies and the vehicle keeps to its limits.
+//! The bound: what is certain of the position and the speed of a vehicle. A sample with its accuracies, and the published limits of the
+//! vehicle, enter; the lowest and the highest position and speed at any later instant leave. The true state is between them as long as
+//! the sample was within its accuracies and the vehicle keeps to its limits.
 //!
-//! The two ends are two vehicles of their own. The *near* one was as far back and as slow as the sample allows, has braked
-//! as hard as it can ever since, and stands when it has come to rest; the *far* one was as far ahead and as fast, and has
-//! accelerated as hard as it can, up to the highest speed there is. No truth gets behind the one or ahead of the other, in
-//! position or in speed, because both are monotone in acceleration and in time. They are not symmetric: a car brakes
+//! The two ends are two imagined vehicles. The *near* end was as far back and as slow as the sample allows. It has braked at the
+//! vehicle's hardest since then, and stands once it has come to rest. The *far* end was as far ahead and as fast as the sample allows. It
+//! has accelerated at the vehicle's hardest since then, up to the top speed. The true vehicle is never behind the near end or ahead of
+//! the far end, in position or in speed, because both are monotone in acceleration and in time. The ends are not symmetric: a car brakes
 //! harder than it accelerates.
 //!
-//! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the truth.
-//! Products stay below 2⁶³ and need not saturate: speeds are at most 65.534e6 (and no word makes more than 2.6e8 of them, two
-//! words 5.2e8), accelerations at most 6.4e7, the times for which they last are cut at an hour, 3.6e9. Positions are exact
-//! within ±560,000 km. All of it is proved over the whole range in `proof` below this module.
+//! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the true state. Products
+//! stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
+//! Accelerations are at most 6.4e7. The times for which they last are cut at an hour, 3.6e9. Positions are exact within ±560,000 km. All
+//! of this is proved over the whole range in `proof` below this module.
 
 use crate::fixed::{per_15_625, per_million, quotient};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::driving_parameters::Limits;
 
-/// The highest speed there is: what the wire can say, in µm/s.
+/// The top speed: the highest that the wire can say, in µm/s.
 const TOP_SPEED: i64 = 65_534_000;
-/// Beyond an hour the far end says nothing any more.
+/// After an hour the far end says nothing any more.
 const LONGEST: i64 = 3_600_000_000;
 const MICRO: i64 = 1_000_000;
 
@@ -35,20 +35,20 @@ pub struct AccelerationRange {
 }
 
 impl AccelerationRange {
-    /// What is physically possible on a dry road with any road vehicle, where nothing was published.
+    /// The worst limits: what is physically possible for any road vehicle on a dry road. They hold where nothing was published.
     pub const WORST: Self =
         Self { acceleration: Acceleration::from_mm_per_s2(6_000), braking: Acceleration::from_mm_per_s2(12_000) };
 
-    /// Nothing at all.
+    /// No change of speed at all.
     pub const NONE: Self = Self { acceleration: Acceleration::ZERO, braking: Acceleration::ZERO };
 
-    /// The harder of the two, each way.
+    /// The harder of two ranges, in each direction.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self { acceleration: self.acceleration.max(other.acceleration), braking: self.braking.max(other.braking) }
     }
 
-    /// As published; not less than 0.1 m/s² each, so that a rest takes finite time.
+    /// As published, but not less than 0.1 m/s² each, so that coming to rest takes finite time.
     #[must_use]
     pub fn published(limits: &Limits) -> Self {
         const LEAST: Acceleration = Acceleration::from_mm_per_s2(100);
@@ -64,13 +64,13 @@ pub struct Uncertainty {
     pub position: Distance,
     /// Speed, to either side.
     pub speed: Speed,
-    /// How much earlier than the instant taken for it the sample may really be from.
+    /// By how much the sample may really be earlier than the instant taken for it.
     pub earlier: Duration,
-    /// How much later; negative if it is surely earlier.
+    /// By how much it may be later; negative if it is certainly earlier.
     pub later: Duration,
 }
 
-/// One end: a position in µm and a speed in µm/s.
+/// One end of the bound: a position in µm and a speed in µm/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct End {
@@ -79,7 +79,8 @@ struct End {
 }
 
 impl End {
-    /// After braking for `micros`, rounded down. Whether it has come to rest by then, `micros >= ⌈v/a⌉`, needs no division.
+    /// The end after braking for `micros`, rounded down. Whether it has come to rest by then, `micros >= ⌈v/a⌉`, is found without a
+    /// division.
     fn braked(self, micros: i64, braking: Acceleration) -> Self {
         let braking = micro_up(braking.to_bits(), 25).max(1);
         let could_lose = braking.wrapping_mul(micros);
@@ -93,11 +94,11 @@ impl End {
         Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
     }
 
-    /// After accelerating for `micros` up to the top speed, rounded up.
+    /// The end after accelerating for `micros` up to the top speed, rounded up.
     fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
         let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
         let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).wrapping_mul(MICRO);
-        // The top speed is reached after ⌈gain/a⌉, which is divided out only if that is before the end.
+        // The top speed is reached after ⌈gain/a⌉. This is divided out only if it is before the end.
         let rises_on = acceleration.wrapping_mul(micros.saturating_sub(1)) < to_gain;
         let rising = if rises_on { micros } else { micros.min(ceil(to_gain, acceleration)) };
         let gained = millionths_up(acceleration.wrapping_mul(rising));
@@ -119,8 +120,8 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Around a sample that is taken to be of `at`. The bound is that of `at` or of the latest instant that the sample may
-    /// really be from.
+    /// The bound around a sample that is taken to be of `at`. The bound is at `at`, or at the latest instant that the sample may really
+    /// be from.
     #[must_use]
     pub fn around(
         at: Instant,
@@ -136,8 +137,8 @@ impl Bound {
         let fast = micro_up_64(speed.0, speed.1).saturating_add(faster).max(0);
         let near = End { position: position.0.saturating_sub(off), speed: slow };
         let far = End { position: position.1.saturating_add(off), speed: fast };
-        // Of the earliest instant the far end has come furthest; the near end is furthest back if it is of the latest. The
-        // speeds may have changed for the whole of the time in doubt, either way.
+        // At the earliest instant the far end is farthest ahead. At the latest instant the near end is farthest back. The speeds may have
+        // changed during all of the time in doubt, in either direction.
         let whole = uncertainty.earlier.plus(uncertainty.later).as_micros().clamp(0, LONGEST);
         let slower = near.braked(whole, reach.braking);
         Self {
@@ -147,20 +148,20 @@ impl Bound {
         }
     }
 
-    /// Of a vehicle of which nothing is known but that it is not behind a place.
+    /// The bound of a vehicle of which nothing is known but that it is not behind this position.
     #[must_use]
     pub fn not_behind(at: Instant, position: Position) -> Self {
         let near = End { position: micro_position(position).0, speed: 0 };
         Self { at, near, far: End { position: i64::MAX, speed: TOP_SPEED } }
     }
 
-    /// The instant that it is of.
+    /// The instant that the bound is at.
     #[must_use]
     pub const fn at(&self) -> Instant {
         self.at
     }
 
-    /// The same that far ahead, rounded outward.
+    /// The bound moved ahead by this way, rounded outward.
     #[must_use]
     pub fn shifted(&self, way: Distance) -> Self {
         let shift = |end: End, micros: i64| End { position: end.position.saturating_add(micros), ..end };
@@ -168,7 +169,7 @@ impl Bound {
         Self { near: shift(self.near, micro_down_64(bits, 20)), far: shift(self.far, micro_up_64(bits, 20)), ..*self }
     }
 
-    /// The bound at a later instant; at an earlier one it is what it is.
+    /// The bound at a later instant. At an earlier instant it is unchanged.
     #[must_use]
     pub fn after(&self, now: Instant, reach: &AccelerationRange) -> Self {
         let micros = now.since(self.at).as_micros();
@@ -183,7 +184,7 @@ impl Bound {
         Self { at: now, near: self.near.braked(micros.min(LONGEST), reach.braking), far }
     }
 
-    /// What both bounds agree on, at the later one's instant; `None` if they contradict one another.
+    /// The intersection of both bounds, at the later instant; `None` if they contradict one another.
     #[must_use]
     pub fn and(&self, other: &Self, reach: &AccelerationRange) -> Option<Self> {
         let at = self.at.max(other.at);
@@ -219,8 +220,8 @@ impl Bound {
         ))
     }
 
-    /// Where the near end comes to rest if it goes on braking: behind this the vehicle cannot stop, however long the
-    /// silence. It never moves back, rounded down.
+    /// Where the near end comes to rest if it goes on braking, rounded down. The vehicle cannot stop behind this, however long it is
+    /// silent. This never moves back.
     #[must_use]
     pub fn nearest_stop(&self, reach: &AccelerationRange) -> Position {
         let stopped = self.near.braked(LONGEST, reach.braking);
@@ -238,7 +239,8 @@ fn micro_up_64(word: i64, fraction: u32) -> i64 {
     micro_down_64(word.saturating_neg(), fraction).saturating_neg()
 }
 
-/// Of words with at least 6 fraction bits: a million and 2^fraction share 2⁶, without which 64 bits reach 64 times as far.
+/// For words with at least 6 fraction bits. A million and 2^fraction share the factor 2⁶; cancelled, it lets 64 bits reach 64 times as
+/// far.
 fn micro_down_64(word: i64, fraction: u32) -> i64 {
     word.saturating_mul(15_625).wrapping_shr(fraction.wrapping_sub(6))
 }
@@ -248,7 +250,7 @@ fn micro_position(position: Position) -> (i64, i64) {
     (micro_down_64(position.to_bits(), 20), micro_up_64(position.to_bits(), 20))
 }
 
-/// Millionths as a word with `fraction` bits, at least 6 of them, rounded down; exact as far as [`micro_position`] is.
+/// Millionths as a word with `fraction` bits, at least 6, rounded down; exact within the range of [`micro_position`].
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
     let x = micros.saturating_mul(1i64.wrapping_shl(fraction.wrapping_sub(6)));
@@ -258,7 +260,8 @@ const fn floor_shifted(micros: i64, fraction: u32) -> i64 {
 
 /// A millionth, rounded down.
 const fn millionths(x: i64) -> i64 {
-    // Of what is negative: the magnitude less one, as ⌊-x/n⌋ = -⌊(x-1)/n⌋ - 1; its complement is that magnitude.
+    // For a negative value it divides the magnitude less one, because ⌊-x/n⌋ = -⌊(x-1)/n⌋ - 1. The complement of the value is that
+    // magnitude.
     let sign = x >> 63;
     per_million((x ^ sign).cast_unsigned()).cast_signed() ^ sign
 }

@@ -1,5 +1,5 @@
-//! `e^(-h/T)` for the actuators' lag and the fading acceleration: two times enter, a share leaves. Within 4e-9 of the
-//! true value; integers only.
+//! `e^(-h/T)` for the actuators' lag and the fading acceleration. Two times enter; a fraction leaves. It is within 4e-9 of the true
+//! value, and computed in integers only.
 
 use crate::fixed::{divide, quotient, saturate_i32};
 use crate::time::Duration;
@@ -10,21 +10,21 @@ const LN_2: u64 = 2_977_044_472;
 /// 1 in 32 fraction bits.
 const ONE: u64 = 1 << 32;
 
-/// What a lag leaves of a deviation after one step.
+/// The part of a deviation that a lag leaves after one step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Decay {
-    /// The share `φ = e^(-h/T)` that is left; 0 if there is no lag, 1 if no time passes.
+    /// The fraction `φ = e^(-h/T)` that is left; 0 if there is no lag, 1 if no time passes.
     pub keep: Fraction,
-    /// `T (1 - φ)`: what the deviation still adds to the speed while it dies out.
+    /// `T (1 - φ)`: what the deviation still adds to the speed while it decays.
     pub slip: FineSeconds,
 }
 
 impl Decay {
-    /// Over a step `h` with time constant `T`.
+    /// For a step `h` with time constant `T`.
     #[must_use]
     pub fn over(step: Duration, time_constant: Duration) -> Self {
         let keep = keep(step, time_constant);
-        // Fraction and fine seconds both have 30 bits: micros · share / 1e6 is in the format of fine seconds.
+        // Fraction and fine seconds both have 30 bits: micros · fraction / 1e6 is in the format of fine seconds.
         let lost = Fraction::ONE.minus(keep);
         let product = time_constant.as_micros().max(0).saturating_mul(i64::from(lost.to_bits()));
         Self { keep, slip: FineSeconds::from_bits(saturate_i32(quotient(product.saturating_add(500_000), 1_000_000))) }
@@ -35,7 +35,7 @@ impl Decay {
 fn keep(step: Duration, time_constant: Duration) -> Fraction {
     let (step, time_constant) =
         (step.as_micros().max(0).unsigned_abs(), time_constant.as_micros().max(0).unsigned_abs());
-    // Beyond 22 time constants nothing of 30 bits is left; below, the quotient fits 37 bits.
+    // Beyond 22 time constants nothing is left in 30 bits. Below that, the quotient fits 37 bits.
     if step > 0 && step >= time_constant.saturating_mul(22) {
         return Fraction::ZERO;
     }
@@ -51,7 +51,7 @@ fn keep(step: Duration, time_constant: Duration) -> Fraction {
 fn exp_of_minus(x: u64) -> u64 {
     let product = |a: u32, b: u32| (u64::from(a).wrapping_mul(u64::from(b)) >> 32) as u32;
     let x = x as u32;
-    // Each sum is 1 less what is subtracted from it, and only that fits a word.
+    // Each sum is 1 less a subtrahend. Only the subtrahend fits a word.
     let times_sum = |less: u32| if less == 0 { x } else { product(x, less.wrapping_neg()) };
     let less = INVERSES.iter().fold(0, |less, inverse| product(times_sum(less), *inverse));
     ONE.saturating_sub(u64::from(times_sum(less)))

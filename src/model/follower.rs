@@ -1,8 +1,7 @@
-//! Algorithm 4, the follower: its own state and its predecessor's at the end of the step enter, the acceleration that it
-//! wishes for leaves.
+//! Algorithm 4, the follower. The state of the follower, and the state of its predecessor at the end of the step, enter; the desired
+//! acceleration leaves.
 //!
-//! Eq. 13 as printed lacks `δt` and has `v_n(t+k)` on both sides. Read as the semi-implicit step that it is, with
-//! `r_n(t+k)` predicted by eq. 9,
+//! Eq. 13 as printed lacks `δt` and has `v_n(t+k)` on both sides. It is read as a semi-implicit step, with `r_n(t+k)` predicted by eq. 9,
 //!
 //! ```text
 //! v* = [ v - κ ( r + v δt - r_p + l + s_0 - γ v_p ) ] / [ 1 + κ (t_g + γ) ],   κ = α k δt,  α = 1
@@ -14,8 +13,8 @@
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
 //! ```
 //!
-//! so that no division is left in the step. Eq. 5 has no free road: far behind, it would accelerate without end. So what it asks
-//! for beside its own speed is never less than it is at the speed `v_c` with which the follower catches up,
+//! so that no division is left in the step. Eq. 5 has no free road: a follower that is far behind would accelerate without end. So the
+//! terms other than `(t_g + δt) v` have a lower limit, with which the follower keeps to `v_c`, the speed with which it catches up,
 //!
 //! ```text
 //! (r - r_p) + (l + s_0) + γ (v - v_p) >= -(t_g + δt) v_c,   which makes   u <= K (t_g + δt) (v_c - v).
@@ -34,19 +33,19 @@ use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
 pub struct Follower {
     /// `-K`.
     gain: Gain,
-    /// Half of `t_g + δt`: the whole of it may be beyond the format's 4 s.
+    /// Half of `t_g + δt`, because the whole of it may be beyond the format's 4 s.
     half_gap: Seconds,
     damping: Seconds,
-    /// What makes a sum saturate at the end of the format just where it would be less than `-(t_g + δt) v_c`, so that the limit
-    /// takes no comparison; it is added again.
+    /// An offset. It makes a sum saturate at the end of the format just where the sum would be less than `-(t_g + δt) v_c`, so that the
+    /// limit needs no comparison. It is added back afterwards.
     reach: Distance,
-    /// `l + s_0`, less that.
+    /// `l + s_0`, less the offset.
     spacing: Distance,
 }
 
 impl Follower {
-    /// With gains `k` and `γ`, time gap `t_g` and spacing `l + s_0` (its predecessor's length and its own standstill
-    /// distance), over steps of this length; catches up with at most `catch_up`, if that is given.
+    /// With gains `k` and `γ`, time gap `t_g`, and spacing `l + s_0` (the length of the predecessor and the follower's own standstill
+    /// distance), over steps of this length. The follower catches up with at most `catch_up`, if that is given.
     #[must_use]
     pub fn over(
         step: Duration,
@@ -82,7 +81,8 @@ impl Follower {
 }
 
 /// `K = k / (1 + k δt (t_g + γ))`.
-#[allow(clippy::arithmetic_side_effects)] // formats of 29 bits; k and δt are below 4, so κ is below 4 (δt <= 1 s), and t_g + γ below 8: products stay below 2⁶³
+#[allow(clippy::arithmetic_side_effects)]
+// Words of 29 bits. k < 4 and δt <= 1 s, so that κ < 4; and t_g + γ < 8. So products stay below 2⁶³.
 fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration) -> Gain {
     const ONE: i64 = 1 << 29;
     let k = i64::from(gain.to_bits().max(0));
@@ -95,8 +95,8 @@ fn semi_implicit(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration
 
 /// Whether the semi-implicit step is stable: `k δt² < 4 + 2 k δt (t_g + γ)`.
 ///
-/// With `x = v δt` the step's iteration matrix on the gap has the characteristic polynomial whose Jury conditions
-/// reduce to this one; the other two hold for all positive gains.
+/// With `x = v δt`, the Jury conditions of the characteristic polynomial of the step's iteration matrix on the gap reduce to this one.
+/// The other two hold for all positive gains.
 #[must_use]
 #[allow(clippy::arithmetic_side_effects)] // thousandths below 4,000, 1,000 and 8,000: products stay below 2⁶³
 pub fn is_stable(gain: Gain, damping: Seconds, time_gap: Seconds, step: Duration) -> bool {
@@ -129,7 +129,7 @@ mod tests {
                 for time_gap in [0.2, 1.0, 3.995] {
                     for step in [0.001, 0.01, 0.1, 1.0] {
                         let exact = k / (1.0 + k * step * (time_gap + damping));
-                        // κ is cut off at 2⁻²⁹ and then multiplied by at most 8; inputs and result are rounded.
+                        // κ is cut off at 2⁻²⁹ and then multiplied by at most 8. Inputs and result are rounded.
                         let tolerance = exact * 8.0 * 2f64.powi(-29) * 1.5 + 3e-9;
                         assert!(
                             (gain(k, damping, time_gap, step) - exact).abs() < tolerance,
@@ -148,7 +148,7 @@ mod tests {
         let law = Follower::over(step, Gain::from_milli(500), Seconds::from_millis(2000), time_gap, spacing, None);
         let speed = Speed::from_mm_per_s(11_000);
         let state = State { speed, ..State::default() };
-        // At the end of the step the predecessor is one step further.
+        // At the end of the step the predecessor is a step further.
         let ahead = Position::ZERO.ring().ahead(spacing).ahead(speed.over(time_gap)).ahead(speed.over(step.seconds()));
         assert!(law.desired(&state, ahead, speed).to_bits().abs() < 1 << 10);
     }

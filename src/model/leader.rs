@@ -1,8 +1,8 @@
-//! Algorithm 2, the leader: its speed enters, the acceleration that it wishes for on a free road leaves (the Intelligent
-//! Driver Model's free-road term, eq. 8).
+//! Algorithm 2, the leader. Its speed enters; the desired acceleration on a free road leaves (the Intelligent Driver Model's free-road
+//! term, eq. 8).
 //!
-//! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle see to it that it decelerates no harder
-//! than comfortable. A target speed below 0.1 m/s asks for a stop, as hard as the vehicle's own limit on braking allows.
+//! `a = a_max [1 - (v/v_∞)^σ]` with `σ` = 4. Above `v_∞` the limits of the vehicle keep it from braking harder than is comfortable. A
+//! target speed below 0.1 m/s asks for a stop, as hard as the vehicle's own limit on braking allows.
 
 use crate::fixed::{mul_hi, mul_shl_down, ratio, saturate_i32};
 use crate::parameters::{FREE_ROAD_RATIO_MILLI, STOP_SPEED};
@@ -17,7 +17,7 @@ pub struct Leader {
     inverse: i32,
 }
 
-/// A stop: harder than any limit that a message can name, which is 20.46 m/s².
+/// A stop: harder than the hardest limit that a message can name, which is 20.46 m/s².
 const STOP: Acceleration = Acceleration::from_mm_per_s2(-20_460);
 /// The largest `v/v_∞` in 28 fraction bits.
 const RATIO_MAX: i32 = saturate_i32(ratio(FREE_ROAD_RATIO_MILLI, 1000, 28));

@@ -1,8 +1,8 @@
-//! One vehicle, as everyone models it: its parameters enter; how its state goes on, step by step, and what it can be certain to do
-//! within its limits, leave.
+//! The model of one vehicle. Its parameters enter; how its state changes step by step, and the range of what it can do within its limits,
+//! leave.
 //!
-//! The prediction of a peer, the own controller and the last gate share this model, because a vehicle then drives exactly by what
-//! others predict of it. It knows of no messages, no peers and no time but a step's length.
+//! The prediction of a peer, the own controller and the last gate share this model, so that a vehicle drives exactly by what others
+//! predict of it. The model knows of no messages, no peers, and no time but the length of a step.
 //!
 //! | what | where |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | what limits, lag and integration make of a demand (Algorithm 3) | `actuator`, `exponential`, `position` |
 //! | the force or torque for an acceleration (eqs 1 to 3) | `body` |
 //! | the least and the most that it can do | `bound` |
-//! | which of this is used | `switches` |
+//! | which parts of the model are used | `switches` |
 
 mod actuator;
 mod body;

@@ -29,8 +29,8 @@ impl Path {
         self.trapezoid
     }
 
-    /// The position at the end of the step, with its rest; speeds are not negative. `TRAPEZOID` is what
-    /// [`is_trapezoid`](Self::is_trapezoid) says, so that a loop of steps need not ask.
+    /// The position at the end of the step, with its rest. Speeds are not negative. `TRAPEZOID` is the value of
+    /// [`is_trapezoid`](Self::is_trapezoid), so that a loop of steps need not ask for it.
     #[inline(always)]
     #[must_use]
     #[allow(clippy::arithmetic_side_effects)] // each speed is below 2³¹
@@ -49,12 +49,12 @@ impl Path {
     #[inline(always)]
     #[allow(clippy::arithmetic_side_effects)] // 32 by 32 bits
     const fn advance(&self, position: RingPosition, rest: Rest, speed: u32) -> (RingPosition, Rest) {
-        // At most 4 s at 256 m/s, which is 2⁶²; and modulo the ring, as it is meant to be (`UMLAL`).
+        // At most 4 s at 256 m/s, which is 2⁶². It is modulo the ring on purpose (`UMLAL`).
         position.along(rest, (speed as u64 * self.step as u64).cast_signed())
     }
 }
 
-/// A speed that is not negative.
+/// The word of a speed that is not negative.
 #[inline(always)]
 #[allow(clippy::cast_sign_loss)] // as said
 const fn word(speed: Speed) -> u32 {

@@ -1,4 +1,4 @@
-//! A vehicle's state: at one step of its motion in full, in a horizon as far as it is kept, and as it is read at an instant.
+//! The state of a vehicle: in full at one step of its motion, as kept in a horizon, and as read at an instant.
 
 use crate::fixed::Rest;
 use crate::units::{Acceleration, Position, RingPosition, Speed};
@@ -9,17 +9,17 @@ use crate::units::{Acceleration, Position, RingPosition, Speed};
 pub struct State {
     /// Front bumper, modulo 4096 m.
     pub position: RingPosition,
-    /// Never negative.
+    /// Speed, never negative.
     pub speed: Speed,
     /// Acceleration reached.
     pub acceleration: Acceleration,
     /// Acceleration demanded in the step before.
     pub demand: Acceleration,
-    /// What is below the last bits of position and speed.
+    /// The parts of position and speed below their last bits.
     pub remainders: Remainders,
 }
 
-/// What hundreds of steps would lose of position and speed if each of them were rounded.
+/// The parts that hundreds of steps would lose of position and speed if each step were rounded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Remainders {
@@ -28,9 +28,9 @@ pub struct Remainders {
 }
 
 impl Remainders {
-    /// Of a state that is exactly its words.
+    /// The remainders of a state that is exactly its words.
     pub const NONE: Self = Self { position: Rest::NONE, speed: Rest::NONE };
-    /// Of no state: all zero.
+    /// Not set: all zero.
     pub(crate) const UNSET: Self = Self { position: Rest::UNSET, speed: Rest::UNSET };
 }
 
@@ -40,7 +40,7 @@ impl Remainders {
 pub struct Step {
     /// Front bumper, modulo 4096 m.
     pub position: RingPosition,
-    /// Never negative.
+    /// Speed, never negative.
     pub speed: Speed,
 }
 
@@ -50,6 +50,6 @@ pub struct Step {
 pub struct Reading {
     /// Front bumper.
     pub position: Position,
-    /// Never negative.
+    /// Speed, never negative.
     pub speed: Speed,
 }

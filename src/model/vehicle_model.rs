@@ -1,4 +1,4 @@
-//! How a vehicle drives, as far as it is known: its published driving parameters (or the lack of it) enters, the constants of its
+//! How a vehicle drives, as far as it is known. Its published driving parameters, or the lack of them, enter; the constants of its
 //! prediction step leave.
 
 use super::actuator::Actuator;
@@ -12,20 +12,20 @@ use crate::units::{Acceleration, Distance, Fraction, Gain, Jerk, RingPosition, S
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
-/// What a vehicle is after.
+/// The aim of a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Aim {
-    /// Nothing known: its acceleration fades out.
+    /// Nothing is known: its acceleration fades out.
     Fade,
-    /// A speed (Algorithm 2).
+    /// It keeps a speed (Algorithm 2).
     Lead {
         /// `a_max`.
         largest: Acceleration,
         /// `v_∞`.
         target_speed: Speed,
     },
-    /// Its predecessor (Algorithm 4).
+    /// It follows its predecessor (Algorithm 4).
     Follow {
         /// `k`.
         gain: Gain,
@@ -44,7 +44,7 @@ pub enum Aim {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VehicleModel {
-    /// What it is after.
+    /// Its aim.
     pub aim: Aim,
     /// `T`.
     pub lag: Duration,
@@ -53,7 +53,7 @@ pub struct VehicleModel {
 }
 
 impl VehicleModel {
-    /// Of a vehicle of which nothing is known: its acceleration fades out.
+    /// A vehicle of which nothing is known: its acceleration fades out.
     pub const UNKNOWN: Self = Self {
         aim: Aim::Fade,
         lag: Duration::ZERO,
@@ -65,7 +65,7 @@ impl VehicleModel {
         },
     };
 
-    /// Of a peer, from what it published.
+    /// A peer, by the driving parameters that it published.
     #[must_use]
     pub fn of_parameters(parameters: &DrivingParameters, model: &Model) -> Self {
         let aim = match parameters.predecessor {
@@ -82,13 +82,13 @@ impl VehicleModel {
         Self { aim, lag: Duration::of_fine_seconds(parameters.lag), limits: parameters.limits }
     }
 
-    /// The state after some time under the demand in force.
+    /// The state after this time under the demand in force.
     #[must_use]
     pub fn coast(&self, state: State, time: Duration, model: &Model) -> State {
         Actuator::over(time, self.lag, &self.limits, model).drive(state, state.demand)
     }
 
-    /// The constants of a step of this length behind a predecessor of this length, which is of no account without one.
+    /// The constants of a step of this length, behind a predecessor of this length. The latter is not used without a predecessor.
     #[must_use]
     pub fn over(&self, step: Duration, length_ahead: Distance, model: &Model) -> Stride {
         let course = match self.aim {
@@ -130,8 +130,8 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The demand of this step: the desired acceleration, but no more than the cap, within the vehicle's limits. A follower without a
-    /// predecessor fades.
+    /// The demand of this step: the desired acceleration, but no more than the cap, and within the vehicle's limits. The acceleration of
+    /// a follower without a predecessor fades out.
     #[inline(always)]
     #[must_use]
     pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>, cap: Acceleration) -> Acceleration {
@@ -143,11 +143,10 @@ impl Stride {
         self.actuator.limit(desired.min(cap), state.demand)
     }
 
-    /// As many steps as there is room for, behind a predecessor at these of its own steps; the state at the last of them, and
-    /// how many they were. What kind of course it is, is asked once for all of them, not in each.
+    /// Takes as many steps as `out` has room for, behind a predecessor with these steps. Returns the state at the last step, and how many
+    /// steps were taken. The kind of law is asked for once for all steps, not in each.
     ///
-    /// None are taken if positions are not by the trapezoid: that is for reproducing the paper, and no ECU need be quick at
-    /// it.
+    /// No step is taken if positions are not by the trapezoid. That is for reproducing the paper, and need not be fast on an ECU.
     pub fn run(&self, state: State, ahead: &[Step], out: &mut [Step]) -> (State, usize) {
         if !self.actuator.can_run() {
             return (state, 0);
@@ -166,7 +165,7 @@ impl Stride {
         }
     }
 
-    /// As many steps as there is room for, without a predecessor; none likewise.
+    /// Takes as many steps as `out` has room for, without a predecessor. No step is taken in the same case.
     pub fn run_alone(&self, state: State, out: &mut [Step]) -> (State, usize) {
         if !self.actuator.can_run() {
             return (state, 0);

@@ -1,17 +1,18 @@
-//! Drift: a station's samples, one after the other, enter; whether its positions fit its speeds over all of them leaves.
+//! Drift. The samples of a station, one after the other, enter; whether its positions fit its speeds over all of them leaves.
 //!
-//! Where a vehicle is follows from where it was and from the speeds between: the mean of the speeds at both ends of a gap, and to
-//! either side what both may be off, and the bulge of the fastest way from one speed to the other over the limits. So the place
-//! is known within an interval that is carried on from sample to sample and cut by each sample's own; a sample that leaves
-//! nothing of it does not fit. Cutting it each time is as much as comparing any sample with any before it.
+//! The place of a vehicle follows from its place before and from the speeds between. The way over a gap is the mean of the speeds at both
+//! ends. To either side there are the errors of both speeds, and the bulge: how far the fastest change from one speed to the other within
+//! the limits departs from the mean. So the place is known within an interval. The interval is carried on from sample to sample, and cut
+//! by the interval of each sample alone. A sample that leaves nothing of it does not fit. To cut it each time is as much as to compare
+//! every sample with every sample before it.
 //!
-//! With the accelerations `a` and `-b` at the most, the bulge over a gap of `T` between speeds of the slope `s` is
-//! `(a - s) (b + s) / (a + b) · T²/2`. What is off of both speeds counts fully and not twice: where one end were off by less the
-//! bulge would grow, but by less than the mean falls, as long as `-b <= s <= a`.
+//! With accelerations between `-b` and `a`, the bulge over a gap of `T`, between speeds of the slope `s`, is
+//! `(a - s) (b + s) / (a + b) · T²/2`. The errors of both speeds count fully and not twice: if the error at one end were less, the bulge
+//! would grow, but by less than the mean falls, as long as `-b <= s <= a`.
 //!
-//! So a drift is found that is faster than the published accuracy of the speed and `a b / (a + b) · T/2` together, 0.1 m/s for a
-//! car of 2.5 and 8 m/s² that is heard at 10 Hz, and it is found when it has made up twice the accuracy of the position with
-//! what it is faster. A slower one is none, by what the station says of itself.
+//! So a drift is found if it is faster than the sum of the published accuracy of the speed and `a b / (a + b) · T/2`. The latter is 0.1
+//! m/s for a car of 2.5 and 8 m/s² that is heard at 10 Hz. It is found when its excess of speed has made up twice the accuracy of the
+//! position. A slower drift is inside what the station says of itself.
 
 use super::Sample;
 use crate::fixed::{quotient, saturate_i32};
@@ -21,9 +22,9 @@ use crate::parameters::{SPEED_ROUNDING, UNPUBLISHED_SPEED_ACCURACY};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
 
-/// Over a longer gap the bulge says nothing any more, and the course begins anew.
+/// Over a longer gap the bulge says nothing any more. The course begins anew.
 const LONGEST_GAP: Duration = Duration::from_millis(500);
-/// Where it is less certain than this when a sample was true, as without synchronisation, there is no course.
+/// If the instant of a sample is less certain than this, as without synchronisation, there is no course.
 const LEAST_CERTAIN: Duration = Duration::from_millis(20);
 /// One error of a speed in twenty is larger than the accuracy. By such errors in a row of normal ones, the way by the speeds is wrong by
 /// more than the accuracy allows, but hardly ever by more than the accuracy's way in this time: with messages at 10 Hz 6 standard
@@ -41,7 +42,7 @@ pub struct Course {
 }
 
 impl Course {
-    /// By one sample alone.
+    /// The course by a single sample.
     fn of(sample: &Sample, uncertainty: &Uncertainty, off: Speed) -> Self {
         let moved = sample.speed.plus(off).over(uncertain(uncertainty).seconds());
         let seldom = sample.speed_accuracy.map_or(Distance::ZERO, |accuracy| accuracy.over(SELDOM));
@@ -49,16 +50,16 @@ impl Course {
         Self { low: sample.position.ahead(off.negated()), high: sample.position.ahead(off) }
     }
 
-    /// The same that far ahead.
+    /// The same course, moved ahead by this way.
     #[must_use]
     pub fn shifted(&self, way: Distance) -> Self {
         Self { low: self.low.ahead(way), high: self.high.ahead(way) }
     }
 
-    /// The course after a sample, from that at the sample before it; `None` where it begins anew with the next.
+    /// The course after a sample, from the course at the sample before it; `None` if the course begins anew with the next sample.
     ///
     /// # Errors
-    /// [`Cause::Implausible`]: nothing is left of it, and the positions do not fit the speeds.
+    /// [`Cause::Implausible`]: nothing is left of the interval, because the positions do not fit the speeds.
     pub fn after(
         held: Option<&Self>,
         last: Option<&Sample>,
@@ -88,7 +89,7 @@ impl Course {
     }
 }
 
-/// How far from its stamp a sample may have been true, either way.
+/// By how much the sample may be earlier or later than its stamp.
 fn uncertain(uncertainty: &Uncertainty) -> Duration {
     uncertainty.earlier.max(uncertainty.later)
 }
@@ -100,19 +101,19 @@ fn off(sample: &Sample, uncertainty: &Uncertainty, reach: &AccelerationRange) ->
     accuracy.plus(hardest.over(uncertain(uncertainty).fine_seconds()))
 }
 
-/// Of 15 fraction bits, rounded up: sums and products of a few of them stay below 2⁶³.
+/// The acceleration with 15 fraction bits, rounded up. Sums and products of a few such values stay below 2⁶³.
 fn coarse(acceleration: Acceleration) -> i64 {
     i64::from(acceleration.to_bits()).saturating_add(1023) >> 10
 }
 
-/// The slope from one speed to another, in m/s² of 15 fraction bits.
+/// The slope from one speed to another, in m/s² with 15 fraction bits.
 fn slope(from: Speed, to: Speed, gap: Duration) -> i64 {
     let gained = i64::from(to.to_bits()).saturating_sub(from.to_bits().into());
     quotient(gained.saturating_mul(1_000_000), gap.as_micros().max(1)) >> 8
 }
 
-/// How much farther, or less far, than by the mean of its speeds a vehicle may get in a gap; the most for any slope if that is not
-/// known.
+/// How much farther, or less far, a vehicle may get in a gap than by the mean of its speeds. If the slope is not known, the most for any
+/// slope.
 fn bulge(reach: &AccelerationRange, slope: Option<i64>, gap: Duration) -> Distance {
     let (a, b) = (coarse(reach.acceleration), coarse(reach.braking));
     let steepest = a.saturating_sub(b) / 2;

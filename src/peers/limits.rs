@@ -1,12 +1,12 @@
-//! How hard a station can change its speed, over time: the limits that it publishes enter; those that hold now, and those that
-//! held before, leave.
+//! How hard a station can change its speed, over time. The limits that it publishes enter; the limits that hold now, and those that held
+//! before, leave.
 //!
-//! * *Harder* limits hold at once, and for the past too. What this assumes of use: a station publishes harder limits at least
-//!   `stale`, 10 s as shipped, before it uses them, and one that nobody has heard for longer keeps to what it published last.
-//! * *Softer* limits never hold for the past. They hold from the first message on that publishes them when for `stale` nothing
-//!   harder has been published: until then a message may come that was overtaken, of which no stamp tells, or a sample from before.
-//!   From then on what is certain is carried on by the softer ones, and what is from before up to that instant by the harder.
-//! * Before anything is published, the worst there is held.
+//! * *Harder* limits hold at once, and for the past too. The assumption of use is: a station publishes harder limits at least `stale` (10
+//!   s as shipped) before it uses them, and a station that has not been heard for longer keeps to the limits that it published last.
+//! * *Softer* limits never hold for the past. They hold from a message that publishes them, once nothing harder has been published for
+//!   `stale`. Until then two things may still come: an overtaken message, which no stamp would reveal, and a sample from before. From
+//!   then on, what is certain is carried on by the softer limits. What is from before is carried on to that instant by the harder ones.
+//! * Until a station has published limits, the worst limits hold.
 
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
@@ -17,18 +17,18 @@ use crate::units::{Position, Speed};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
     now: AccelerationRange,
-    /// Before `since`; nowhere softer than `now`.
+    /// The limits that held before `since`; nowhere softer than `now`.
     before: AccelerationRange,
     /// Since when `now` holds.
     since: Instant,
-    /// The hardest published after `held`, while all of that was softer than `now` in one way or other.
+    /// The hardest limits published after `held`, while all of them were softer than `now` in one way or another.
     softer: AccelerationRange,
-    /// When limits were published last that are as hard as `now`.
+    /// When limits as hard as `now` were published last.
     held: Instant,
 }
 
 impl Limits {
-    /// Of a station that has published them for the first time.
+    /// The limits of a station that publishes for the first time.
     #[must_use]
     pub fn first(at: Instant, published: AccelerationRange) -> Self {
         Self {
@@ -40,7 +40,7 @@ impl Limits {
         }
     }
 
-    /// Of a station that publishes these, received at `at`.
+    /// The limits after the station published these, received at `at`.
     #[must_use]
     pub fn publish(self, at: Instant, published: AccelerationRange, stale: Duration) -> Self {
         let now = self.now.or(published);
@@ -55,26 +55,26 @@ impl Limits {
         Self { now: softer, before: now, since: at, softer: AccelerationRange::NONE, held: at }
     }
 
-    /// Those that hold from [`since`](Self::since) on.
+    /// The limits that hold from [`since`](Self::since) on.
     #[must_use]
     pub const fn now(&self) -> AccelerationRange {
         self.now
     }
 
-    /// What is certain, carried on to the instant from which on the limits of now hold, if it is from before.
+    /// A bound from before `since`, carried on to `since`; any other bound unchanged.
     #[must_use]
     pub fn settled(&self, bound: &Bound) -> Bound {
         bound.after(self.since, &self.before)
     }
 
-    /// What is certain by a sample or a sight, of the instant from which on the limits of now hold or a later one.
+    /// What is certain by a sample or by a view of the range sensor, carried on to `since` if it is from before.
     #[must_use]
     pub fn around(&self, at: Instant, position: Position, speed: Speed, uncertainty: &Uncertainty) -> Bound {
         let reach = self.from(at.minus(uncertainty.earlier));
         self.settled(&Bound::around(at, position, speed, uncertainty, &reach))
     }
 
-    /// The hardest that hold from an instant on.
+    /// The hardest limits that hold from an instant on.
     #[must_use]
     pub fn from(&self, at: Instant) -> AccelerationRange {
         if at < self.since { self.before } else { self.now }
@@ -97,7 +97,7 @@ mod tests {
         Instant::from_micros(millis * 1_000)
     }
 
-    /// Publishes one after the other; what holds after each.
+    /// Publishes one after the other. Each message is followed by the limits that hold then.
     fn publish(messages: &[(u64, AccelerationRange, AccelerationRange)]) -> Limits {
         let mut limits = Limits::first(at(messages[0].0), messages[0].1);
         for (millis, published, expected) in messages {
@@ -118,7 +118,7 @@ mod tests {
             (10_100, soft, soft),
         ]);
         assert_eq!((limits.before, limits.since), (hard, at(10_100)));
-        // One that was overtaken starts the time anew, and so does a silence in which nothing is published.
+        // An overtaken message starts the time anew, and so does a silence in which nothing is published.
         publish(&[(0, hard, hard), (500, soft, hard), (9_999, hard, hard), (10_500, soft, hard), (19_999, soft, soft)]);
     }
 

@@ -1,5 +1,4 @@
-//! The link to one peer as a fact about this moment: receptions enter; on or off, the measured period, delay and loss
-//! leave.
+//! The link to one peer, as a fact about this moment. Receptions enter; on or off, and the measured period, delay and loss, leave.
 
 use crate::config::Link as Limits;
 use crate::time::{Duration, Instant};
@@ -21,13 +20,13 @@ const WEIGHT: i64 = 8;
 pub const LOSS_ONE: u16 = 10_000;
 
 impl Link {
-    /// Nothing heard yet, messages expected with this period.
+    /// Nothing is heard yet. Messages are expected with this period.
     #[must_use]
     pub const fn new(period: Duration) -> Self {
         Self { heard: None, newest: None, period, delay: Duration::ZERO, loss: 0 }
     }
 
-    /// Takes note of a valid message received at `received` about the instant `at`.
+    /// Notes a valid message, received at `received`, about the instant `at`.
     pub fn heard(&mut self, received: Instant, at: Instant) {
         let delay = received.since(at).max(Duration::ZERO);
         self.delay = if self.heard.is_none() { delay } else { mean_time(self.delay, delay) };
@@ -41,7 +40,7 @@ impl Link {
             return;
         }
         self.newest = Some(at);
-        // A gap of n periods is n - 1 lost messages and one received; a longer one says nothing of the period.
+        // A gap of n periods is n - 1 lost messages and a received one. A longer gap says nothing of the period.
         let periods = step.plus(Duration::from_micros(self.period.as_micros() / 2)).as_micros();
         let periods = periods.checked_div(self.period.as_micros()).unwrap_or(1).clamp(1, 1000);
         if periods == 1 {
@@ -57,7 +56,7 @@ impl Link {
         self.silence(now).is_some_and(|silence| silence <= self.period.plus(limits.tolerance))
     }
 
-    /// How long nothing valid has come; `None` if nothing ever did.
+    /// For how long no valid message has come; `None` if none ever did.
     #[must_use]
     pub fn silence(&self, now: Instant) -> Option<Duration> {
         self.heard.map(|heard| now.since(heard))
@@ -75,7 +74,7 @@ impl Link {
         self.delay
     }
 
-    /// Mean share of messages lost, in ten-thousandths.
+    /// Mean fraction of the messages that are lost, in ten-thousandths.
     #[must_use]
     pub const fn loss(&self) -> u16 {
         self.loss
@@ -119,7 +118,7 @@ mod tests {
         }
         assert_eq!(link.delay(), Duration::from_millis(40));
         assert_eq!(link.period(), Duration::from_millis(100));
-        // A quarter is lost; each gap of two periods weighs as one of three messages.
+        // A quarter is lost. Each gap of two periods weighs like one message of three.
         assert!((1_000..=2_600).contains(&link.loss()), "{}", link.loss());
     }
 

@@ -1,8 +1,8 @@
 //! The peers: messages from the slots enter, one track per slot leaves.
 //!
-//! A slot's samples are kept in the order of their stamps. What comes too late for that, twice or from the future is refused by
-//! [`timely`] and [`Track::judge`]; what comes from another station or from too far away, by the unit. Judging changes
-//! nothing; what is admitted is changed by [`Track::admit`] alone.
+//! The samples of a slot are kept in the order of their stamps. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
+//! that, comes twice, or is from the future. The unit refuses a sample from another station or from too far away. Judging changes
+//! nothing. Only [`Track::admit`] changes a track by a sample.
 
 mod drift;
 mod limits;
@@ -35,7 +35,7 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         Self { tracks: [const { Track::new(Duration::ZERO) }; PEERS] }
     }
 
-    /// All slots free; messages expected with this period until a peer's own is measured.
+    /// Starts with all slots free. Messages are expected with this period until the period of a peer is measured.
     pub fn start(&mut self, period: Duration) {
         self.tracks.iter_mut().for_each(|track| *track = Track::new(period));
     }
@@ -54,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.get(index)
     }
 
-    /// How long the vehicle in a slot is, published or by default.
+    /// The length of the vehicle in a slot, published or by default.
     #[must_use]
     pub fn length_of(&self, index: usize) -> Distance {
         self.get(index).map_or(DEFAULT_LENGTH, Track::length)
@@ -65,7 +65,7 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
         self.tracks.get_mut(index)
     }
 
-    /// A station that was in the one slot is in the other one now.
+    /// The station of the slot `from` is in the slot `to` now.
     pub fn follow_on(&mut self, from: usize, to: usize) {
         if let Ok([before, now]) = self.tracks.get_disjoint_mut([from, to]) {
             now.follow_on(before);

@@ -1,21 +1,22 @@
-//! Misbehaving peers: a sample, and what is certain of its sender, enter; the sample's place in that, or the name of what is
-//! wrong with it, leaves.
+//! Misbehaving peers. A sample, and what is certain of its sender, enter; what is certain after the sample, or the cause for which it is
+//! refused, leaves.
 //!
-//! What is certain is the [`Bound`] carried on from all believed samples. A sample that contradicts it cannot come from a
-//! vehicle that keeps to its limits, whichever of the two is wrong: its position is out of reach ([`Cause::Jump`], or
-//! [`Cause::Stuck`] if it is the last one again), or its speed is ([`Cause::Implausible`]). A speed that does not fit the
-//! positions over many samples is implausible too, as soon as they have drifted apart by more than the published accuracies
-//! (`Course`); for half a second at most, as after that the course begins anew. An acceleration
-//! beyond what any road vehicle can do, and beyond what this one says it can, is implausible by itself.
+//! What is certain is the [`Bound`], carried on from all believed samples. A sample that contradicts it cannot come from a vehicle that
+//! keeps to its limits, whichever of the two is wrong. Either its position is out of reach ([`Cause::Jump`], or [`Cause::Stuck`] if it
+//! repeats the last sample), or its speed is ([`Cause::Implausible`]). A speed that does not fit the positions over many samples is
+//! implausible too, as soon as the two have drifted apart by more than the published accuracies (`Course`). This lasts for half a second
+//! at most, because the course begins anew after that. An acceleration beyond the limits of every road vehicle, and beyond the published
+//! limits of this one, is implausible by itself.
 //!
-//! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the
-//! track starts anew from them. Only what is stamped at least half a period after the last that counted counts, and a copy of a
-//! refused sample is a duplicate: a burst of copies is no evidence, and the next honest sample is believed at once. A liar whose
-//! lie takes longer than that to show would be believed again and again, so each
-//! recovery doubles the number that the next one takes, up to 2⁵ times; [`FORGIVEN_AFTER`] samples in a row that agree
-//! halve it again. So who is forged for long enough to be believed, five samples over four half periods without an honest one
-//! between them, keeps the honest ones out for ten of theirs, 1 s at 10 Hz; if that is done again and again before it is
-//! forgiven, for 160 at the most, 16 s.
+//! Recovery: when [`RECOVERY_SAMPLES`] samples in a row contradict the bound but not one another, they are believed, and the track starts
+//! anew from them. A sample only counts if its stamp is at least half a period after the last one that counted. A copy of a refused
+//! sample is a duplicate. So a burst of copies is no evidence, and the next honest sample is believed at once. A station whose false
+//! samples take longer than that to show would be believed again and again. So each recovery doubles the number of samples that the next
+//! one takes, up to 2⁵ times; [`FORGIVEN_AFTER`] samples in a row that agree halve it again.
+//!
+//! Forged samples in the name of a station are believed after five samples over four half periods without an honest one between them.
+//! This keeps the station's honest samples out for ten samples, 1 s at 10 Hz. If it is repeated before it is forgiven, it keeps them out
+//! for 160 samples at most, 16 s.
 
 use super::Sample;
 use super::drift::Course;
@@ -31,15 +32,15 @@ use crate::parameters::{
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
 
-/// What is certain of a peer, and the evidence against it.
+/// What is certain of a peer, and the evidence against that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Certainty {
     bound: Option<Bound>,
     suspects: Option<Suspects>,
-    /// Where it is by all its positions and speeds.
+    /// The interval in which the peer is, by all its positions and speeds.
     course: Option<Course>,
-    /// Recoveries that are not forgiven.
+    /// Recoveries that are not yet forgiven.
     strikes: u8,
     /// Samples in a row that agreed.
     agreed: u8,
@@ -51,48 +52,48 @@ pub struct Certainty {
 struct Suspects {
     /// What they agree on.
     bound: Bound,
-    /// How many of them count.
+    /// How many of them have counted.
     count: u8,
-    /// When the last of them that counted was true.
+    /// The instant of the last of them that counted.
     counted: Instant,
     /// The stamp of the last of them.
     stamp: Stamp,
 }
 
-/// Beyond so many recoveries no further one counts: then it takes 160 samples.
+/// After this many recoveries further ones do not raise the number any more: then it is 160 samples.
 const MOST_STRIKES: u8 = 5;
 
-/// How a believed sample is believed.
+/// In which way a sample is believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Belief {
-    /// It is older than one that is held: it fills the history, and says nothing of what is certain now.
+    /// The sample is older than one that is held. It fills the history, and says nothing of what is certain now.
     Late,
-    /// It agrees with what was certain.
+    /// The sample agrees with what was certain.
     Agrees,
-    /// It is the last of enough that agree with one another: what was certain is given up.
+    /// The sample is the last of enough samples that agree with one another. What was certain is given up.
     Recovered,
 }
 
 /// What a sample is judged by.
 #[derive(Clone, Copy, Debug)]
 pub struct Grounds {
-    /// What is certain of its sender by it alone.
+    /// What is certain of its sender by this sample alone.
     pub around: Bound,
     /// What is uncertain about it.
     pub uncertainty: Uncertainty,
-    /// How fast its sender can change its speed.
+    /// How hard its sender can change its speed.
     pub reach: AccelerationRange,
-    /// The hardest that it could since the sample before.
+    /// The hardest limits of its sender since the sample before.
     pub from_last: AccelerationRange,
-    /// With which messages come.
+    /// The period of its messages.
     pub period: Duration,
 }
 
-/// What is made of a sample, before anything is changed by it.
+/// The judgement of a sample, before the sample changes anything.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
-    /// What is certain, and the evidence, after it. If it is refused, nothing but the evidence differs.
+    /// What is certain after the sample, with the evidence. If the sample is refused, only the evidence differs.
     pub certainty: Certainty,
     /// Whether it is believed.
     pub verdict: Result<Belief, Cause>,
@@ -108,25 +109,25 @@ impl Certainty {
         self.bound.as_ref()
     }
 
-    /// All of it moves that far ahead: the vehicle's axis did.
+    /// Moves all of it ahead by this way, because the vehicle's axis moved.
     pub fn shift(&mut self, way: Distance) {
         self.bound = self.bound.map(|bound| bound.shifted(way));
         self.suspects = self.suspects.map(|held| Suspects { bound: held.bound.shifted(way), ..held });
         self.course = self.course.map(|course| course.shifted(way));
     }
 
-    /// All of it is carried on to the instant from which on the limits of now hold.
+    /// Carries all of it on to the instant from which on the present limits hold.
     pub fn settle(&mut self, limits: &Limits) {
         self.bound = self.bound.map(|bound| limits.settled(&bound));
         self.suspects = self.suspects.map(|held| Suspects { bound: limits.settled(&held.bound), ..held });
     }
 
-    /// This alone is certain.
+    /// Starts anew: only this bound is certain.
     pub fn restart(&mut self, bound: Bound) {
         (self.bound, self.suspects, self.course) = (Some(bound), None, None);
     }
 
-    /// Narrows the bound by something else that is certain; whether they agree.
+    /// Narrows the bound by another bound that is certain. Returns whether the two agree; if not, nothing is changed.
     pub fn narrow(&mut self, other: &Bound, reach: &AccelerationRange) -> bool {
         let Some(bound) = self.bound.as_ref() else { return true };
         match bound.and(other, reach) {
@@ -138,7 +139,8 @@ impl Certainty {
         }
     }
 
-    /// Judges a sample that is newer than all before, `last` being the one before it: believed, or `Implausible`, `Jump`, `Stuck`, or `Duplicate` of one that was refused.
+    /// Judges a sample that is newer than all before; `last` is the sample before it. It is believed, or refused as `Implausible`, `Jump`
+    /// or `Stuck`, or as `Duplicate` of a refused sample.
     #[must_use]
     pub fn judge(mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Judgement {
         let verdict = self.weigh(sample, last, grounds);
@@ -160,7 +162,7 @@ impl Certainty {
             return Ok(Belief::Agrees);
         };
         if let Some(both) = bound.and(around, reach) {
-            // Its place is certain all the same, so that this is no evidence of another one.
+            // The bound agrees, so that a sample that does not fit the course is no evidence for another place.
             self.course = Course::after(self.course.as_ref(), last, sample, uncertainty, from_last)?;
             self.agree(both);
             return Ok(Belief::Agrees);
@@ -188,7 +190,7 @@ impl Certainty {
 }
 
 impl Suspects {
-    /// With one more, if they agree. It counts if it is not a part of the same burst.
+    /// With one more sample, if it agrees with these. It counts if it is not part of the same burst.
     fn joined_by(self, one: &Self, reach: &AccelerationRange, period: Duration) -> Option<Self> {
         let bound = self.bound.and(&one.bound, reach)?;
         if one.counted.since(self.counted).times(2) < period {
@@ -198,10 +200,10 @@ impl Suspects {
     }
 }
 
-// 160 is a count.
+// The largest number of samples, 160, fits the count.
 const _: () = assert!((RECOVERY_SAMPLES as u32) << MOST_STRIKES <= u8::MAX as u32);
 
-/// What contradicts what.
+/// The cause for which a contradicting sample is refused.
 fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, reach: &AccelerationRange) -> Cause {
     let carried = bound.after(around.at(), reach);
     let out_of_reach =
@@ -214,15 +216,15 @@ fn name(bound: &Bound, around: &Bound, sample: &Sample, last: Option<&Sample>, r
     }
 }
 
-/// What is uncertain about a sample of a sender whose clock is that far off.
+/// What is uncertain about a sample of a sender whose clock is off by this.
 #[must_use]
 pub fn uncertainty(sample: &Sample, is_synchronised: bool, link: &Link, off: Off) -> Uncertainty {
     let (earlier, later) = if is_synchronised {
-        // However the clocks are off, it was taken before it was received.
+        // However the clocks are off, the sample is from before its reception.
         let (earlier, later) = off.uncertainty();
         (link.clock_error.plus(earlier), link.clock_error.plus(later).min(sample.received.since(sample.at)))
     } else {
-        // It was taken for as old as the assumed delay, and may be of any age up to the largest.
+        // Its age was taken to be the assumed delay, and may be anything up to the largest delay.
         (UNKNOWN_DELAY.minus(link.assumed_delay).max(Duration::ZERO), link.assumed_delay)
     };
     Uncertainty {

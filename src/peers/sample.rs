@@ -7,7 +7,7 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::motion::Motion;
 
-/// Whether what was true at `at` and is received now is neither older than `stale` nor further in the future than `future`.
+/// Checks that a state at `at`, received at `received`, is neither older than `stale` nor further in the future than `future`.
 ///
 /// # Errors
 /// [`Cause::Stale`] and [`Cause::Future`].
@@ -26,7 +26,7 @@ pub fn timely(at: Instant, received: Instant, stale: Duration, future: Duration)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sample {
-    /// When it was true.
+    /// The instant at which it was true.
     pub at: Instant,
     /// When it was received.
     pub received: Instant,
@@ -34,7 +34,7 @@ pub struct Sample {
     pub stamp: Stamp,
     /// Front bumper.
     pub position: Position,
-    /// Not negative.
+    /// Speed, not negative.
     pub speed: Speed,
     /// Acceleration.
     pub acceleration: Acceleration,
@@ -44,14 +44,14 @@ pub struct Sample {
     pub position_accuracy: Option<Distance>,
     /// 95 % accuracy of the speed, if published.
     pub speed_accuracy: Option<Speed>,
-    /// Whose it is.
+    /// The station that it is of.
     pub station: StationHash,
-    /// Ties it to the horizon that was computed from it.
+    /// The tag, which ties the sample to the horizon that was computed from it.
     pub tag: u8,
 }
 
 impl Sample {
-    /// At rest at the origin, of nobody: what stands for an ego that was never heard of.
+    /// At rest at the origin, of no station: for an ego of which nothing has been heard.
     pub const UNKNOWN: Self = Self {
         at: Instant::ZERO,
         received: Instant::ZERO,

@@ -1,22 +1,22 @@
-//! A sender's clock: when messages were stamped and when they were received enter; how far the clock is off, as far as that can be
+//! The clock of a sender. The stamps of its messages and their times of reception enter; how far the clock is off, as far as that can be
 //! seen, leaves.
 //!
-//! No message is received before it is sent. So a sender whose messages are stamped in the future, five of them within two
-//! windows of 5 s, is ahead by what the earliest of them was, and by as much more as that one was under way: by [`UNDER_WAY`] at
-//! the most, as is assumed of use. One whose messages all take longer than [`SUSPICIOUS`] over a whole window and what has passed
-//! of the next may be behind, by the least of it at the most. What is uncertain about a sample is widened by that, either way, so
-//! that a sender who is not off at all is inside it too.
+//! No message is received before it is sent. So if five messages of a sender within two windows of 5 s are stamped in the future, its
+//! clock is ahead. It is ahead by as much as the earliest of them was in the future, and by as much more as that message was under way.
+//! The latter is at most [`UNDER_WAY`], which is an assumption of use. If all messages of a sender take longer than [`SUSPICIOUS`], over
+//! a whole window and what has passed of the next, its clock may be behind: by the shortest of these times at most. The uncertainty of a
+//! sample is widened by this, to either side, so that it also holds for a sender whose clock is right.
 
 use crate::time::{Duration, Instant};
 
 const WINDOW: Duration = Duration::from_millis(5_000);
-/// In two windows some message is under way for less than this.
+/// Of the messages in two windows, some message is under way for less than this.
 const UNDER_WAY: Duration = Duration::from_millis(100);
-/// Of which messages may be that far behind none is.
+/// If every message takes longer than this, the clock may be behind.
 const SUSPICIOUS: Duration = Duration::from_millis(100);
-/// Beyond this a stamp is no clock's error.
+/// A stamp that is ahead by more than this is not due to a clock's error.
 const MOST_AHEAD: Duration = Duration::from_millis(200);
-/// Messages ahead that are evidence.
+/// This many messages ahead are evidence.
 const EVIDENCE: u8 = 5;
 /// A window with fewer messages says nothing.
 const ENOUGH: u8 = 10;
@@ -25,17 +25,17 @@ const ENOUGH: u8 = 10;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Off {
-    /// Not to be seen.
+    /// No error is seen.
     #[default]
     No,
-    /// Ahead by this or up to 100 ms more, as messages may be under way for so long.
+    /// Ahead by this, or by up to 100 ms more, because a message may be under way for so long.
     Ahead(Duration),
-    /// Perhaps behind, by this at the most.
+    /// Perhaps behind, by this at most.
     Behind(Duration),
 }
 
 impl Off {
-    /// When a message with this stamp was sent at the latest, as far as it is ahead.
+    /// When a message with this stamp was sent at the latest, corrected for a clock that is ahead.
     #[must_use]
     pub fn corrected(self, stamped: Instant) -> Instant {
         match self {
@@ -44,7 +44,7 @@ impl Off {
         }
     }
 
-    /// How much earlier and later than [`corrected`](Self::corrected) it may have been sent than with clocks that are right.
+    /// How much earlier and later than [`corrected`](Self::corrected) the message may have been sent, beyond the error of right clocks.
     #[must_use]
     pub fn uncertainty(self) -> (Duration, Duration) {
         match self {
@@ -55,12 +55,12 @@ impl Off {
     }
 }
 
-/// What a window has brought; empty if `messages` is 0.
+/// What a window has seen; empty if `messages` is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Window {
     begun: Instant,
-    /// The least from stamp to reception.
+    /// The shortest time from stamp to reception.
     least: Duration,
     messages: u8,
     /// Messages that were ahead.
@@ -71,7 +71,7 @@ impl Window {
     const EMPTY: Self = Self { begun: Instant::ZERO, least: Duration::ZERO, messages: 0, ahead: 0 };
 }
 
-/// What is seen of a sender's clock.
+/// What is known of a sender's clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SenderClock {
@@ -85,8 +85,8 @@ impl SenderClock {
     /// Nothing seen.
     pub const NEW: Self = Self { current: Window::EMPTY, before: Window::EMPTY, counted: Instant::ZERO };
 
-    /// Takes note of a message; whether a window begins with it. Clocks that are right are off by `error` at the most, and
-    /// messages come with this period.
+    /// Notes a message. Returns whether a window begins with it. Right clocks are off by `error` at most, and messages come with this
+    /// period.
     pub fn hear(&mut self, received: Instant, stamped: Instant, error: Duration, period: Duration) -> bool {
         let delay = received.since(stamped);
         let ahead = Duration::ZERO.minus(delay);
@@ -101,7 +101,7 @@ impl SenderClock {
         }
         self.current.messages = self.current.messages.saturating_add(1);
         self.current.least = self.current.least.min(delay);
-        // Not the copies of one message.
+        // Copies of a message do not count.
         let apart = Duration::from_micros(stamped.since(self.counted).as_micros().saturating_abs());
         if ahead > error && apart.times(2) >= period {
             self.current.ahead = self.current.ahead.saturating_add(1);
@@ -110,7 +110,7 @@ impl SenderClock {
         begins
     }
 
-    /// How far it is off.
+    /// How far the clock is off.
     #[must_use]
     pub fn off(&self) -> Off {
         let has_before = self.before.messages > 0;

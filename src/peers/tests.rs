@@ -8,7 +8,7 @@ use crate::units::{Acceleration, Position, Speed};
 use crate::wire::horizon::{KNOTS, Knot, Knots};
 
 const LIMITS: Limits = Config::car(StationHash(0)).link;
-/// Everybody is believed here; plausibility has its own facts.
+/// Every sample is believed here. Plausibility has its own tests.
 const UNCERTAINTY: Uncertainty = Uncertainty {
     position: crate::units::Distance::from_mm(1_000_000),
     speed: Speed::from_mm_per_s(60_000),
@@ -20,7 +20,7 @@ fn at(millis: u64) -> Instant {
     Instant::from_micros(100_000_000 + millis * 1000)
 }
 
-/// Takes a sample in by all rules of a track.
+/// Admits a sample by all rules of a track.
 fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admission, Cause> {
     timely(sample.at, sample.received, LIMITS.stale, LIMITS.future)?;
     let judgement = track.judge(&sample, &UNCERTAINTY, LIMITS.period);
@@ -33,7 +33,7 @@ fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admissi
     }
 }
 
-/// A sample of station 1 that was true and was received then.
+/// A sample of station 1 that was true at `true_at` and received at `received`.
 fn sample(true_at: u64, received: u64) -> Sample {
     Sample {
         at: at(true_at),
@@ -63,7 +63,7 @@ fn held(track: &Track<4>) -> Vec<u64> {
     track.samples().iter().map(since).collect()
 }
 
-/// Refused for this cause, with nothing changed.
+/// Refuses the sample for this cause, and changes nothing.
 fn refuses(track: &Track<4>, sample: Sample, cause: Cause) {
     let mut tried = track.clone();
     assert_eq!(admit(&mut tried, sample), Err(cause));
@@ -115,7 +115,7 @@ fn a_stamp_that_is_held_is_a_duplicate_within_its_own_turn_and_that_of_the_newes
     let track = track([100, 200]);
     refuses(&track, sample(200, 260), Cause::Duplicate);
     refuses(&track, sample(100, 260), Cause::Duplicate);
-    // The same stamp comes round after 13.1072 s.
+    // The same stamp repeats after 13.1072 s.
     let round = |millis| Sample { stamp: sample(millis, 0).stamp, ..sample(millis + 13_107, millis + 13_107) };
     assert_eq!(admit(&mut track.clone(), round(100)), Ok(Admission::News));
     refuses(&track, round(200), Cause::Duplicate);
@@ -169,7 +169,7 @@ fn a_horizon_that_was_overtaken_with_its_sample_does_not_displace_the_newest_one
         assert!(!track.foresee(at(311), knots(tag)));
         assert_eq!(track.knots(), Some(&knots(0)), "{tag}");
     }
-    // One that is ahead of its sample waits for it.
+    // A horizon that comes before its sample waits for it.
     assert!(!track.foresee(at(400), knots(1)));
     admit(&mut track, tagged(400, 401, 1)).unwrap();
     assert_eq!(track.knots(), Some(&knots(1)));

@@ -1,4 +1,4 @@
-//! One peer's track: checked messages enter by rule, a short history of samples in the order of their stamps leaves.
+//! The track of one peer. Checked messages enter by rule; a short history of samples in the order of their stamps leaves.
 
 use heapless::Vec;
 
@@ -28,13 +28,13 @@ pub enum Admission {
     History,
 }
 
-/// All that is held of one slot: the station's samples, oldest first, and what it said of itself.
+/// What is held of one slot: the samples of its station, oldest first, and what the station said of itself.
 #[derive(Clone, Debug)]
 pub struct Track<const SAMPLES: usize> {
     samples: Vec<Sample, SAMPLES>,
     certainty: Certainty,
     parameters: Held<DrivingParameters>,
-    /// When that was received last.
+    /// When its driving parameters were received last.
     published_at: Instant,
     limits: Held<Limits>,
     knots: Option<(Instant, Knots)>,
@@ -60,7 +60,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
     }
 
-    /// Whose track it is.
+    /// The station of the track.
     #[must_use]
     pub fn station(&self) -> Option<StationHash> {
         self.newest().map(|sample| sample.station)
@@ -78,26 +78,26 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.samples
     }
 
-    /// What is certain of it.
+    /// What is certain of the vehicle.
     #[must_use]
     pub const fn certainty(&self) -> &Certainty {
         &self.certainty
     }
 
-    /// Narrows what is certain of it by what another sensor saw; whether the two agree.
+    /// Narrows what is certain by what another sensor saw. Returns whether the two agree.
     pub fn narrow(&mut self, other: &Bound) -> bool {
         let reach = self.reach();
         self.certainty.narrow(other, &reach)
     }
 
-    /// How fast it can change its speed from the instant on that what is certain of it is of: as published (not by the last
-    /// message alone, if softer limits were published), or the worst there is.
+    /// How hard the vehicle can change its speed, from the instant of its bound on. These are the published limits, or the worst limits
+    /// if none were published. Softer limits do not hold as soon as they are published.
     #[must_use]
     pub fn reach(&self) -> AccelerationRange {
         self.limits.as_ref().map_or(AccelerationRange::WORST, Limits::now)
     }
 
-    /// What a sample is judged by.
+    /// The grounds on which a sample is judged.
     #[must_use]
     pub fn grounds(&self, around: Bound, uncertainty: Uncertainty, period: Duration) -> Grounds {
         let from_last = match (self.limits.as_ref(), self.newest()) {
@@ -107,7 +107,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         Grounds { around, uncertainty, reach: self.reach(), from_last, period }
     }
 
-    /// What is certain of it by a sample, or by what another sensor saw of it.
+    /// What is certain of the vehicle by a sample, or by what another sensor saw of it.
     #[must_use]
     pub fn around(&self, at: Instant, position: Position, speed: Speed, uncertainty: &Uncertainty) -> Bound {
         match self.limits.as_ref() {
@@ -116,64 +116,64 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         }
     }
 
-    /// Everything that is held of its place moves that far ahead: its axis did.
+    /// Moves everything that is held of its place ahead by this way, because its axis moved.
     pub fn shift(&mut self, way: Distance) {
         self.samples.iter_mut().for_each(|sample| sample.position = sample.position.ahead(way));
         self.certainty.shift(way);
     }
 
-    /// Nothing is held of its place any more; what it said of how it drives holds.
+    /// Forgets everything that is held of its place. What it said of how it drives still holds.
     pub fn restart(&mut self) {
         self.samples.clear();
         self.certainty = Certainty::NONE;
     }
 
-    /// Takes over what the same station said of how it drives in the slot in which it was before.
+    /// Takes over what the same station said of how it drives in the slot that it was in before.
     pub fn follow_on(&mut self, before: &Self) {
         if self.parameters.as_ref().is_none() {
             (self.parameters, self.published_at, self.limits) = (before.parameters, before.published_at, before.limits);
         }
     }
 
-    /// Whether what was said here of how somebody drives was said before any motion named a station, and so long ago that
-    /// it need not be of whom a motion names now.
+    /// Whether the driving parameters here came before any motion named a station, and so long ago that they may be of another station
+    /// than the one that a motion names now.
     #[must_use]
     pub fn is_of_another(&self, at: Instant, slot_reuse: Duration) -> bool {
         let is_old = at.since(self.published_at) >= slot_reuse;
         self.station().is_none() && self.parameters.as_ref().is_some() && is_old
     }
 
-    /// Begins anew for whom a motion names now. Of what was said here before by nobody knows whom, a length counts if it is
-    /// longer than what is taken for a vehicle that does not say its own: it may be this one's all the same.
+    /// Begins anew for the station that a motion names now. Of the driving parameters that were said here before by an unknown station,
+    /// the length counts if it is longer than the default length, because it may be this station's.
     pub fn begin(&mut self) {
         let said = self.parameters.get().filter(|parameters| parameters.length > DEFAULT_LENGTH);
         *self = Self { parameters: said.into(), published_at: self.published_at, ..Self::new(self.link.period()) };
     }
 
-    /// What it said of how it drives.
+    /// What the vehicle said of how it drives.
     #[must_use]
     pub const fn parameters(&self) -> Option<&DrivingParameters> {
         self.parameters.as_ref()
     }
 
-    /// How long it says that it is.
+    /// The length that the vehicle publishes.
     #[must_use]
     pub fn published_length(&self) -> Option<Distance> {
         self.parameters().map(|parameters| parameters.length)
     }
 
-    /// How long it is: as it says, or else as long as a car.
+    /// The length of the vehicle: as published, or else that of a car.
     #[must_use]
     pub fn length(&self) -> Distance {
         self.published_length().unwrap_or(DEFAULT_LENGTH)
     }
 
-    /// The horizon that it computed from its newest sample, if that came.
+    /// The horizon that the vehicle computed from its newest sample, if it has come.
     #[must_use]
     pub fn knots(&self) -> Option<&Knots> {
         let (received, knots) = self.knots.as_ref()?;
         let newest = self.newest()?;
-        // Tags come round after four messages; what is half a round older, or newer, is of another sample.
+        // Tags repeat after four messages. A horizon that is older or newer by half of that belongs to another sample.
         let (apart, half_a_round) = (newest.received.since(*received), self.link.period().times(2));
         let is_of_this_round = apart < half_a_round && apart > Duration::ZERO.minus(half_a_round);
         (knots.tag == newest.tag && is_of_this_round).then_some(knots)
@@ -185,15 +185,15 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.link
     }
 
-    /// How far its clock is off.
+    /// How far the clock of the station is off.
     #[must_use]
     pub fn clock_off(&self) -> Off {
         self.sender_clock.off()
     }
 
-    /// Takes note of when a motion of the station was received and stamped, on clocks that are off by `limits.clock_error` at the
-    /// most; whether its clock is found to be off, once for each window. What was certain by stamps that were believed too much is
-    /// so no more.
+    /// Notes when a motion of the station was received and stamped, on clocks that are off by `limits.clock_error` at most. Returns
+    /// whether the station's clock is found to be off, once for each window. If the uncertainty grows by that, what was certain is given
+    /// up, because it relied on the stamps too much.
     pub fn hear_clock(&mut self, received: Instant, stamped: Instant, limits: &Settings) -> bool {
         let before = self.clock_off();
         let begins = self.sender_clock.hear(received, stamped, limits.clock_error, limits.period);
@@ -209,30 +209,29 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         off != Off::No && (begins || before == Off::No)
     }
 
-    /// Whether another station spoke last in the slot, and was refused. Motions alone name their station: what else comes in the
-    /// slot is not this one's then.
+    /// Whether another station spoke last in the slot, and was refused. Only motions name their station. So other messages in the slot
+    /// are not taken for this station's then.
     #[must_use]
     pub const fn is_disputed(&self) -> bool {
         self.is_disputed
     }
 
-    /// Takes note of a motion of another station that is refused.
+    /// Notes a refused motion of another station.
     pub fn dispute(&mut self) {
         self.is_disputed = true;
     }
 
-    /// Takes note that the slot is the station's that speaks now.
+    /// Notes that the station of the slot spoke last.
     pub fn settle(&mut self) {
         self.is_disputed = false;
     }
 
     /// Judges a sample of the slot's own station, by the first rule that it breaks:
     ///
-    /// 1. with a stamp that is held already, or was refused last: [`Cause::Duplicate`]. A stamp comes round after 13.1 s, but
-    ///    that of the newest held is taken for frozen whenever it comes again: the one honest sample in 131,072 that has it is lost;
-    /// 2. older than a full history: [`Cause::OutOfOrder`];
-    /// 3. newer than all held, but contradicting what is certain of the station: see
-    ///    [`plausibility`](super::plausibility).
+    /// 1. its stamp is held already, or was refused last: [`Cause::Duplicate`]. A stamp repeats after 13.1 s, but the stamp of the newest
+    ///    sample counts as frozen whenever it comes again. So one honest sample in 131,072 is lost;
+    /// 2. it is older than a full history: [`Cause::OutOfOrder`];
+    /// 3. it is newer than all samples held, but contradicts what is certain of the station: see [`plausibility`](super::plausibility).
     #[must_use]
     pub fn judge(&self, sample: &Sample, uncertainty: &Uncertainty, period: Duration) -> Judgement {
         let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
@@ -248,7 +247,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         verdict(if is_oldest && self.samples.is_full() { Err(Cause::OutOfOrder) } else { Ok(Belief::Late) })
     }
 
-    /// Takes in a sample that was judged to be believed like this, and what is certain with it.
+    /// Admits a sample that was judged like this, and what is certain with it.
     pub fn admit(&mut self, sample: Sample, certainty: Certainty, belief: Belief) -> Admission {
         if belief == Belief::Recovered {
             self.samples.clear();
@@ -259,7 +258,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         self.insert(sample)
     }
 
-    /// Takes note of the evidence of a sample that was refused.
+    /// Keeps the evidence of a refused sample.
     pub fn note(&mut self, certainty: Certainty) {
         self.certainty = certainty;
     }
@@ -267,7 +266,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     fn insert(&mut self, sample: Sample) -> Admission {
         let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
         let is_news = older == self.samples.len();
-        // The others make room one by one, so that nothing here can be out of bounds.
+        // The other samples move by swaps, so that no index can be out of bounds.
         let mut moved = sample;
         if self.samples.is_full() {
             self.samples.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
@@ -278,8 +277,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if is_news { Admission::News } else { Admission::History }
     }
 
-    /// Takes in what the station says of how it drives, received at `at`; whether that is new. Nothing that is older than `stale`
-    /// comes after it.
+    /// Takes in the driving parameters of the station, received at `at`. Returns whether they are new. No message older than `stale`
+    /// comes after them.
     pub fn publish(&mut self, at: Instant, parameters: DrivingParameters, stale: Duration) -> bool {
         let published = AccelerationRange::published(&parameters.limits);
         let limits = match self.limits.get() {
@@ -294,8 +293,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         is_new
     }
 
-    /// Takes in the horizon that the station computed; whether it belongs to the newest sample. One that was overtaken together
-    /// with its sample does not displace the newest one's; one that has overtaken its sample waits for it.
+    /// Takes in the horizon that the station computed. Returns whether it belongs to the newest sample. A horizon that was overtaken
+    /// together with its sample does not displace the newest sample's. A horizon that has overtaken its sample waits for it.
     pub fn foresee(&mut self, received: Instant, knots: Knots) -> bool {
         let behind = self.newest().map_or(0, |newest| newest.tag.wrapping_sub(knots.tag) % 4);
         if matches!(behind, 1 | 2) && self.knots().is_some() {
@@ -306,7 +305,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     }
 }
 
-/// Whether two samples with the same stamp are of the same turn of the stamp (which repeats every 13.1 s).
+/// Whether two samples with the same stamp are of the same turn of the stamp, which repeats every 13.1 s.
 fn is_same_turn(a: &Sample, b: &Sample) -> bool {
     let apart = a.at.since(b.at);
     apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)

@@ -1,4 +1,4 @@
-//! What the unit's two doors give back: what became of a frame, and the answer of a tick.
+//! What the unit returns from its two doors: what became of a frame, and the answer of a tick.
 
 use heapless::Vec;
 
@@ -13,8 +13,8 @@ use crate::wire::command::Command;
 /// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), status.
 pub const MAX_FRAMES: usize = 16;
 
-/// The frames of all messages of the unit in the catalogue. Its place on the globe is not among those that it sends: others
-/// hear of the ego by its route.
+/// The number of frames of all messages that the catalogue assigns to the unit. The place on the globe is not among those that the unit
+/// sends: others hear of the ego by its route.
 #[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
 const SENT: usize = {
     let (mut frames, mut line) = (0, 0);
@@ -34,9 +34,9 @@ const _: () = assert!(SENT == MAX_FRAMES, "an answer has room for every message 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reception {
-    /// Not one of ours.
+    /// The frame is not one of the unit's.
     Foreign,
-    /// Part of a message whose other parts are still to come.
+    /// The frame is part of a message whose other parts are still to come.
     Pending,
     /// A message was taken in.
     Taken,
@@ -48,22 +48,22 @@ pub enum Reception {
 pub struct Estimate {
     /// Position and speed at the tick.
     pub reading: Reading,
-    /// Age of the newest sample that it rests on.
+    /// Age of the newest sample that the estimate rests on.
     pub age: Duration,
     /// Whether the link to the target is on.
     pub link_on: bool,
-    /// What is certain of it at the tick.
+    /// What is certain of the target at the tick.
     pub bound: Option<Bound>,
 }
 
-/// The answer of one tick.
+/// The answer of a tick.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The command to the actuators.
     pub command: Command,
     /// The mode that it was computed in.
     pub mode: Mode,
-    /// The estimate of the target, if there is one.
+    /// The estimate of the target, if it has one.
     pub estimate: Option<Estimate>,
     /// The frames to send, in this order.
     pub frames: Vec<Frame, MAX_FRAMES>,

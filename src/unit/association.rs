@@ -1,17 +1,17 @@
-//! With whom the ego drives, and how tightly: the scene enters at every tick; the gains of the law, looked up when the target changes,
-//! leave.
+//! The association: which vehicle the ego follows, and with which gains. The scene enters at every tick; the gains of the law, looked up
+//! when the target changes, leave.
 
 use super::scene::Scene;
 use crate::controller::Gains;
 use crate::model::Reading;
 use crate::wire::{Predecessor, StationHash};
 
-/// The vehicle that the ego follows, with the gains that were looked up when that began.
+/// The vehicle that the ego follows, with the gains that were looked up when the ego began to follow it.
 #[derive(Clone, Debug)]
 pub(super) struct Association(Option<(StationHash, Gains)>);
 
 impl Association {
-    /// With nobody.
+    /// Without a target.
     pub const NONE: Self = Self(None);
 
     /// Looks the gains up when the target changes.

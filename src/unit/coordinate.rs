@@ -1,10 +1,11 @@
-//! The review of the order at the intersections, ten times a second: the scene as it is known now enters; whom the ego follows, for
-//! whom it waits and who is ahead of it for certain are known from then on. The rules are those of [`crate::coordination`].
+//! The review of the order at the intersections, ten times a second. The scene enters; the vehicle that the ego follows, the vehicles
+//! that it waits for, and the vehicles that are ahead of it for certain are known from then on. The rules are those of
+//! [`crate::coordination`].
 //!
-//! It comes before the estimator in a tick, because the target has to be known before the horizons change: where news ends a silence,
-//! the target is read by the old horizon and by the new one, and the controller is led from the one to the other. So the review reads
-//! horizons as the last tick left them. They reach beyond now, so nothing is missing from them but the messages since the last tick,
-//! and those count from the next review on.
+//! In a tick the review comes before the estimator, because the target has to be known before the horizons change. Where news ends a
+//! silence, the target is read by the old horizon and by the new one, and the controller is led from the one to the other. So the review
+//! reads the horizons of the last tick. They reach beyond now, so that only the messages since the last tick are missing from them. Those
+//! count from the next review on.
 
 use heapless::Vec;
 
@@ -16,10 +17,10 @@ use crate::health::{Cause, Health};
 use crate::time::Instant;
 use crate::units::{Acceleration, Distance, Position, Speed};
 
-/// A vehicle that drives on silently so far ahead is not heard because it is too far away.
+/// A silent vehicle that is estimated to drive on this far ahead is not heard because it is too far away.
 const OUT_OF_REACH: Distance = Distance::from_mm(250_000);
 
-/// Reviews who is ahead, when that is due.
+/// Reviews which vehicles are ahead, when a review is due.
 pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -31,7 +32,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     }
     let Some(ego) = scene.ego_at(now, last_demand) else { return };
     let (front, speed) = (scene.front(&ego), ego.speed);
-    // Without the time the ego cannot tell when it arrives: it minds the others all the same, and arrives nowhere.
+    // Without GNSS time the ego cannot tell when it arrives. It minds the others all the same, but arrives at no crossing.
     let gnss = scene.clock.gnss(now).filter(|_| scene.is_synchronised(now));
     let arrival = gnss.map(|gnss| Arrival::of_micros(gnss.as_micros()));
     if let Some(arrival) = arrival {
@@ -42,7 +43,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     let is_committed = view.is_committed();
     let is_inside = scene.area_begins().is_some_and(|begins| front > begins);
     let (present, nearest) = around(&view, is_committed, is_inside);
-    // A vehicle that stops at the line is a hair from where it could not.
+    // A vehicle that stops at the line is only just before the point from which it could not stop any more.
     let can_wait = if scene.coordination.choice().is_held { !is_inside } else { !is_committed };
     let has_room = view.has_room(nearest);
     let gives_way = can_wait && !has_room && view.waits_for_room(nearest);
@@ -59,7 +60,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     lane::note(scene, now, front);
 }
 
-/// Everyone at the next crossing, and the nearest vehicle ahead on the ego's leg by estimate.
+/// All stations at the next crossing, and the vehicle that is estimated to be nearest ahead on the ego's leg.
 fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
     is_committed: bool,
@@ -76,7 +77,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         let side = if reading.position > view.front { Side::Ahead } else { Side::Behind };
         if coordination.is_here(standing) {
             let takes_along = side == Side::Behind || !is_committed;
-            // A vehicle in the area does not wait in it for one that comes after it.
+            // A vehicle in the area does not wait there for a vehicle that comes after it.
             let is_passed = is_inside && side == Side::Behind;
             let _ = present.push(Present {
                 index,
@@ -86,7 +87,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
                 is_far_behind: is_committed || view.is_far_behind(&reading),
                 is_announced: !is_passed && (followed == Some(index) || view.is_announced(standing)),
                 lane: (is_on_lane && takes_along).then_some(side),
-            }); // as many as slots
+            }); // no more than slots
         }
         let is_ahead = side == Side::Ahead && is_on_lane;
         if is_ahead && nearest.is_none_or(|(_, position)| reading.position < position) {
@@ -96,7 +97,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// The peers that have got out of reach far ahead, driving on. One that stood when it was heard last still stands there.
+/// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -113,8 +114,8 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     lost
 }
 
-/// Whom the ego follows from now on: of the one just ahead in the order and the one just ahead on the leg, the one that asks for more
-/// caution.
+/// Chooses the vehicle that the ego follows from now on: of the vehicle just ahead in the order and the vehicle just ahead on the leg,
+/// the one that asks for more caution.
 fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -130,7 +131,7 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let followed = before.target.map(usize::from);
     let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(*target, followed));
     let may = view.comfort(target);
-    // A vehicle that has had to brake harder goes on until that is over.
+    // For the same target the ego does not brake more gently than it already had to.
     let comfort = if followed == target { may.min(before.comfort) } else { may };
     scene.coordination.choose(target, comfort, lane);
 }

@@ -1,4 +1,5 @@
-//! What the mode and the controller go by: the scene enters; the facts that decide the mode, and the course to be driven in it, leave.
+//! The basis of the mode and of the controller. The scene enters; the facts that decide the mode, and the course to be driven in it,
+//! leave.
 
 use super::room;
 use super::scene::Scene;
@@ -10,7 +11,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::Predecessor;
 
-/// What the mode is decided by; `is_readable` says whether the target has an estimate.
+/// The facts by which the mode is decided. `is_readable` says whether the target has an estimate.
 pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -38,7 +39,7 @@ pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
         }
         (Predecessor::Station(_), _) => TargetFact::Lost(FallbackCause::NeverHeard),
     };
-    // The ego drives by what its sensor sees ahead then, and not by what it hears.
+    // The ego then drives by what its sensor sees ahead, and not by what it hears.
     let is_contradicted = scene.visible().is_some_and(|index| scene.is_contradicted(index, now));
     let target = match target {
         _ if scene.is_request_lost(now) => TargetFact::Lost(FallbackCause::RequestLost),
@@ -49,7 +50,7 @@ pub(super) fn facts<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     Facts { engaged: scene.is_engaged(), ego, target }
 }
 
-/// The course of a mode; `gains` are those of the association with the target.
+/// The course of a mode. `gains` are those of the association with the target.
 pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -126,7 +127,7 @@ fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
 }
 
-/// The law takes positions modulo 4096 m: what was left far behind must not turn up ahead.
+/// `None` if it is too far away. The law takes positions modulo 4096 m, so that a vehicle left far behind must not turn up ahead.
 fn near<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     position: Position,

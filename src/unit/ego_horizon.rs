@@ -1,9 +1,10 @@
-//! The ego's own horizon: its state and the vehicle that it follows enter; where it will be leaves, past the changes of target
+//! The ego's own horizon. The ego's state and the vehicle that it follows enter; where the ego will be leaves, past the changes of target
 //! that it can foresee.
 //!
-//! A vehicle that falls silent drives on by what it knows, and so do those ahead of it. When its target leaves the conflict area, or
-//! when it comes to the next intersection itself, it follows another vehicle from then on. It knows that order already, and it holds
-//! those horizons already. So its own horizon says so, and every vehicle that hears it knows, and those behind them too.
+//! A vehicle that falls silent drives on by what it knows, and so do the vehicles ahead of it. When its target leaves the conflict area,
+//! or when it comes to the next intersection itself, it follows another vehicle from then on. It already knows that order, and holds
+//! those horizons. So its own horizon includes the change. Every vehicle that hears it then knows of the change, and so do the vehicles
+//! behind.
 
 use super::scene::Scene;
 use super::vantage::Vantage;
@@ -49,7 +50,7 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     }
 }
 
-/// The gains of an association that begins then.
+/// The gains of an association that begins at `at`.
 fn gains_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     index: usize,
@@ -61,8 +62,8 @@ fn gains_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     Some(Gains::look_up(&scene.config.law, own.speed, ahead.speed, headway))
 }
 
-/// Whom the ego may follow one day, with that crossing next: a vehicle that is ahead on its leg now, as nobody passes there; one that is
-/// ahead in the order; and one that has come to a later crossing.
+/// The vehicles that the ego may follow at some time, with `next` as its next crossing: a vehicle that is ahead on its leg now, because
+/// no vehicle passes another there; a vehicle that is ahead in the order; and a vehicle that has come to a later crossing.
 fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -84,7 +85,8 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     minded
 }
 
-/// Whom the ego will follow by the order and the horizons as they are known now. Nobody knows who registers in between.
+/// The vehicle that the ego will follow, by the order and the horizons as they are known now. A vehicle that registers in between is not
+/// known.
 fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
     minded: Slots,
@@ -97,7 +99,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     for index in (0..PEERS).filter(|index| minded.contains(*index)) {
         let Some(standing) = coordination.standing(index) else { continue };
         let is_on_lane = coordination.is_on_lane(standing);
-        // What needs no horizon is asked first.
+        // The entry is asked for first, because it needs no horizon.
         let entry = scene.entry(index, standing).filter(|entry| {
             let is_ahead = is_later || is_ahead(scene, index, entry);
             is_ahead && standing.crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
@@ -114,7 +116,8 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             order = Some((index, entry));
         }
     }
-    // A vehicle ahead on the same leg and not yet at a later crossing comes there before the ego, and after all who are there now.
+    // A vehicle that is ahead on the same leg, and not yet at the later crossing, comes there before the ego, and after all that are
+    // there now.
     let comes_last = |index| coordination.standing(index).is_some_and(|standing| standing.crossing != view.next);
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
     let is_heeded = |index: &usize| view.is_heeded(*index);
@@ -123,7 +126,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view.is_in_the_way(target, followed).then_some(target)
 }
 
-/// Whether a station was ahead at the last review, and still is by what it has said since.
+/// Whether a station was ahead at the last review, and still is by what it has said since then.
 fn is_ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     index: usize,

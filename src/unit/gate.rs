@@ -1,5 +1,5 @@
-//! The last gate: what is certain of the peers, what the range sensor sees and the demand enter; the command that the envelope lets
-//! through leaves.
+//! The last gate. What is certain of the peers, what the range sensor sees, and the demand enter; the command that the envelope allows
+//! leaves.
 
 use super::lane;
 use super::scene::Scene;
@@ -19,7 +19,7 @@ pub(super) struct Gate {
     reckoning: Held<Reckoning>,
 }
 
-/// What the last tick demanded, and how long ago that was: longer than a period, where ticks were missed.
+/// The demand of the last tick, and its age. The age is longer than a period where ticks were missed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Last {
     pub demand: Acceleration,
@@ -32,12 +32,13 @@ impl Gate {
         Self { reckoning: Held::Nothing }
     }
 
-    /// Forgets the ego: nothing is known of what somebody else commands.
+    /// Forgets the ego: nothing is known of commands that are not the unit's.
     pub fn forget(&mut self) {
         self.reckoning.clear();
     }
 
-    /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether it is another one than the demand.
+    /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether the command differs from the
+    /// demand.
     pub fn command<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         &mut self,
         limits: &Envelope,
@@ -61,7 +62,7 @@ impl Gate {
         };
         let reckoning = Reckoning::carry(&mut self.reckoning, &start, now, last.demand, limits);
         let ego = reckoning.ego(limits, last.demand, scene.config.lag);
-        // As far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
+        // The ego as far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
         let view = Rearmost { scene, now, rearmost };
@@ -77,16 +78,16 @@ impl Gate {
     }
 }
 
-/// The ego as far back as it may be, and all that is known.
+/// The ego as far back as it may be, and the scene.
 struct Rearmost<'a, const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
     scene: &'a Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
-    /// Front bumper.
+    /// Front bumper of the ego, as far back as it may be.
     rearmost: Position,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, PEERS, SAMPLES, STEPS> {
-    /// On an itinerary: what is to spare behind everyone ahead for certain.
+    /// On an itinerary: what is to spare behind every vehicle that is ahead for certain.
     fn spare_on_way(&self, spare: &impl Fn(Obstacle) -> Spare) -> Option<Spare> {
         let unknown = self.scene.stop_for_unknown(self.now, self.rearmost);
         let stop = [self.stop_at_crossing(), unknown].into_iter().flatten().min();
@@ -94,9 +95,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         [lane::spare(self.scene, self.now, spare), stop].into_iter().flatten().min()
     }
 
-    /// On an itinerary: before the conflict area for everyone whose way crosses the ego's and who is ahead in the order, or is in the
-    /// area for certain: a vehicle that gave way when it could not stop any more is there all the same. And before an area at which
-    /// the ego has not arrived, as it does not know the time: nobody minds it there.
+    /// On an itinerary: where the ego has to be able to stop before the conflict area. It stops for every vehicle whose way crosses the
+    /// ego's and which is ahead in the order, or in the area for certain. A vehicle that yielded when it could not stop any more is in
+    /// the area all the same. The ego also stops before an area at which it has not arrived because it does not know the time: no vehicle
+    /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
         let others = (0..PEERS).filter_map(|index| self.stop_before_area(index));
         others.chain(self.stop_without_time()).min()
@@ -132,8 +134,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
-    /// The rears of everyone whom the range sensor has seen and who is not known to be the target. A vehicle that the ego has got past
-    /// by more than a vehicle's length is not on its path.
+    /// The rears of all vehicles that the range sensor has seen and that are not known to be the target. A vehicle that the ego has
+    /// passed by more than a vehicle's length is not on its path.
     fn obstacles_seen(&self) -> impl Iterator<Item = Obstacle> {
         let (scene, now, rearmost) = (self.scene, self.now, self.rearmost);
         let target = scene.visible().and_then(|index| scene.peers.get(index)?.station());

@@ -1,8 +1,10 @@
-//! Who is ahead on the ego's own leg, by what is certain: bounds enter at every review; what is to spare behind them leaves.
+//! The vehicles that are certainly ahead on the ego's own leg. Bounds enter at every review; what is to spare behind these vehicles
+//! leaves.
 //!
-//! No vehicle passes another there. So a vehicle that was ahead for certain stays ahead, however long it is silent and wherever it is
-//! estimated to be: it may have braked to a stand at once, and the gate keeps behind that. What ends this is certain too: the vehicle
-//! is heard farther on, or on another way; or one that was behind it for certain is heard farther on, and then so is it.
+//! No vehicle passes another there. So a vehicle that was ahead for certain stays ahead, however long it is silent, and wherever it is
+//! estimated to be. It may have braked to a stand at once, and the gate keeps the ego behind that place. What ends this is certain too.
+//! Either the vehicle is heard farther on, or on another way. Or a vehicle that was behind it for certain is heard farther on, and then
+//! so is it.
 
 use heapless::Vec;
 
@@ -21,12 +23,13 @@ struct Certain {
     rear: Position,
 }
 
-/// A vehicle that would stand farther ahead than this by when it was heard last is out of the radio's reach, and not minded until it
-/// is heard again: no more is known there of any other vehicle either. An assumption of use: a vehicle that comes nearer is heard.
+/// A silent vehicle that could not stand nearer than this is out of the radio's reach, even if it has braked at its hardest since it was
+/// heard last. It is not minded until it is heard again; at that distance no more is known of any other vehicle either. This is an
+/// assumption of use: a vehicle that comes nearer is heard.
 const RADIO_REACH: Distance = Distance::from_mm(300_000);
 
-/// Takes note of who is ahead of the ego's front bumper on its own leg for certain, who of them is behind whom, and how far they have
-/// come by that.
+/// Notes which vehicles on the ego's own leg are ahead of its front bumper for certain, which of them are behind which, and how far they
+/// have come at least.
 pub(super) fn note<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -35,7 +38,7 @@ pub(super) fn note<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
     let lane = certain(scene, now);
     let (mut leading, mut beyond) = (Slots::NONE, Slots::NONE);
     for one in &lane {
-        // A vehicle that may be on either side is where it was.
+        // A vehicle that may be on either side of the ego stays on the side that it was on.
         let was_ahead = scene.coordination.choice().leading.contains(one.index);
         leading.set(one.index, one.near > front || one.far > front && was_ahead);
         beyond.set(one.index, is_beyond(scene, one.index, now, front));
@@ -49,7 +52,7 @@ pub(super) fn note<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
     scene.coordination.note_leading(leading, beyond);
 }
 
-/// Where everyone on the ego's leg is, for certain.
+/// Where the peers on the ego's leg are, for certain.
 fn certain<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -61,7 +64,7 @@ fn certain<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     };
     let mut lane = Vec::new();
     for one in (0..PEERS).filter_map(certain) {
-        // There is room for all: no more than there are slots.
+        // There is room for all, because there are no more than slots.
         let _ = lane.push(one);
     }
     lane
@@ -88,8 +91,8 @@ fn stop_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     Some(stop.ahead(track.length().negated()))
 }
 
-/// What is to spare behind everyone ahead on the same leg. The one that is estimated to be the nearest of them need not be: one that
-/// is silent may have braked where it is estimated to have driven on, past another one that is heard.
+/// What is to spare behind the vehicles ahead on the same leg. The vehicle that is estimated to be nearest need not be the nearest one. A
+/// silent vehicle may have braked where it is estimated to have driven on, past another vehicle that is heard.
 pub(super) fn spare<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -98,7 +101,8 @@ pub(super) fn spare<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     let choice = scene.coordination.choice();
     let leading = (0..PEERS).filter(|index| choice.leading.contains(*index) && !choice.beyond.contains(*index));
     let ahead = leading.chain(choice.lane.map(usize::from)).filter(|index| !scene.is_seen_past(*index, now));
-    // Its rear is not behind its own near end, nor behind the place that it is known to have passed: so the better of both holds.
+    // The rear of a vehicle is not behind its own near end, nor behind the place that it is known to have passed. So the better of both
+    // holds.
     let behind = |index: usize| {
         let passed = scene.coordination.passed(index).map(Obstacle::standing);
         [scene.obstacle(now, index), passed].into_iter().flatten().map(spare).max()

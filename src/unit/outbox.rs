@@ -1,6 +1,6 @@
-//! What the unit sends: the state of this tick enters, frames by their schedule leave. Command and estimate every tick, the
-//! own motion and horizon at the link's period, the own driving parameters every fifth time and when it changes, a page of health
-//! with every own motion.
+//! What the unit sends. The state of this tick enters; frames by their schedule leave. The command and the estimate are sent every tick,
+//! and the own motion and horizon at the link's period. The own driving parameters are sent with every fifth own motion and when they
+//! change. A page of health is sent with every own motion.
 
 use heapless::Vec;
 
@@ -24,24 +24,24 @@ use crate::wire::route::Route;
 use crate::wire::status::{INTERFACE, Status};
 use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
 
-/// How many own motions go by from one message of the driving parameters to the next.
+/// The driving parameters are sent once in this many own motions.
 const PARAMETERS_EVERY: u8 = 5;
-/// How often the driving parameters are sent at once when they change: a receiver that hears the first message of an identifier trusts it
-/// from the second one on.
+/// How often the driving parameters are sent at once when they change. A receiver that hears the first message of an identifier trusts
+/// that identifier only from the second message on.
 const PARAMETERS_AT_ONCE: u8 = 2;
-/// How many own motions go by from one route to the next; tags count modulo 4.
+/// The route is sent once in this many own motions. Tags count modulo 4.
 const ROUTE_EVERY: u8 = 2;
 
 /// The own messages of a tick.
 pub(super) struct Report<'a> {
     pub mode: Mode,
     pub gains: Option<Gains>,
-    /// The ego's motion with the demand in force up to its stamp: from it a receiver's model repeats the demand of this tick. `None`
-    /// if it is too old.
+    /// The ego's motion, with the demand in force up to its stamp. From it the model of a receiver computes the demand of this tick
+    /// again. `None` if the motion is too old.
     pub ego: Option<&'a Sample>,
 }
 
-/// When what is due, and the end-to-end state of what is sent.
+/// When each message is due, and the end-to-end state of each message.
 #[derive(Clone, Debug)]
 pub(super) struct Outbox {
     sender: Sender<0>,
@@ -50,7 +50,7 @@ pub(super) struct Outbox {
     page: u8,
     due: Option<Instant>,
     until_parameters: u8,
-    /// How often the driving parameters are still to be sent at once.
+    /// How many more times the driving parameters are sent at once.
     at_once: u8,
     parameters: Held<DrivingParameters>,
 }
@@ -75,7 +75,7 @@ impl Outbox {
         self.tick
     }
 
-    /// Whether the own messages are due; a schedule that was missed starts anew.
+    /// Whether the own messages are due. A schedule that was missed starts anew from now.
     pub(super) fn is_due(&mut self, now: Instant, period: Duration) -> bool {
         let due = self.due.unwrap_or(now);
         if now < due {
@@ -87,7 +87,7 @@ impl Outbox {
         true
     }
 
-    /// Whether the driving parameters are due: they have changed, or their turn has come.
+    /// Whether the driving parameters are due: because they have changed, or because their turn has come.
     fn are_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
         if self.parameters != Held::Value(parameters) {
             self.at_once = PARAMETERS_AT_ONCE;
@@ -99,7 +99,7 @@ impl Outbox {
         is_due
     }
 
-    /// The next cause to report.
+    /// The next cause whose count is reported.
     fn next_page(&mut self) -> Cause {
         let cause = Cause::ALL.get(usize::from(self.page)).copied().unwrap_or(Cause::Length);
         let next = self.page.saturating_add(1);
@@ -109,7 +109,7 @@ impl Outbox {
 }
 
 impl Outbox {
-    /// Command and estimate, which every tick sends.
+    /// Sends the command and the estimate, which every tick sends.
     pub(super) fn send_answer(
         &mut self,
         command: &Command,
@@ -124,7 +124,7 @@ impl Outbox {
         }
     }
 
-    /// The own messages, when they are due.
+    /// Sends the own messages, when they are due.
     pub(super) fn send_own<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         &mut self,
         scene: &Scene<PEERS, SAMPLES, STEPS>,
@@ -186,7 +186,7 @@ impl Outbox {
         }
     }
 
-    /// Adds a message's frames to those of this tick. What cannot be sent is lost, and counted.
+    /// Adds the frames of a message to those of this tick. A frame that cannot be sent is lost, and counted.
     #[inline(never)] // one place that encodes
     fn emit(&mut self, message: &Message, health: &mut Health, frames: &mut Vec<Frame, MAX_FRAMES>) {
         let mut lost = 0u32;
@@ -198,7 +198,7 @@ impl Outbox {
     fn target_estimate(&self, estimate: &Estimate) -> TargetEstimate {
         let Reading { position, speed } = estimate.reading;
         let wire = WirePosition::from_position(position);
-        // The ends are told from what the receiver will read, not from what it was rounded from.
+        // The ends are relative to what the receiver will read, not to the value before its rounding.
         let told = Reading { position: wire.nearest_to(position), speed: rounded(speed) };
         TargetEstimate {
             tag: self.tick % 4,
@@ -210,7 +210,7 @@ impl Outbox {
     }
 }
 
-/// Every other time, the way to the next crossing point, from where the ego was at the motion's stamp.
+/// The route, every other time: the way to the next crossing point, from where the ego was at the motion's stamp.
 fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     tag: u8,
@@ -229,7 +229,7 @@ fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     })
 }
 
-/// How the ego says that it drives. When it does not drive by its law it says so by naming no predecessor.
+/// The driving parameters of the ego. When it does not drive by its law, it says so by naming no predecessor.
 fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     report: &Report<'_>,
@@ -258,7 +258,7 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     }
 }
 
-/// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around it.
+/// The own horizon at its knots. The acceleration at a knot is the slope of the speeds around the knot.
 fn own_knots<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     tag: u8,
@@ -297,8 +297,8 @@ fn links_on<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     u8::try_from(on).unwrap_or(u8::MAX)
 }
 
-/// The bound as distances from the estimate. An estimate outside its bound widens it. Decimals are words only to the
-/// nearest bit, which two more bits make up for.
+/// The bound as distances from the estimate. An estimate outside its bound widens the bound. Decimals are words only to the nearest bit,
+/// which two more bits make up for.
 fn ends(told: &Reading, bound: &Bound) -> Ends {
     let (way, change) = (Distance::from_bits(2), Speed::from_bits(2));
     Ends {
@@ -309,7 +309,7 @@ fn ends(told: &Reading, bound: &Bound) -> Ends {
     }
 }
 
-/// A speed as the wire can say it.
+/// A speed rounded to what the wire can say.
 fn rounded(speed: Speed) -> Speed {
     Speed::from_steps(speed.to_steps(500).clamp(0, 32_767), 500)
 }

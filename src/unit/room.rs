@@ -1,9 +1,9 @@
-//! Where the ego has to be able to stop by what is estimated: its own state and the vehicle ahead on its leg enter; whether the ego
-//! is held before the next conflict area, and how much it may accelerate, leave.
+//! Where the ego has to be able to stop by what is estimated. The ego's state and the vehicle ahead on its leg enter; whether the ego is
+//! held before the next conflict area, and how much it may accelerate, leave.
 //!
-//! A vehicle that stands in a conflict area blocks those that cross. So no vehicle enters that could not leave it again, because the
-//! vehicle ahead has come to a stand beyond the area, or is about to. While it waits for that, it lets everyone else go first: the
-//! vehicle ahead may wait for just those, round a whole block.
+//! A vehicle that stands in a conflict area blocks those that cross. So a vehicle does not enter the area if it could not leave it again,
+//! because the vehicle ahead has come to a stand beyond the area, or is about to. While it waits for room, it yields to every other
+//! vehicle: the vehicle ahead may be waiting for these, round a whole block.
 
 use super::scene::Scene;
 use super::vantage::Vantage;
@@ -14,7 +14,7 @@ use crate::model::State;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
 
-/// From when the ego enters until it has left a conflict area, about; as far as every unit looks ahead.
+/// About the time from when the ego enters a conflict area until it has left it; as far as every unit looks ahead.
 const LEAVES: Duration = Duration::from_millis(3_900);
 
 /// Slower than this a vehicle waits.
@@ -30,18 +30,18 @@ const QUEUED: Speed = Speed::from_mm_per_s(5_000);
 const LINE: Distance = Distance::from_mm(1_000);
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
-    /// Whether the ego could not stop before the next conflict area as it brakes in normal driving. It gives way to nobody any more
-    /// then: it would stand in the area and wait for a vehicle that cannot get past it.
+    /// Whether the ego cannot stop before the next conflict area any more, braking as in normal driving. It does not yield to any vehicle
+    /// then: it would stand in the area, and wait for a vehicle that cannot get past it.
     pub fn is_committed(&self) -> bool {
         let Some(area_begins) = self.scene.area_begins() else { return false };
         area_begins.ahead_of(self.front) <= self.stops_within()
     }
 
-    /// The way that the ego takes to stop as it brakes in normal driving, from when the law asks for it.
+    /// The way that the ego needs to stop, braking as in normal driving, from when the law asks for it.
     fn stops_within(&self) -> Distance {
         let config = &self.scene.config;
         let mm_per_s2 = i64::from(config.limits.braking.to_mm_per_s2()).max(1);
-        // Until the brakes are on: half of the ramp, and the lag.
+        // The time until the brakes are on: half of the ramp, and the lag.
         let ramp = quotient(mm_per_s2.saturating_mul(500), i64::from(config.limits.jerk.to_mm_per_s3()).max(1));
         let reaction_ms = ramp.saturating_add(i64::from(config.lag.to_millis()));
         let mm_per_s = i64::from(self.speed.to_mm_per_s());
@@ -49,8 +49,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         Distance::from_mm(saturate_i32(reacting.saturating_add(braked(mm_per_s, mm_per_s2))))
     }
 
-    /// Whether there will be room beyond the next conflict area behind this vehicle, the nearest ahead on the ego's leg. One that stands
-    /// is there still: that it wants to move off is not that it can.
+    /// Whether there will be room beyond the next conflict area behind the vehicle `ahead`, the nearest on the ego's leg. A vehicle that
+    /// stands is taken to stay: it may want to move off without being able to.
     pub fn has_room(&self, ahead: Option<usize>) -> bool {
         let scene = self.scene;
         let (Some(index), Some(end)) = (ahead, scene.coordination.end_of(self.next)) else { return true };
@@ -60,16 +60,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         rear >= end.ahead(scene.config.length).ahead(scene.standstill_at(self.next, index))
     }
 
-    /// Whether the ego stands before the next conflict area for want of room, and is the first to do so on its leg.
+    /// Whether the ego stands before the next conflict area because there is no room beyond it, and is the first to do so on its leg.
     pub fn waits_for_room(&self, ahead: Option<usize>) -> bool {
         let area_begins = self.scene.area_begins();
         let is_first = |index| self.scene.rear(index, self.at).is_some_and(|(_, rear)| Some(rear) >= area_begins);
         self.speed <= WAITING && ahead.is_none_or(is_first)
     }
 
-    /// Where the ego waits as long as a vehicle that crosses its way, and is ahead in the order or in the next conflict area already, is
-    /// estimated not to have left that area by the time that the ego would be there: before the area. The law looks at the last vehicle
-    /// ahead alone, and once that one has been announced; it starts early, too, and from a stand the ego is there at once.
+    /// Where the ego waits for a vehicle that crosses its way: before the area. The vehicle is ahead in the order or already in the next
+    /// conflict area, and is estimated not to have left the area by the time that the ego would be there. The law alone is not enough. It
+    /// looks at the last vehicle ahead only, and only once that vehicle has been announced. It also starts early, and from a stand the
+    /// ego is in the area at once.
     fn passes_first(&self) -> Option<Position> {
         let coordination = &self.scene.coordination;
         let (crossing, line) = (coordination.crossing()?, self.scene.area_begins()?);
@@ -91,7 +92,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))
     }
 
-    /// How long the ego takes to a place ahead at its speed now, rounded.
+    /// The time that the ego takes to a place ahead at its present speed, rounded.
     fn time_to(&self, place: Position) -> Duration {
         let mm = i64::from(place.ahead_of(self.front).to_mm());
         let mm_per_s = i64::from(self.speed.to_mm_per_s()).max(1);
@@ -118,9 +119,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     }
 }
 
-/// The largest acceleration with which the ego can still come to a stand, braking as it does in normal driving, behind the vehicle
-/// ahead on its leg, where that is estimated to do the same now; and, where the ego is held, before the next conflict area. The law asks
-/// for gaps, and closing in fast it may ask for too much too late.
+/// The largest acceleration with which the ego can still come to a stand, braking as in normal driving. It comes to a stand behind the
+/// vehicle ahead on its leg, which is estimated to brake in the same way now, and before the next conflict area if the ego is held. The
+/// law asks for gaps, and when the ego closes in fast the law may ask for too much too late.
 pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -158,7 +159,7 @@ pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     envelope::distance_cap(&normal, spare, config.period).max(limits.braking.negated())
 }
 
-/// The way of a braking to a stand, rounded.
+/// The way of braking to a stand, rounded.
 fn braked(mm_per_s: i64, mm_per_s2: i64) -> i64 {
     quotient(mm_per_s.saturating_mul(mm_per_s), mm_per_s2.saturating_mul(2))
 }

@@ -1,8 +1,8 @@
-//! The scene: all that the unit knows. Messages enter; what is known of the ego, of every peer and of the way ahead leaves.
+//! The scene: everything that the unit knows. Messages enter; what is known of the ego, of every peer and of the way ahead leaves.
 //!
-//! Messages change it ([`inbox`], [`admission`], [`places`], [`range`]), and so do the two stages that bring it up to now: the
-//! estimator and the review of the order. Every other stage of the tick only looks at it, so a reference to it is the one view that
-//! the rules need.
+//! Messages change the scene ([`inbox`], [`admission`], [`places`], [`range`]). So do the two stages that bring it up to now: the review
+//! of the order and the estimator. Every other stage of the tick only reads it. So a reference to the scene is the one view that the
+//! rules need.
 
 mod admission;
 mod inbox;
@@ -31,12 +31,12 @@ use named::Named;
 use sight::Ranging;
 use unknown::Unknown;
 
-/// What a vehicle on a way through intersections keeps beside the law's standstill distance. Where a queue has formed, a vehicle
-/// brakes for what it alone knows, because a vehicle ahead has no slot or is silent. Those behind that do not hear it do not foresee
-/// that, and have to find room for the error of their estimates.
+/// What a vehicle on a way through intersections keeps in addition to the law's standstill distance. Where a queue has formed, a vehicle
+/// brakes for what it alone knows, because a vehicle ahead has no slot or is silent. The vehicles behind that do not hear it cannot
+/// foresee that, and need room for the error of their estimates.
 const QUEUE: Distance = Distance::from_mm(8_000);
 
-/// What the unit knows.
+/// Everything that the unit knows.
 #[derive(Clone, Debug)]
 pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
     pub config: Config,
@@ -52,12 +52,12 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub ranging: Ranging,
     /// Vehicles without a slot.
     pub unknown: Unknown,
-    /// Whom the driver has put ahead.
+    /// The vehicle that the driver has put ahead.
     pub named: Named,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Of a unit that is not started: all zero.
+    /// The scene of a unit that is not started: all zero.
     pub const fn idle() -> Self {
         Self {
             config: Config::NONE,
@@ -74,7 +74,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Nothing is known but a checked configuration. Field by field, because the whole of it would pass over the stack.
+    /// Starts with nothing known but a checked configuration. It is set field by field, because as a whole it would pass over the stack.
     pub fn start(&mut self, config: &Config) {
         self.config = *config;
         self.clock = Clock::new();
@@ -94,7 +94,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.clock.is_synchronised(now, self.config.link.sync_timeout)
     }
 
-    /// The instant of a message's stamp, while GNSS time is known.
+    /// The instant of a message's stamp; `None` while GNSS time is not known.
     pub fn instant_of(&self, stamp: Stamp, at: Instant) -> Option<Instant> {
         if !self.is_synchronised(at) {
             return None;
@@ -107,7 +107,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.ego.as_ref().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout)
     }
 
-    /// The ego's state at now: its newest sample, moved on under the last demand if it is older.
+    /// The ego's state at now: its newest sample, moved on under the last demand if it is older than now.
     pub fn ego_at(&self, now: Instant, last_demand: Acceleration) -> Option<State> {
         let sample = self.ego.as_ref()?;
         let state = State {
@@ -131,17 +131,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         sample.ahead(ego.position.ahead_of(sample.ring()))
     }
 
-    /// The ego now, with its front bumper there, at this speed.
+    /// The ego at now, with its front bumper at `front`, at this speed.
     pub const fn vantage(&self, now: Instant, front: Position, speed: Speed) -> Vantage<'_, PEERS, SAMPLES, STEPS> {
         Vantage { scene: self, at: now, next: self.coordination.next(), front, speed }
     }
 
-    /// `t_g`: the driver's, or else the configuration's.
+    /// `t_g`: the driver's, or else that of the configuration.
     pub fn time_gap(&self) -> Seconds {
         self.request.as_ref().and_then(|request| request.time_gap).unwrap_or(self.config.law.time_gap)
     }
 
-    /// `v_∞` likewise.
+    /// `v_∞`: the driver's, or else that of the configuration.
     pub fn target_speed(&self) -> Speed {
         self.request.as_ref().map_or(self.config.law.target_speed, |request| request.target_speed)
     }
@@ -179,17 +179,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.ego_model(gains.map(|gains| (gains, self.standstill())), self.coordination.choice().comfort)
     }
 
-    /// Whom the driver says the ego is to follow.
+    /// The vehicle that the driver asks the ego to follow.
     fn requested(&self) -> Predecessor {
         self.request.as_ref().map_or(Predecessor::Unknown, |request| request.predecessor)
     }
 
-    /// Whether the order at the intersections decides whom the ego follows, and not the driver.
+    /// Whether the order at the intersections decides which vehicle the ego follows, and not the driver.
     pub fn is_decided_by_order(&self) -> bool {
         self.requested() == Predecessor::Unknown && self.coordination.registration().is_some()
     }
 
-    /// Whom the ego is to follow: the driver's choice, or whom the order has put ahead of it.
+    /// The vehicle that the ego is to follow: the driver's choice, or the vehicle that the order has put ahead of it.
     pub fn predecessor(&self) -> Predecessor {
         if !self.is_decided_by_order() {
             return self.requested();
@@ -207,7 +207,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// The slot of the vehicle that a sensor would see ahead.
+    /// The slot of the vehicle ahead that a sensor would see.
     pub fn visible(&self) -> Option<usize> {
         match self.coordination.itinerary() {
             Some(_) => self.coordination.choice().lane.map(usize::from),
@@ -215,7 +215,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Where a peer is estimated to be, inside what is certain of it then.
+    /// Where a peer is estimated to be, inside what is certain of it at that instant.
     pub fn estimated(&self, index: usize, at: Instant) -> Option<Reading> {
         self.estimator.read_inside(index, at, &self.peers)
     }
@@ -232,25 +232,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some(track.certainty().bound()?.after(at, &track.reach()))
     }
 
-    /// The rear bumper of a peer at the near end of what is certain of it, and the bound.
+    /// The rear bumper of a peer at its near end, and the bound.
     pub fn near_rear(&self, index: usize, at: Instant) -> Option<(Position, Bound)> {
         let bound = self.bound(index, at)?;
         Some((bound.lowest_position().ahead(self.peers.length_of(index).negated()), bound))
     }
 
-    /// The rear of a peer at its near end, behind which the ego has to stay.
+    /// The rear of a peer at its near end, as the obstacle that the ego has to stay behind.
     pub fn obstacle(&self, now: Instant, index: usize) -> Option<Obstacle> {
         let reach = self.peers.get(index)?.reach();
         Some(Obstacle::rear(&self.bound(index, now)?, self.peers.length_of(index), &reach))
     }
 
-    /// Whether a peer was heard within the time for which its estimate is driven by.
+    /// Whether a peer was heard recently enough for its estimate to be driven by.
     pub fn is_in_reach(&self, index: usize, at: Instant) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
         silence.is_some_and(|silence| silence <= self.config.link.holdover)
     }
 
-    /// A peer in the order.
+    /// The entry of a peer in the order.
     pub fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
         Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
@@ -262,7 +262,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         target.map_or(self.config.law.standstill, |index| self.standstill_at(self.coordination.next(), index))
     }
 
-    /// The standstill distance behind a peer with that crossing next.
+    /// The standstill distance behind a peer, with `next` as the ego's next crossing.
     pub fn standstill_at(&self, next: usize, index: usize) -> Distance {
         let law = self.config.law.standstill;
         let Some(itinerary) = self.coordination.itinerary() else { return law };

@@ -1,6 +1,6 @@
-//! Whom the ego follows: the ego at one instant, now or later, enters; how it would choose among the vehicles ahead leaves.
+//! Which vehicle the ego follows. The ego at an instant, now or later, enters; how it would choose among the vehicles ahead leaves.
 //!
-//! The review of the order and the own horizon ask the same rules, the one of now and the other of instants to come.
+//! The review of the order and the own horizon ask the same rules: the review for now, the own horizon for instants to come.
 
 use super::scene::Scene;
 use crate::coordination::{ComfortBraking, PeerApproach};
@@ -9,20 +9,20 @@ use crate::model::Reading;
 use crate::time::Instant;
 use crate::units::{Acceleration, Distance, Gain, Position, Seconds, Speed};
 
-/// A vehicle that has been silent for longer than a holdover lasts, with its rear farther ahead than this and twice
-/// [`HEEDED_TIME`], is not followed. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on,
-/// which is less for any gains that are shipped.
+/// The ego does not follow a vehicle that has been silent for longer than a holdover lasts, if its rear is farther ahead than this and
+/// twice the way in [`HEEDED_TIME`]. Behind a standing vehicle the law of eq. 5 asks for braking from `l + s_0 + (t_g + γ) v` on, which
+/// is less for any gains that are shipped.
 const HEEDED: Distance = Distance::from_mm(20_000);
 /// Half of the time, because the whole of it is beyond the format's 4 s.
 const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 
-/// What lets the ego go on following a vehicle that gets away from it, so that it does not take turns.
+/// By how much more the ego goes on following a vehicle that gets away from it, so that the choice does not alternate.
 const APART: Distance = Distance::from_mm(3_000);
 
-/// Farther ahead than any vehicle is.
+/// A position farther ahead than any vehicle.
 const NOWHERE: Position = Position::from_bits(i64::MAX);
 
-/// The ego at one instant, and all that is known.
+/// The ego at an instant, and the scene.
 #[derive(Clone, Copy)]
 pub(super) struct Vantage<'a, const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
     pub scene: &'a Scene<PEERS, SAMPLES, STEPS>,
@@ -35,9 +35,9 @@ pub(super) struct Vantage<'a, const PEERS: usize, const SAMPLES: usize, const ST
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
-    /// Whether the ego follows a peer; the gate minds it all the same. A vehicle that was far ahead when it was heard last has got
-    /// out of reach, and nobody is ahead then as far as it matters. That holds, too, where it is estimated to have stopped since
-    /// behind a vehicle that nobody hears any more.
+    /// Whether the ego may follow a peer. The gate minds the peer all the same. A vehicle that was far ahead when it was heard last has
+    /// got out of reach, and no vehicle is ahead then as far as it matters. This also holds if that vehicle is estimated to have stopped
+    /// since, behind a vehicle that is not heard any more.
     pub fn is_heeded(&self, index: usize) -> bool {
         self.scene.is_in_reach(index, self.at)
             || !self.scene.coordination.choice().lost.contains(index) && !self.is_far_ahead(index)
@@ -49,11 +49,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         self.scene.rear(index, self.at).is_none_or(|(_, rear)| rear > heeded)
     }
 
-    /// Of the vehicle just ahead in the order and the one just ahead on the leg: the one that asks for more caution.
+    /// Of the vehicle just ahead in the order and the vehicle just ahead on the leg, the one that asks for more caution.
     ///
-    /// The one with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
-    /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. For the first of them the ego brakes
-    /// with no more than `b`, if gently, so that one asks for no less than `r + (t_g + γ) v - b/k`.
+    /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
+    /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in
+    /// the order, it brakes with no more than `b`. So that vehicle asks for no less than `r + (t_g + γ) v - b/k`.
     pub fn more_careful(&self, order: Option<usize>, lane: Option<usize>) -> Option<usize> {
         let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
         let law = &self.scene.config.law;
@@ -67,9 +67,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         Some(if asks_first <= self.asks(ahead) { first } else { ahead })
     }
 
-    /// Whether a vehicle ahead is so near that the ego follows it. At the speed `v_∞` that the ego wants on a free road, eq. 5 asks
-    /// for braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead the ego drives as on a free road; to
-    /// follow would only make it hurry. A vehicle that is followed may get [`APART`] farther ahead before it is not any more.
+    /// Whether a vehicle ahead is so near that the ego follows it. At the speed `v_∞` that the ego wants on a free road, eq. 5 asks for
+    /// braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead, the ego drives as on a free road; to follow
+    /// would only make it hurry. A vehicle that the ego already follows may get farther ahead by [`APART`].
     pub fn is_in_the_way(&self, index: usize, followed: Option<usize>) -> bool {
         let wanted = self.scene.target_speed();
         let free =
@@ -94,12 +94,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
             .map_or(ComfortBraking::NONE, |standing| coordination.comfort(standing, self.next, self.front, self.speed))
     }
 
-    /// Whether the ego already follows a peer that is ahead of it in the order: both are near enough to the crossing.
+    /// Whether the ego may follow this peer, if it is ahead in the order: see [`crate::coordination`].
     pub fn is_announced(&self, standing: &PeerApproach) -> bool {
         self.scene.coordination.is_announced(standing, self.at, self.next, self.front, self.speed)
     }
 
-    /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it has to be to follow it over the crossing.
+    /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it must be to follow the ego over the crossing.
     pub fn is_far_behind(&self, peer: &Reading) -> bool {
         let Some(crossing) = self.scene.coordination.crossing() else { return false };
         let (config, half) = (&self.scene.config, crossing.intersection.half);

@@ -1,4 +1,4 @@
-//! What can be looked at from outside: the unit enters; its parts, and whether it knows the time, leave.
+//! What can be looked at from outside: the parts of the unit, and whether it knows the time.
 
 use super::OnboardUnit;
 use crate::config::Config;
@@ -11,7 +11,7 @@ use crate::peers::Peers;
 use crate::time::Instant;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
-    /// What is refused, by cause.
+    /// The counts, by cause.
     #[must_use]
     pub const fn health(&self) -> &Health {
         &self.health
@@ -23,25 +23,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.mode
     }
 
-    /// The peers as they are known.
+    /// The peers.
     #[must_use]
     pub const fn peers(&self) -> &Peers<PEERS, SAMPLES> {
         &self.scene.peers
     }
 
-    /// The order at the intersections as it is known.
+    /// The coordination at intersections.
     #[must_use]
     pub const fn coordination(&self) -> &Coordination<PEERS> {
         &self.scene.coordination
     }
 
-    /// The horizons as they are held.
+    /// The horizons.
     #[must_use]
     pub const fn estimator(&self) -> &Estimator<PEERS, STEPS> {
         &self.scene.estimator
     }
 
-    /// The configuration as it was checked.
+    /// The checked configuration.
     #[must_use]
     pub const fn config(&self) -> &Config {
         &self.scene.config

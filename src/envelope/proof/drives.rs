@@ -1,24 +1,24 @@
-//! Drives from the states of the lattice: the gate, asked for all that it gives, behind a near end that brakes as hard as it can
-//! at once or later; with commands that come late, ticks that are missed and lags anywhere within the tolerances that the
-//! configuration states. That the two never come closer than the margin, at any moment until both stand, leaves;
-//! if they begin closer than that, never closer than they begin.
+//! Drives that start in the states of the lattice. The gate is asked for all that it gives, behind a near end that brakes at its hardest,
+//! at once or later. Commands come late, ticks are missed, and lags are anywhere within the configured tolerances. The two never come
+//! closer than the margin, at any moment until both stand. If they begin closer than the margin, they never come closer than at the
+//! beginning.
 //!
-//! The plant is in float64, the lag solved exactly in quarters of a tick; its error is far below the micrometre that is allowed.
+//! The plant is in float64, with the lag solved exactly in quarters of a tick. Its error is far below the micrometre that is allowed.
 
 use super::lattice::{Case, cases};
 use crate::envelope::*;
 use crate::time::Duration;
 use crate::units::{Acceleration, FineSeconds, Position, Speed};
 
-/// How a drive goes.
+/// The course of a drive.
 #[derive(Clone, Copy, Debug)]
 struct Course {
     lag: FineSeconds,
     /// By how much each command comes into force late; up to a period.
     late: f64,
-    /// Ticks that are missed in a row, once in an emergency braking's ramp.
+    /// Ticks that are missed in a row, once in the ramp of an emergency braking.
     missed: u32,
-    /// When the one ahead begins to brake; until then it keeps its speed.
+    /// When the vehicle ahead begins to brake. Until then it keeps its speed.
     brakes_after: f64,
 }
 
@@ -36,7 +36,7 @@ fn number(acceleration: Acceleration) -> f64 {
 }
 
 impl World {
-    /// Under this demand, and with the one ahead braking with so much.
+    /// Moves both on, the ego under this demand and the vehicle ahead with this braking.
     fn goes_on(&mut self, lag: f64, demand: f64, braking: f64, time: f64) {
         let kept = if lag > 0.0 { (-time / lag).exp() } else { 0.0 };
         let (off, fades) = (self.acceleration - demand, lag * (1.0 - kept));
@@ -48,7 +48,7 @@ impl World {
         self.other = (self.other - braking * time).max(0.0);
     }
 
-    /// As the unit would know it at its best: in words, to the less safe side.
+    /// What the unit knows of it at best: in words, rounded to the less safe side.
     fn known(&self, case: &Case, last: Acceleration) -> (Ego, Obstacle) {
         let word = |x: f64, fraction: i32| x * 2f64.powi(fraction);
         let ego = Ego {
@@ -67,7 +67,7 @@ impl World {
     }
 }
 
-/// The least distance beyond the margin, or beyond that of the beginning where that is less.
+/// The least distance beyond the margin, or beyond the distance at the beginning where that is less.
 fn drive(case: &Case, course: &Course) -> f64 {
     let period = case.period.as_micros() as f64 * 1e-6;
     let (lag, braking) = (course.lag.get().to_num::<f64>(), number(case.obstacle.braking));

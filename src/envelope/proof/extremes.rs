@@ -1,5 +1,5 @@
-//! The gate at the ends of every format: words that no decimal makes, the largest and the smallest that a configuration, a
-//! sensor or a message can bring. Nothing overflows in a way that makes it bolder: what is called safe is safe.
+//! The gate at the ends of every format: words that no decimal makes, and the largest and the smallest that a configuration, a sensor or
+//! a message can bring. No overflow makes the gate bolder: what it calls safe is safe.
 
 use super::lattice::{Case, World, pick, stands};
 use crate::config::Envelope;

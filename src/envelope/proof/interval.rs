@@ -1,5 +1,4 @@
-//! Real numbers between two of 64 bits: every operation rounds outward, so that what is certain of the result is certain of the
-//! exact one.
+//! Intervals of real numbers with ends of 64 bits. Every operation rounds outward, so that the exact result is inside.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -15,12 +14,12 @@ fn outward(low: f64, high: f64) -> Interval {
 }
 
 impl Interval {
-    /// This number and no other.
+    /// This number alone.
     pub fn exactly(number: f64) -> Self {
         Self { low: number, high: number }
     }
 
-    /// A word with so many fraction bits; below 2⁵³ it is exact.
+    /// A word with this many fraction bits; exact below 2⁵³.
     pub fn word(word: i64, fraction: i32) -> Self {
         Self::exactly(word as f64 * 2f64.powi(-fraction))
     }
@@ -30,7 +29,7 @@ impl Interval {
         Self::exactly(numerator).per(Self::exactly(denominator))
     }
 
-    /// Quotient, by what is above 0.
+    /// Quotient; the divisor is above 0.
     pub fn per(self, divisor: Self) -> Self {
         assert!(divisor.low > 0.0);
         let ends = [self.low / divisor.low, self.low / divisor.high, self.high / divisor.low, self.high / divisor.high];
@@ -44,13 +43,13 @@ impl Interval {
         Self { low: least.next_down().max(0.0), high: a.max(b).next_up() }
     }
 
-    /// The larger of it and 0.
+    /// The larger of this and 0.
     pub fn positive(self) -> Self {
         Self { low: self.low.max(0.0), high: self.high.max(0.0) }
     }
 
-    /// `e^-self`, for what is not negative: a series for a 2⁻ⁿth of it below 1/16, whose terms alternate and fall, squared n
-    /// times.
+    /// `e^-self`, for a value that is not negative. It is divided by 2ⁿ to below 1/16, put into a series whose terms alternate and fall,
+    /// and the result is squared n times.
     pub fn decayed(self) -> Self {
         Self { low: decayed(self.high).low, high: decayed(self.low).high }
     }

@@ -1,5 +1,5 @@
-//! The gate at the points where it can fail: configurations, states of the ego and near ends enter, each with the nearest gap
-//! that the code calls safe, and with wider ones; that the code's word is true there, and stays true through a tick, leaves.
+//! The gate at the points where it can fail: configurations, states of the ego and near ends, each with the nearest gap that the code
+//! calls safe, and with wider gaps. What the code calls safe is safe there, and stays safe through a tick.
 
 use super::interval::Interval;
 use crate::config::Envelope;
@@ -8,7 +8,7 @@ use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Speed};
 use std::ops::Range;
 
-/// One of the values, picked by the lowest digit of a number, which loses it.
+/// One of the values, picked by the lowest digit of the number, which is removed from it.
 pub fn pick(number: &mut u64, values: &[i32]) -> i32 {
     let count = values.len() as u64;
     let found = values[(*number % count) as usize];
@@ -28,7 +28,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// One of the lattice; `None` where the configuration or the state is none.
+    /// A case of the lattice; `None` where the configuration or the state is not valid.
     fn at(index: u64) -> Option<Self> {
         // Neighbours differ in everything.
         let mut number = index.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 1;
@@ -45,7 +45,7 @@ impl Case {
             delay: Duration::from_millis(pick(&[30, 0, 100, 500]).into()),
             lag_tolerance: Fraction::from_milli(pick(&[0, 200, 1_000])),
         };
-        // What the command can say, in steps of 2 mm/s².
+        // The range of a command, in steps of 2 mm/s².
         let braking = configured.min(16_382) / 2 * 2;
         let half = braking / 4 * 2;
         let speed = pick(&[13_400, 0, 2, 100, 1_000, 5_000, 30_000, 50_000, 65_534]);
@@ -77,7 +77,7 @@ impl Case {
         is_safe(&self.limits, &self.ego, &self.obstacle, self.period)
     }
 
-    /// The nearest gap that is called safe, in words; `None` beyond 1.5 km.
+    /// The nearest gap that the code calls safe, in words; `None` if it is beyond 1.5 km.
     pub fn nearest_safe(&self) -> Option<i64> {
         let (mut low, mut high) = (-1, 1_500 << 20);
         if !self.with_gap(high).is_safe() {
@@ -90,7 +90,7 @@ impl Case {
         Some(high)
     }
 
-    /// The ends of what the real lag may be, and between them.
+    /// The ends of what the real lag may be, and points between them.
     pub fn lags(&self) -> Vec<FineSeconds> {
         let off = self.ego.lag.share(self.limits.lag_tolerance).to_bits();
         if off == 0 {
@@ -110,7 +110,7 @@ impl Case {
         ]
     }
 
-    /// What the worst driver gets out of the gate.
+    /// What the worst driver gets from the gate.
     pub fn command(&self) -> (Acceleration, bool) {
         let spare = spare(&self.limits, &self.ego, &self.obstacle);
         let situation = Situation { is_fresh: true, spare };
@@ -140,7 +140,7 @@ fn seconds(duration: Duration) -> Interval {
     if micros == 0.0 { Interval::exactly(0.0) } else { Interval::ratio(micros, 1e6) }
 }
 
-/// Ego and near end as they really are: the ego's way and its speed and acceleration, the rear and its speed.
+/// The ego and the near end as they really are: the way, speed and acceleration of the ego; the rear and its speed.
 #[derive(Clone, Copy, Debug)]
 pub struct Real {
     way: Interval,
@@ -150,7 +150,7 @@ pub struct Real {
     other: Interval,
 }
 
-/// The parameters that do not change.
+/// The parameters that do not change in a case.
 pub struct World {
     braking: Interval,
     jerk: Interval,
@@ -178,7 +178,7 @@ impl World {
         }
     }
 
-    /// Whether it is certain that emergency braking from this command on keeps behind: one of the two conditions.
+    /// Whether it is certain that emergency braking from this command on stays behind: whether one of the two conditions holds.
     pub fn is_safe(&self, now: &Real, command: Acceleration, drives_on: bool, delay: Duration) -> bool {
         let z = now.speed + now.acceleration * self.lag;
         let z = if drives_on { z.positive() } else { z };
@@ -197,7 +197,7 @@ impl World {
         self.is_softer && holds(closing + ramp, self.braking - self.other_braking, room + now.other * self.lag)
     }
 
-    /// After that time under a command, the lag solved exactly, in steps in which it may come to rest.
+    /// The state after a time under a command, with the lag solved exactly, in steps in which the ego may come to rest.
     fn after(&self, now: &Real, command: Acceleration, time: Interval) -> Real {
         const STEPS: u32 = 8;
         if time.high <= 0.0 {
@@ -215,7 +215,7 @@ impl World {
             let speed = ego.speed + u * step + off * fades;
             let way = ego.speed * step + u * step.square() * half + self.lag * off * (step - fades);
             if speed.high <= 0.0 {
-                // It came to rest in this step, on whose way it was.
+                // The ego came to rest in this step: `most` is the way by then at the most.
                 let most = (ego.speed * step).positive();
                 ego.way = Interval { low: ego.way.low, high: (ego.way + most).high };
                 (ego.speed, ego.acceleration) = (Interval::exactly(0.0), Interval::exactly(0.0));
@@ -232,16 +232,16 @@ impl World {
     }
 }
 
-/// What stands and is told to brake.
+/// Whether the ego stands and is told to brake.
 pub fn stands(now: &Real, command: Acceleration) -> bool {
     now.speed.high <= 0.0 && now.acceleration.high <= 0.0 && command <= Acceleration::ZERO
 }
 
-/// How many of the lattice every run tries, and how many the long one.
+/// How many cases of the lattice every run tests, and how many the long run tests.
 const SOME: Range<u64> = 0..5_000;
 const MANY: Range<u64> = 5_000..300_000;
 
-/// Every case with the nearest gap that is called safe and with wider ones.
+/// Every case, with the nearest gap that the code calls safe and with wider gaps.
 pub fn cases(of: Range<u64>) -> impl Iterator<Item = Case> {
     of.filter_map(Case::at).filter_map(|case| Some((case, case.nearest_safe()?))).flat_map(|(case, nearest)| {
         [0, 1, 40, 1_000, 100_000, 2_000_000, 30_000_000].into_iter().map(move |wider| case.with_gap(nearest + wider))
@@ -298,8 +298,8 @@ fn check_tick(of: Range<u64>) {
     assert!(judged > 1_000, "{judged}");
 }
 
-/// The same by the code alone, with the state after the tick in words that are rounded to the less safe side. What roundings
-/// are worth is stated: 31 µm, where no reserve of the theory makes up for them.
+/// The same for the code alone, with the state after the tick in words that are rounded to the less safe side. What the roundings cost is
+/// stated: 31 µm, where no reserve of the theory covers it.
 fn check_code_alone(of: Range<u64>) {
     let up = |x: Interval, fraction: i32| (x.high * 2f64.powi(fraction)).ceil() as i64;
     let down = |x: Interval, fraction: i32| (x.low * 2f64.powi(fraction)).floor() as i64;

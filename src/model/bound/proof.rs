@@ -1,44 +1,44 @@
-//! Proof of the bound's arithmetic: the fixed-point ends enter; that neither is ever inside of the truth leaves.
+//! Proof of the bound's arithmetic: that neither of the fixed-point ends is ever on the wrong side of the true vehicle.
 //!
 //! # What is proved
 //!
-//! Let a vehicle be at least at `p` and at least as fast as `v >= 0`, and let it never brake harder than `b`. The slowest that
-//! it can do is to brake with `b` until it stands: no admissible motion is behind that one or slower, because position and
-//! speed are monotone in the start and in the acceleration at each moment. After `t` that one has come to `p + s(v, b, t)`.
+//! Let a vehicle be at least at `p` and at least as fast as `v >= 0`, and let it never brake harder than `b`. Its slowest motion is to
+//! brake with `b` until it stands. No admissible motion is behind this one or slower, because position and speed are monotone in the
+//! start and in the acceleration at each moment. After `t` this motion has come to `p + s(v, b, t)`.
 //!
-//! 1. **Near end.** `End::braked` is at or behind `p + s(v, b, t)`, and not faster than that vehicle. It lags by at most
-//!    `1 + t/2` µm (`t` in seconds).
-//! 2. **Far end.** `End::accelerated` is at or ahead of, and not slower than, whatever began not ahead and not faster,
-//!    accelerates with at most `a` and never beyond the top speed. It leads by at most `3 + t/2` µm.
-//! 3. **Point of rest.** Braking for a while and then to rest never ends ahead of braking to rest at once: the nearest stop
-//!    does not move forward while nothing is heard.
-//! 4. **Overflow.** No product leaves 63 bits, and no position saturates within ±560,000 km.
-//! 5. **Any number of steps.** 1 and 2 ask nothing of the start but that the truth is outside of it. What they give is a
-//!    start again, so that no splitting of a time into steps gets inside of the truth. Rounded words are outside of what they
-//!    round, and the greater of two near ends is a near end again, as is the lesser of two far ends.
+//! 1. **Near end.** `End::braked` is at or behind `p + s(v, b, t)`, and not faster than that motion. It lags by at most `1 + t/2` µm (`t`
+//!    in seconds).
+//! 2. **Far end.** Take any motion that began not ahead and not faster, accelerates with at most `a`, and never exceeds the top speed.
+//!    `End::accelerated` is at or ahead of it, and not slower. It leads by at most `3 + t/2` µm.
+//! 3. **Point of rest.** Braking for a while and then to rest never ends ahead of braking to rest at once: the nearest stop does not move
+//!    forward while nothing is heard.
+//! 4. **Overflow.** No product needs more than 63 bits, and no position saturates within ±560,000 km.
+//! 5. **Any number of steps.** 1 and 2 ask of the start only that it is on the right side of the true vehicle. Their result is such a
+//!    start again. So, however a time is split into steps, the end stays on the right side. Words are rounded outward. The greater of two
+//!    near ends is a near end again, and the lesser of two far ends is a far end again.
 //!
 //! # How
 //!
-//! 1, 2 and 3 hold for **all** integers: each is a polynomial identity between the inputs, what the code computes and what its
-//! divisions leave over, with remainders and coefficients that are not negative ([`crate::polynomial`]). The program
-//! expands both sides and compares them. Divisions are exact to the remainder for all operands: by a million and by 5⁶ this
-//! rests on the assertion beside `crate::fixed::per_15_625`, else on the processor. 4 is the product of the largest factors.
+//! 1, 2 and 3 hold for **all** integers. Each is a polynomial identity between the inputs, the results of the code, and the remainders of
+//! its divisions, in which no remainder and no coefficient is negative ([`crate::polynomial`]). The program expands both sides and
+//! compares them. Divisions are exact to the remainder for all operands. For those by a million and by 5⁶ this rests on the assertion
+//! beside `crate::fixed::per_15_625`, for the others on the processor. 4 is the product of the largest factors.
 //!
-//! What ties the identities to the code is **sampled**: at each point of a lattice that is dense around rest, top speed, and
-//! the ends of every range, the code's result is the one in the identity. Theorem 5 is also tried on random motions in exact
-//! rational arithmetic through the public functions.
+//! The link from the identities to the code is **sampled**. At each point of a lattice that is dense around rest, the top speed and the
+//! ends of every range, the code's result is the one in the identity. Theorem 5 is also tested on random motions, in exact rational
+//! arithmetic, through the public functions.
 //!
 //! # What is assumed
 //!
-//! Braking and acceleration are words of 1 µm/s² to 64 m/s², times at most an hour (for longer ones the code itself gives up
-//! the far end, and the near end stands), speeds words of at most 256 m/s, and two of them added.
+//! Braking and acceleration are words of 1 µm/s² to 64 m/s². Times are at most an hour; for longer times the code itself gives up the
+//! far end, and the near end stands. Speeds are words of at most 256 m/s, or the sum of two such words.
 
 mod motions;
 
 use super::*;
 use crate::polynomial::{Certificate, Polynomial, Ring};
 
-/// Fastest near end: the largest word. The far end may have the largest uncertainty added.
+/// The fastest near end: the largest word. The far end may have the largest uncertainty added to it.
 const NEAR_SPEED: i64 = 256_000_000;
 const FAR_SPEED: i64 = 2 * NEAR_SPEED;
 const HARDEST: i64 = 64_000_000;
@@ -51,14 +51,14 @@ fn twice<R: Ring>(x: R) -> R {
     R::from(2) * x
 }
 
-/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that `r1`. With
-/// `slower = v - lost`, which is not negative.
+/// `End::braked` before rest. `lost = ⌈b t / M⌉` leaves `r3`; `(2v - lost) t` per M leaves `r2`, and half of that leaves `r1`.
+/// `slower = v - lost` is not negative.
 struct Braked<R> {
     /// `2M² (s - way)`.
     way: Certificate<R>,
-    /// `M` times how much faster the truth is.
+    /// `M` times by how much the true vehicle is faster.
     speed: Certificate<R>,
-    /// `M² 2b (v²/2b - way - way from there to rest)`; that way leaves `r4`.
+    /// `M² 2b (v²/2b - way - way from there to rest)`; the last way leaves `r4`.
     rest: Certificate<R>,
 }
 
@@ -90,8 +90,8 @@ fn braked<R: Ring>([slower, lost, b, t, way, then, r1, r2, r3, r4]: [R; 10]) -> 
     }
 }
 
-/// `End::accelerated` while it rises for `t`: `gained = ⌈a t / M⌉` has `r3` too much, `(2v + gained) t` per M has `r2`, and
-/// half of that `r1`. The claims: `2M²` times the lead, and `M` times how much slower the truth is.
+/// `End::accelerated` while it rises for `t`: `gained = ⌈a t / M⌉` is too large by `r3`, `(2v + gained) t` per M by `r2`, and half of
+/// that by `r1`. The claims: `2M²` times the lead, and `M` times by how much the true vehicle is slower.
 fn rising<R: Ring>([v, a, t, gained, way, r1, r2, r3]: [R; 8]) -> [Certificate<R>; 2] {
     let m = million::<R>;
     let gains = a.clone() * t.clone() + r3.clone() - m() * gained.clone();
@@ -113,9 +113,9 @@ fn rising<R: Ring>([v, a, t, gained, way, r1, r2, r3]: [R; 8]) -> [Certificate<R
     ]
 }
 
-/// `End::accelerated` that has come to the top: `lacking` is what it lacked of it; it rises for `up = ⌈lacking M / a⌉`, which
-/// is `r4/a` too long, and holds the top for `held` after that, whose way has `r5` too much. The lead of `rising` is `lead`. The
-/// truth rises for `lacking M / a`; its way is that at the top all the time, less a triangle. The claim: `2 a M²` times the lead.
+/// `End::accelerated` at the top speed. At the start it lacked `lacking` of the top speed. It rises for `up = ⌈lacking M / a⌉`, which
+/// is too long by `r4/a`, and then holds the top speed for `held`, whose way is too large by `r5`. The lead of `rising` is `lead`. The true
+/// vehicle rises for `lacking M / a`; its way is that of the top speed all the time, less a triangle. The claim: `2 a M²` times the lead.
 fn topped<R: Ring>([v, lacking, a, up, held, way, rest, lead, r4, r5]: [R; 10]) -> Certificate<R> {
     let m = million::<R>;
     let top = v.clone() + lacking.clone();
@@ -143,17 +143,17 @@ fn the_near_end_is_never_ahead_of_the_truth_and_the_far_end_never_behind_it() {
     assert!(topped(Polynomial::variables()).holds());
 }
 
-/// Quotient rounded down, and what it leaves.
+/// The quotient rounded down, and its remainder.
 fn down(dividend: i128, divisor: i128) -> (i128, i128) {
     (dividend.div_euclid(divisor), dividend.rem_euclid(divisor))
 }
 
-/// Quotient rounded up, and what it has too much.
+/// The quotient rounded up, and by how much it is too large.
 fn up(dividend: i128, divisor: i128) -> (i128, i128) {
     (-(-dividend).div_euclid(divisor), (-dividend).rem_euclid(divisor))
 }
 
-/// What the code says, in 128 bits; its remainders, put into the identities. Panics where they are about something else.
+/// The result of the code in 128 bits, and its remainders, put into the identities. Panics if the identities do not match the code.
 fn compare_near(v: i64, b: i64, t: i64) {
     let found = End { position: 0, speed: v }.braked(t, micros(b));
     let m = i128::from(MICRO);
@@ -200,7 +200,7 @@ fn compare_far(v: i64, a: i64, t: i64) {
     }
 }
 
-/// The least word that makes so many µm/s².
+/// The smallest word that is this many µm/s².
 fn micros(per_s2: i64) -> Acceleration {
     let word = (i128::from(per_s2 - 1) << 25).div_euclid(i128::from(MICRO)) + 1;
     let found = Acceleration::from_bits(i32::try_from(word).unwrap());
@@ -208,7 +208,7 @@ fn micros(per_s2: i64) -> Acceleration {
     found
 }
 
-/// Around each of these, and no further than the range.
+/// The values around each of these points, within the range.
 fn around(points: &[i64], reach: i64, range: std::ops::RangeInclusive<i64>) -> Vec<i64> {
     let mut all: Vec<i64> =
         points.iter().flat_map(|point| point - reach..=point + reach).filter(|x| range.contains(x)).collect();
@@ -249,7 +249,7 @@ fn the_identities_are_about_the_code() {
 
 #[test]
 fn no_product_leaves_63_bits() {
-    // What is gained is what the top speed lacks, and less than what two microseconds make of that.
+    // The gain is what is lacking of the top speed, and less than what two microseconds add to that.
     let gained = TOP_SPEED + 2 * HARDEST / MICRO;
     let fastest = FAR_SPEED + gained;
     for factors in [

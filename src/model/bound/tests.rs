@@ -1,5 +1,5 @@
-//! Facts about the bound's arithmetic: never inside of what float64 says, and outside of it by micrometres only; with values
-//! dense around every boundary.
+//! Facts about the bound's arithmetic: it is never inside of what float64 says, and outside of it by micrometres only; with values dense
+//! around every boundary.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn around(mm: i64, mm_per_s: i32, uncertainty: &Uncertainty) -> Bound {
     Bound::around(AT, Position::from_mm(mm), Speed::from_mm_per_s(mm_per_s), uncertainty, &REACH)
 }
 
-/// Metres and metres per second of the four ends.
+/// The four ends, in metres and metres per second.
 fn ends(bound: &Bound) -> [f64; 4] {
     let metres = |position: Position| position.to_bits() as f64 / f64::from(1 << 20);
     let mps = |speed: Speed| f64::from(speed.to_bits()) / f64::from(1 << 23);
@@ -37,14 +37,14 @@ fn braked(v: f64, b: f64, t: f64) -> (f64, f64) {
     (v * t - 0.5 * b * t * t, v - b * t)
 }
 
-/// Accelerating up to the top speed.
+/// Accelerating up to the top speed, in float64: way and speed.
 fn accelerated(v: f64, a: f64, t: f64) -> (f64, f64) {
     let rising = t.min((65.534 - v).max(0.0) / a);
     let top = v + a * rising;
     ((v + 0.5 * a * rising) * rising + top * (t - rising), top)
 }
 
-/// Moments dense around one: microseconds, and far away from it.
+/// Moments around one moment: microseconds from it, and far away from it.
 fn moments(around: f64) -> impl Iterator<Item = i64> {
     let around = (around * 1e6).round() as i64;
     (around - 4..=around + 4).chain([1, 2, 999, 10_000, 1_000_000, 60_000_000]).filter(|micros| *micros > 0)
@@ -60,7 +60,7 @@ fn both_ends_are_those_of_float64_rounded_away_from_the_truth() {
             let [low, high, slow, fast] = ends(&start.after(later(micros), &REACH));
             let (near, near_speed) = braked(v, 8.0, t);
             let (far, far_speed) = accelerated(v, 2.5, t);
-            // Rounded to micrometres and then to words; a speed that is up to 2 µm/s off counts for the time.
+            // Rounded to micrometres and then to words. An error of up to 2 µm/s in the speed grows with time.
             let off = 4e-6 + 2e-6 * t;
             for (outer, truth, sign, off) in [
                 (low, 123.456 + near, 1.0, off),
@@ -69,7 +69,7 @@ fn both_ends_are_those_of_float64_rounded_away_from_the_truth() {
                 (fast, far_speed, -1.0, 4e-6),
             ] {
                 let outside = (truth - outer) * sign;
-                // 0.5 µm of a word is what a decimal start loses.
+                // A decimal start loses 0.5 µm by its word.
                 assert!((-5e-7..off).contains(&outside), "{mm_per_s} mm/s after {micros} µs: {outer} for {truth}");
             }
         }
@@ -107,7 +107,7 @@ fn the_nearest_stop_is_v_squared_over_2_b_ahead_and_stays_there() {
         let exact = (f64::from(mm_per_s) / 1e3).powi(2) / 16.0;
         let found = stop.to_bits() as f64 / f64::from(1 << 20);
         assert!((0.0..2e-5).contains(&(exact - found)) || (exact - found).abs() < 1e-9, "{mm_per_s}: {found} {exact}");
-        // Rounding may bring it back by micrometres, never forward.
+        // Rounding may move it back by micrometres, but never forward.
         for micros in [10_000, 1_000_000, 9_000_000, 100_000_000] {
             let again = bound.after(later(micros), &REACH).nearest_stop(&REACH);
             assert!(again <= stop && stop.ahead_of(again) < Distance::from_mm(1), "{mm_per_s} {micros}");

@@ -1,5 +1,5 @@
-//! A peer's motion: a motion enters; what it would change leaves, or the cause for which it is refused; then that is changed, all
-//! of it or nothing. So a motion that is refused cannot harm what is held of anybody.
+//! The admission of a peer's motion. A motion enters; a plan of what it changes leaves, or the cause for which it is refused. Then all of
+//! the plan is carried out, or nothing. So a refused motion cannot harm what is held of any station.
 //!
 //! The checks in their order, each once, and all before the first change: whether another station was heard in this slot just now,
 //! where a new name is never the same vehicle (on a way through intersections); the age, too old or in the future; whether a station
@@ -19,42 +19,42 @@ use crate::units::Distance;
 use crate::wire::motion::Motion;
 use crate::wire::{Slot, StationHash};
 
-/// Whose the slot is, and was.
+/// Which station the slot belongs to, and belonged to.
 #[derive(Clone, Copy)]
 struct Seat {
-    /// It is another station's so far, whose time is over.
+    /// The slot was another station's, which has been silent for long enough.
     is_taken_over: bool,
-    /// It is another station's so far, which was heard just now: the same vehicle by another name, or a mistake.
+    /// The slot is another station's, which was heard just now. It is the same vehicle with a new station hash, or a mistake.
     is_renamed: bool,
-    /// It is nobody's so far, but what was said in it may be another station's.
+    /// The slot is no station's so far, but what was said in it may be another station's.
     is_of_another: bool,
-    /// The slot in which the station was.
+    /// The slot that the station was in before.
     left: Option<usize>,
 }
 
 /// Where a motion is on the ego's axis.
 #[derive(Clone, Copy)]
 struct Placed {
-    /// The peer's axis with it; `None` where there are no intersections.
+    /// The peer's axis after this motion; `None` where there are no intersections.
     axis: Option<Axis>,
-    /// How far that moved, and everything that is held of the peer with it.
+    /// How far the axis moved, and with it everything that is held of the peer.
     moved: Option<Distance>,
-    /// The motion there; `None` while the axis is not known.
+    /// The motion on the ego's axis; `None` while the peer's axis is not known.
     motion: Option<Motion>,
 }
 
 impl Placed {
-    /// Whether nothing that is held of the peer's place is on this axis.
+    /// Whether what is held of the peer's place is not on this axis.
     fn is_elsewhere(&self) -> bool {
         self.moved.is_some_and(|moved| moved.magnitude() > REACH)
     }
 }
 
-/// What is made of a motion, before anything is changed by it.
+/// What a motion will change, before it changes anything.
 struct Plan {
     seat: Seat,
     placed: Placed,
-    /// The sample, and what is made of it, on the axis as it was; `None` while the peer's axis is not known.
+    /// The sample and its judgement, on the axis as it was before; `None` while the peer's axis is not known.
     sample: Option<(Sample, Judgement)>,
 }
 
@@ -64,8 +64,8 @@ impl Plan {
     }
 }
 
-/// Judges a sample where nothing of its place is held.
-#[inline(never)] // what it needs on the stack is not to be there beside what the other case needs
+/// Judges a sample where nothing is held of its station's place.
+#[inline(never)] // keeps its stack apart from that of the other case
 fn weigh_anew<const SAMPLES: usize>(
     track: Option<&Track<SAMPLES>>,
     sample: &Sample,
@@ -84,11 +84,11 @@ fn weigh_anew<const SAMPLES: usize>(
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Takes in a peer's motion.
+    /// Takes in the motion of a peer.
     ///
     /// # Errors
-    /// The first cause for which it is refused. Nothing is changed then but the evidence: of misbehaviour, and of whose what else
-    /// is said in the slot may be.
+    /// The first cause for which it is refused. Then only the evidence is changed: that of misbehaviour, and that of which station the
+    /// other messages in the slot are from.
     pub(super) fn take_motion(
         &mut self,
         at: Instant,
@@ -105,7 +105,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             Ok(plan) if verdict.is_ok() => self.carry_out(index, plan),
             plan => self.note_refused(index, is_own, plan.ok()),
         }
-        // Who is ahead is refused before it has a slot of its own.
+        // A station whose clock is ahead is refused before it holds a slot. So its clock is noted for a free slot too.
         if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Cause::Future)) {
             self.note_clock(at, index, motion, health);
         }
@@ -142,8 +142,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Ok(Plan { seat, placed, sample })
     }
 
-    /// Whether a motion by another name is of the vehicle that has the slot: it follows on what is certain of that, and that
-    /// leaves no room for another vehicle. Stations change their names for privacy.
+    /// Whether a motion with a new station hash is of the vehicle that has the slot. It is if the motion agrees with what is certain of
+    /// that vehicle, and this leaves no room for another vehicle. Stations change their hash with their pseudonym, for privacy.
     fn continues(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, judgement: &Judgement) -> bool {
         let Some((bound, newest)) = track.and_then(|track| track.certainty().bound().zip(track.newest())) else {
             return false;
@@ -217,8 +217,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Judges a sample by what is held of its station, if anything is.
     ///
-    /// One that is too far away is refused, and nobody is driven by; but where a station is that was near is known by it all the
-    /// same, if it agrees with what is certain: or else who is long gone would be taken to stand where it was heard last.
+    /// A sample that is too far away is refused, and the ego does not drive by it. If the station was near before and the sample agrees
+    /// with what is certain, it still tells where the station is. Otherwise a vehicle that is long gone would be taken to stand where it
+    /// was heard last.
     fn judge(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
         let held = track.map_or(Certainty::NONE, |track| *track.certainty());
         let judgement = self.weigh(track, sample, placed);
@@ -239,7 +240,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let uncertainty = uncertainty(sample, self.is_synchronised(sample.received), &self.config.link, off);
         let period = self.config.link.period;
         match track {
-            // On the axis as it was, on which everything is that is held.
+            // On the axis as it was before, because everything that is held is on that axis.
             Some(track) if !placed.is_elsewhere() => {
                 let back = placed.moved.unwrap_or(Distance::ZERO).negated();
                 track.judge(&Sample { position: sample.position.ahead(back), ..*sample }, &uncertainty, period)
@@ -248,8 +249,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Changes all that a motion changes.
-    #[inline(never)] // likewise
+    /// Carries out all that a motion changes.
+    #[inline(never)] // keeps its stack apart from that of the judgement
     fn carry_out(&mut self, index: usize, plan: &Plan) {
         if plan.seat.is_taken_over {
             self.vacate(index);
@@ -266,7 +267,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.place_on(index, axis, plan.placed.moved);
         }
         let Some(track) = self.peers.get_index_mut(index) else { return };
-        // Its motion is taken only when its place is known, and that only if what else it says is.
+        // A sample is admitted only when the station's place is known. The place is taken in only while the slot is not disputed. So this
+        // comes first.
         track.settle();
         let Some((sample, Judgement { mut certainty, verdict: Ok(belief) })) = plan.sample else { return };
         if let Some(moved) = plan.placed.moved.filter(|_| !plan.placed.is_elsewhere()) {
@@ -285,9 +287,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Takes note of the evidence in a motion that is refused. After another station's, what else is said in the slot may be that
-    /// one's.
-    #[inline(never)] // what it needs on the stack is not to stay there while a motion is judged
+    /// Keeps the evidence of a refused motion. After the motion of another station, other messages in the slot may be that station's.
+    #[inline(never)] // keeps its stack apart from that of the judgement
     fn note_refused(&mut self, index: usize, is_own: bool, plan: Option<&Plan>) {
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if is_own {
@@ -302,7 +303,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Takes note of what a motion says of its sender's clock.
+    /// Notes what a motion says of its sender's clock.
     fn note_clock(&mut self, at: Instant, index: usize, motion: &Motion, health: &mut Health) {
         let Some(stamped) = self.instant_of(motion.stamp, at) else { return };
         let Some(track) = self.peers.get_index_mut(index) else { return };
@@ -311,7 +312,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// What was known of a station in a slot that it has left is from before, and ends.
+    /// Forgets the station that has left a slot.
     fn vacate(&mut self, index: usize) {
         self.displace(index);
         if let Some(track) = self.peers.get_index_mut(index) {

@@ -1,5 +1,5 @@
-//! What the unit takes in: whole messages enter, and go to the clock, the ego's own motion or the peers, or are refused by
-//! the rules of time and place.
+//! What the unit takes in. Whole messages enter. They go to the clock, to the ego's own motion or to the peers, or are refused by the
+//! rules of time and place.
 
 use super::Scene;
 use crate::health::{Cause, Health};
@@ -43,7 +43,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let near = self.ego.as_ref().map(|ego| ego.position);
         let sample = Sample::of(motion, instant, at, near);
         if let Some(held) = self.ego.as_ref() {
-            // Also after the stamp has come round: a clock that stands still says nothing new.
+            // This also refuses a stamp that has come round: a clock that stands still brings no news.
             if held.stamp == sample.stamp {
                 return Err(Cause::Duplicate);
             }
@@ -59,7 +59,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let index = usize::from(slot.0);
         if !matches!(said, Said::Motion(_)) {
             let is_disputed = self.peers.get_mut(slot)?.is_disputed();
-            // A place holds from the motion of its stamp on, so that it waits for that.
+            // After a long silence a place is not refused like these two: it waits for the motion of its stamp, and holds from that on.
             let is_of_whom_moves = matches!(said, Said::DrivingParameters(_) | Said::Horizon(_));
             if is_disputed || is_of_whom_moves && self.may_be_of_another(at, index) {
                 return Err(Cause::StationConflict);
@@ -69,7 +69,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             Said::Motion(motion) => self.take_motion(at, slot, motion, health)?,
             Said::DrivingParameters(parameters) => {
                 let track = self.peers.get_mut(slot)?;
-                // A sample from before a long silence is not integrated anew: that would take as long as the silence was.
+                // A sample from before a long silence is not integrated anew, because that would take a time that grows with the silence.
                 let is_young = track.newest().is_some_and(|newest| at.since(newest.at) <= self.config.link.stale);
                 if track.publish(at, *parameters, self.config.link.stale) {
                     self.estimator.note_change(&self.peers);
@@ -95,8 +95,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Ok(())
     }
 
-    /// Whether a slot has been silent for so long that it may be another station's, whose first motion was lost or is still to
-    /// come.
+    /// Whether a slot has been silent for so long that it may belong to another station, whose first motion was lost or is still to come.
     pub(super) fn may_be_of_another(&self, at: Instant, index: usize) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(at));
         silence.is_some_and(|silence| silence >= self.config.link.slot_reuse)

@@ -1,8 +1,8 @@
-//! Whom the driver has put ahead: the driver's choice enters at every tick; where that vehicle is for certain leaves, even after
-//! another station has taken over its slot.
+//! The vehicle that the driver has put ahead. The driver's choice enters at every tick; where that vehicle is for certain leaves, even
+//! after another station has taken over its slot.
 //!
-//! A name that nobody has been heard by says nothing of where that vehicle is. So the one that was ahead before is minded until the
-//! new one is heard, or until the driver says that nobody is ahead.
+//! If no station with the named hash has been heard, nothing is known of where that vehicle is. So the vehicle that was named before is
+//! minded until the new one is heard, or until the driver says that no vehicle is ahead.
 
 use super::Scene;
 use crate::envelope::Obstacle;
@@ -11,7 +11,7 @@ use crate::time::Instant;
 use crate::units::Distance;
 use crate::wire::Predecessor;
 
-/// What is certain of a vehicle that has no slot any more.
+/// What is certain of a vehicle that does not have a slot any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::unit) struct Displaced {
     bound: Bound,
@@ -19,20 +19,20 @@ pub(in crate::unit) struct Displaced {
     length: Distance,
 }
 
-/// Whom the driver has put ahead.
+/// The vehicle that the driver has put ahead.
 #[derive(Clone, Copy, Debug)]
-#[repr(u32)] // a tag of its own, of which nobody is zero, as in [`crate::held`]
+#[repr(u32)] // with a tag in which zero is `Nobody`, as in [`crate::held`]
 pub(in crate::unit) enum Named {
-    /// Nobody, as far as is known.
+    /// No vehicle, as far as is known.
     Nobody = 0,
-    /// The vehicle in this slot, which was heard of since it was named.
+    /// The vehicle in this slot, which was heard since it was named.
     InSlot(u8),
-    /// The vehicle that was in it, once another station has its slot.
+    /// The vehicle that was in the slot before another station took the slot over.
     Displaced(Displaced),
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Takes note of whom the driver has put ahead.
+    /// Notes the vehicle that the driver has put ahead.
     pub fn note_named(&mut self, target: Option<usize>) {
         match target {
             Some(index) => self.named = u8::try_from(index).map_or(Named::Nobody, Named::InSlot),
@@ -41,7 +41,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Keeps what is certain of the vehicle that the driver has put ahead, where it loses its slot: it is still there.
+    /// Keeps what is certain of the vehicle that the driver has put ahead, when it loses its slot: the vehicle is still there.
     pub(super) fn displace(&mut self, index: usize) {
         if !matches!(self.named, Named::InSlot(slot) if usize::from(slot) == index) {
             return;
@@ -52,7 +52,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.named = certain.map_or(Named::Nobody, Named::Displaced);
     }
 
-    /// The rear of the vehicle that the driver has put ahead, at its near end, unless the range sensor sees that it is not there.
+    /// The rear of the vehicle that the driver has put ahead, at its near end; `None` if the range sensor sees that it is not there.
     pub fn named_ahead(&self, now: Instant) -> Option<Obstacle> {
         match &self.named {
             Named::Nobody => None,

@@ -1,5 +1,5 @@
-//! Places on the globe and on routes: those of the ego and of its peers enter; where each of them is on the ego's axis, and what
-//! it says of its way through an intersection, is known from then on. The axis is that of [`crate::coordination`].
+//! Places on the globe and on routes, of the ego and of its peers, enter. The place of each of them on the ego's axis, and what it says
+//! of its way through an intersection, are known from then on. The axis is that of [`crate::coordination`].
 
 use super::Scene;
 use crate::coordination::{Arrival, Axis, Crossing, PeerApproach};
@@ -11,7 +11,7 @@ use crate::wire::geo::GeoPosition;
 use crate::wire::route::Route;
 use crate::wire::{Predecessor, Slot};
 
-/// A peer that told its route less than this ago is not placed by the globe.
+/// A peer that told its route less than this ago is not placed by its position on the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
@@ -27,7 +27,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Ok(())
     }
 
-    /// A peer's axis is this one from now on, and moved so far by that.
+    /// Sets the axis of a peer, and moves everything that is held of the peer by how far the axis moved.
     pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>) {
         let before = self.coordination.standing(index).copied();
         if let Some(held) = self.coordination.axis_mut(index) {
@@ -47,7 +47,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.take_standing(slot, route.stamp, crossing, route.distance, standing);
     }
 
-    /// Takes in where a peer is on the globe, unless it says more than that.
+    /// Takes in where a peer is on the globe, unless the peer told its route just now.
     pub(super) fn take_peer_place(&mut self, at: Instant, slot: Slot, geo: &GeoPosition) {
         let index = usize::from(slot.0);
         let says_more = |standing: &PeerApproach| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
@@ -60,7 +60,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.take_standing(slot, geo.stamp, crossing, distance, standing);
     }
 
-    /// The crossing of the ego's way that a vehicle at this place comes to next, and its leg and way there.
+    /// The crossing of the ego's way that a vehicle at this place comes to next, with its index, and the vehicle's leg and way to the
+    /// crossing point.
     fn approached(&self, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
         let mut next: Option<(usize, &'static Crossing, u8, Distance)> = None;
         for (place, crossing) in self.coordination.itinerary()?.crossings.iter().enumerate() {
@@ -94,8 +95,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.note_moving_on(index, before);
     }
 
-    /// A peer that moves on to another intersection, on its way against the ego's, is far behind at once: until the next review
-    /// the ego would follow it there.
+    /// A peer that drives against the ego's direction, and moves on to another intersection, is far behind at once. Without an extra
+    /// review the ego would follow it there until the next review.
     fn note_moving_on(&mut self, index: usize, before: Option<PeerApproach>) {
         let now = self.coordination.standing(index);
         if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
@@ -112,7 +113,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Everything that is held of a peer moves with its axis.
+    /// Moves everything that is held of a peer by how far its axis moved.
     fn move_axis(&mut self, index: usize, moved: Option<Distance>) {
         let (Some(moved), Some(track)) = (moved, self.peers.get_index_mut(index)) else { return };
         if moved.magnitude() > REACH {

@@ -1,14 +1,13 @@
-//! The on-board range sensor: its view of the vehicle ahead enters; what is certain of the target is narrowed by it, the
-//! estimate is corrected by it, and whether the two agree leaves.
+//! The on-board range sensor. Its view of the vehicle ahead enters. What is certain of the target is narrowed by it, and the estimate is
+//! corrected by it; whether the two agree leaves.
 //!
-//! As the view shows the nearest vehicle on the ego's path, nobody whose place is on that path is nearer: the near ends of
-//! those are raised to it. A view from before the driver named the target is not of it. While view and messages contradict one
-//! another neither touches the other, and the unit drives by
-//! what it sees.
+//! The view shows the nearest vehicle on the ego's path. So no vehicle whose place is on that path is nearer, and the near ends of these
+//! vehicles are raised to it. A view from before the driver named the target is not of the target. While view and messages contradict one
+//! another, neither changes the other, and the unit drives by what it sees.
 //!
-//! The sensor's and the estimate's positions are weighed by the squares of their uncertainties: the sensor's accuracy
-//! against half the width of the target's bound, which grows with the age of what was heard over V2X. So fresh messages
-//! are left alone, and in a long silence the sensor decides.
+//! The sensor's position and the estimated position are weighed by the squares of their uncertainties: the sensor's accuracy against half
+//! the width of the target's bound, which grows with the age of what was heard over V2X. So fresh messages are hardly corrected, and in a
+//! long silence the sensor decides.
 
 use super::Scene;
 use super::sight::{Sight, Verdict};
@@ -21,7 +20,7 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
 
-/// A correction of less than this share is not worth computing the horizon anew.
+/// For a correction by less than this fraction, the horizon is not computed anew.
 const LEAST_SHARE: i64 = 16;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
@@ -39,7 +38,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if since > self.config.link.ego_timeout || since < earliest {
             return Err(Cause::Stale);
         }
-        // The ego's own motion, brought to the sight's instant.
+        // The ego's own motion, moved to the instant of the view.
         let gained = ego.acceleration.over(since.fine_seconds());
         let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
         let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
@@ -58,19 +57,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Ok(())
     }
 
-    /// Nobody on the ego's path is nearer than what is seen. Whether the peer may be farther.
+    /// Raises the near end of a peer: no vehicle on the ego's path is nearer than what is seen. Returns whether the peer may be farther
+    /// than that.
     fn raise(&mut self, index: usize, sight: &Sight) -> bool {
         let Some(track) = self.peers.get_index_mut(index) else { return true };
-        // However long it is, its front is not behind its rear.
+        // However long the peer is, its front is not behind its rear.
         let length = track.published_length().unwrap_or(Distance::ZERO);
         let seen = sight.bound();
         track.narrow(&Bound::not_behind(seen.at(), seen.lowest_position().ahead(length)))
     }
 
-    /// What is uncertain of a sight: the sensor's accuracies, the ego's own, and what the ego may have done between its
-    /// own sample and the sight.
+    /// What is uncertain of a view: the accuracies of the sensor and of the ego, and what the ego may have done between its own sample
+    /// and the view.
     fn uncertainty_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Uncertainty {
-        // Its age is rounded up to a whole millisecond, in which the ego moved on.
+        // The age of the view is rounded up to a whole millisecond, in which the ego moved on.
         let unsaid = Duration::from_millis(1).min(seen.age);
         let apart = Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid);
         let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
@@ -92,8 +92,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Whose the sight is, if it is certain that it is the peer's; then it narrows it. It is if it fits what is certain of the peer, and
-    /// that leaves no room for another vehicle. A sight that may be the peer's or another one's corrects the estimate alone.
+    /// Returns the station of the peer if the view is certainly of that peer; then the view narrows what is certain of the peer. It is
+    /// certain if the view agrees with what is certain of the peer, and if this leaves no room for another vehicle. A view that may be of
+    /// the peer or of another vehicle only corrects the estimate.
     fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<StationHash> {
         let is_disputed = self.is_contradicted(index, now);
         let track = self.peers.get_index_mut(index)?;
@@ -157,7 +158,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some((track.station()?, track.newest().map(|newest| newest.received)))
     }
 
-    /// The estimate and the sight, each by its weight, as a sample of the target.
+    /// The weighed mean of the estimate and the view, as a sample of the target.
     fn corrected(
         &self,
         index: usize,
@@ -195,14 +196,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 }
 
-/// The share of the sensor's word: `width² / (width² + accuracy²)`, as a fraction of small numbers.
+/// The weight of the sensor: `width² / (width² + accuracy²)`, as a fraction of small numbers.
 fn weight(width: i64, accuracy: i64) -> (i64, i64) {
     let square = |word: i64| (word.clamp(0, 1 << 30) >> 8).saturating_mul(word.clamp(0, 1 << 30) >> 8);
     (square(width), square(width).saturating_add(square(accuracy)).max(1))
 }
 
 fn mixed(word: i32, share: i64, whole: i64) -> i32 {
-    // Shares of up to 2⁴⁴ and words of 2³¹: the product needs a shift first.
+    // Weights are up to 2⁴⁴ and words up to 2³¹. So the product needs a shift first.
     let (share, whole) = (share >> 14, (whole >> 14).max(1));
     crate::fixed::saturate_i32(i64::from(word).saturating_mul(share).checked_div(whole).unwrap_or(0))
 }

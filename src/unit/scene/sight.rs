@@ -1,16 +1,17 @@
-//! What the range sensor has seen: views enter; what the unit remembers of them, and whether they contradict what is heard,
-//! leave.
+//! What the range sensor has seen. Views enter; what the unit remembers of them, and whether they contradict what is heard, leave.
 //!
-//! A view shows the nearest vehicle on the ego's path: nothing is between the ego and what it sees. That is an assumption of
-//! use; all that is concluded here rests on it.
+//! A view shows the nearest vehicle on the ego's path: no vehicle is between the ego and what the sensor sees. This is an assumption of
+//! use, and all conclusions here rest on it.
 //!
-//! *Memory.* What was seen does not vanish with the view. Its near end is carried on, as a stranger's that may brake as hard
-//! as any vehicle: for [`MOVING`] of whoever was driving, and for [`STANDING`] of whoever stood or crawled. A newer view
-//! takes its place unless it is nearer: then it hides what stood beyond, and both are remembered.
+//! *Memory.* A vehicle that was seen is remembered after the view has ended. Its near end is carried on like that of an unknown vehicle,
+//! which may brake as hard as any vehicle. A vehicle that was driving is remembered for [`MOVING`], and a vehicle that stood or crawled
+//! for [`STANDING`]. A newer view takes its place, unless the newer view is nearer. Then the nearer vehicle hides what stood beyond it,
+//! and both are remembered.
 //!
-//! *Contradiction.* [`DISAGREEMENT`] views in a row that what is certain of the target excludes are one. It lasts until
-//! none has contradicted it for [`SETTLED`]. If as many in a row saw past all that is certain of the target, nobody is where that
-//! is held to be, and the contradiction lasts until the target is heard again, however long it is silent.
+//! *Contradiction.* A disagreement begins with [`DISAGREEMENT`] views in a row that what is certain of the target excludes. It lasts
+//! until no view has contradicted the target for [`SETTLED`]. If as many views in a row saw past all that is certain of the target, no
+//! vehicle is where the target is held to be. Then the contradiction lasts until the target is heard again, however long the target is
+//! silent.
 
 use crate::held::Held;
 use crate::model::Reading;
@@ -19,24 +20,24 @@ use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
 
-/// A view older than this is not driven by, and shows no longer that nobody is nearer.
+/// A view older than this is not driven by. It also does not show any more that no vehicle is nearer.
 const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 
-/// A vehicle that was driving is remembered for so long. It may have left the path; at the gap of the cruise control the gate does
-/// not act within this time, so a vehicle that turns off costs nothing.
+/// A vehicle that was driving is remembered for this long. It may have left the path. At the gap of the cruise control the gate does not
+/// act within this time, so that a vehicle that turns off costs nothing.
 const MOVING: Duration = Duration::from_millis(1_000);
 
-/// A vehicle that stood or crawled is remembered for so long, which is longer than a sensor takes to start anew. It ends, because a
-/// sensor that sees nothing says nothing: without an end, a vehicle that leaves unseen would hold the ego for ever.
+/// A vehicle that stood or crawled is remembered for this long, which is longer than a sensor takes to start anew. The memory ends,
+/// because a sensor that sees nothing says nothing: without an end, a vehicle that leaves unseen would hold the ego for ever.
 const STANDING: Duration = Duration::from_millis(10_000);
 
-/// A vehicle that may be slower than this stands or crawls: at the hardest braking it stands within 0.1 s and 4 cm.
+/// A vehicle that may be slower than this stands or crawls. At the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
-/// So many views in a row that contradict what is certain of the target are a disagreement.
+/// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
 
-/// So long no view may contradict it until a disagreement is over.
+/// A disagreement is over when no view has contradicted the target for this long.
 const SETTLED: Duration = Duration::from_millis(1_000);
 
 /// A view, at an instant of the unit's clock.
@@ -54,7 +55,7 @@ pub(in crate::unit) struct Sight {
 }
 
 impl Sight {
-    /// What is certain of the rear that was seen, by what was seen alone.
+    /// What is certain of the rear that was seen, by this view alone.
     pub fn bound(&self) -> Bound {
         Bound::around(self.at, self.rear, self.speed, &self.uncertainty, &AccelerationRange::WORST)
     }
@@ -64,9 +65,9 @@ impl Sight {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Contradiction {
     station: StationHash,
-    /// The last of them.
+    /// The instant of the last of them.
     at: Instant,
-    /// Whether it saw past all that is certain of the station.
+    /// Whether the last view saw past all that is certain of the station.
     is_past: bool,
 }
 
@@ -74,14 +75,14 @@ struct Contradiction {
 #[derive(Clone, Debug, Default)]
 pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
-    /// Whoever was seen standing last, until a view shows that it is not there.
+    /// The vehicle that was seen standing last, until a view shows that it is not there.
     standing: Held<Sight>,
-    /// Views in a row that contradict.
+    /// Views in a row that contradict what is certain of the target.
     contradictions: u8,
     /// Views in a row that saw past all that is certain of the target.
     past: u8,
     contradiction: Held<Contradiction>,
-    /// Since when the driver has named whom it names.
+    /// Since when the driver has named the present target.
     named: Instant,
 }
 
@@ -97,20 +98,21 @@ impl Ranging {
         }
     }
 
-    /// Takes note that the driver names another one from now on: what was seen before is not of that one.
+    /// Notes that the driver names another vehicle from now on. What was seen before is not of that vehicle.
     pub(in crate::unit) fn note_named(&mut self, at: Instant) {
         (self.named, self.contradictions, self.past) = (at, 0, 0);
     }
 
-    /// Whether a view may be of whom the driver names: who was not on the way yet was not hidden by what was seen.
+    /// Whether a view may be of the vehicle that the driver names. A view from before it was named may be from before it was on the ego's
+    /// path, when the view did not hide it.
     pub(in crate::unit) fn is_of_named(&self, seen: Instant) -> bool {
         seen >= self.named
     }
 
-    /// Takes a view in.
+    /// Takes in a view.
     pub(in crate::unit) fn see(&mut self, sight: Sight) {
         let seen = sight.bound();
-        // The same one again, or farther: nobody is where it was held to be, then.
+        // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be.
         let is_beyond = |held: &Sight| {
             seen.highest_position() >= held.bound().after(seen.at(), &AccelerationRange::WORST).lowest_position()
         };
@@ -122,15 +124,15 @@ impl Ranging {
         self.newest.set(sight);
     }
 
-    /// The vehicle ahead at now as the sensor saw it, at constant speed since; its rear bumper takes the place of the
-    /// front one. `None` if the view is too old.
+    /// The vehicle ahead at now as the sensor saw it, at constant speed since the view. The position is that of its rear bumper. `None`
+    /// if the view is too old.
     pub(in crate::unit) fn ahead(&self, now: Instant) -> Option<Reading> {
         let sight = self.newest.get().filter(|sight| now.since(sight.at) <= RANGE_TIMEOUT)?;
         let age = now.since(sight.at).seconds();
         Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
     }
 
-    /// What is certain of the rears of those who are remembered as `station` is not, each at the time of its view.
+    /// What is certain of the rears of the remembered vehicles that are not `station`, each at the time of its view.
     pub(in crate::unit) fn strangers(
         &self,
         now: Instant,
@@ -141,12 +143,13 @@ impl Ranging {
         remembered.filter(move |sight| station.is_none() || sight.station != station).map(|sight| sight.bound())
     }
 
-    /// Whoever was seen standing.
+    /// The vehicle that was seen standing.
     pub(in crate::unit) fn standing(&self, now: Instant) -> Option<Sight> {
         self.standing.get().filter(|sight| now.since(sight.at) <= STANDING)
     }
 
-    /// Takes note of whether a view contradicts what is certain of a station, and saw past that. Whether a disagreement begins.
+    /// Notes whether a view contradicts what is certain of a station, and whether it saw past that. Returns whether a disagreement
+    /// begins.
     pub(in crate::unit) fn judge(
         &mut self,
         station: StationHash,
@@ -165,19 +168,19 @@ impl Ranging {
         if begins && self.contradictions < DISAGREEMENT {
             return false;
         }
-        // A single view past it, while somebody nearer had contradicted it, is one that missed it.
+        // If a nearer vehicle has contradicted the target, a single view past the target is one that missed that vehicle.
         let was_past = held.is_some_and(|held| held.is_past) && self.past > 0;
         self.contradiction.set(Contradiction { station, at, is_past: was_past || self.past >= DISAGREEMENT });
         begins
     }
 
-    /// Whether what is seen and what is heard of a station, `heard` last, contradict one another.
+    /// Whether what is seen and what is heard of a station contradict one another. `heard` is when the station was heard last.
     pub(in crate::unit) fn disagrees(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
         self.holds(station, now, heard, SETTLED).is_some()
     }
 
-    /// Whether the sensor sees that a station is not where it is held to be: by a view that is not too old, or since which nothing
-    /// was heard of it.
+    /// Whether the sensor sees that a station is not where it is held to be: by a view that is not too old, or by any view since which
+    /// the station has not been heard.
     pub(in crate::unit) fn sees_past(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
         self.holds(station, now, heard, RANGE_TIMEOUT).is_some_and(|contradiction| contradiction.is_past)
     }
@@ -196,13 +199,13 @@ impl Ranging {
     }
 }
 
-/// What a view says of what is certain of a station.
+/// How a view relates to what is certain of a station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::unit) enum Verdict {
-    /// It may be that station's.
+    /// The view may be of that station.
     Agrees,
-    /// It is not, or what is heard is wrong.
+    /// The view is not of that station, or what is heard is wrong.
     Contradicts,
-    /// Likewise, and the station cannot be where it is held to be.
+    /// The same, and the station cannot be where it is held to be.
     SeesPast,
 }

@@ -1,7 +1,7 @@
-//! Unknown vehicles: what the modem tells of vehicles for which it has no slot enters; where the ego stops for them leaves.
+//! Unknown vehicles. What the modem tells of vehicles for which it has no slot enters; where the ego stops for them leaves.
 //!
-//! An unknown vehicle on a leg that crosses the ego's may be ahead in the order, so the ego does not enter the conflict area.
-//! An unknown vehicle ahead on the ego's own leg is taken to stand where it was.
+//! An unknown vehicle on a leg that crosses the ego's may be ahead in the order, so that the ego does not enter the conflict area. An
+//! unknown vehicle ahead on the ego's own leg is taken to stand where it was.
 
 use super::Scene;
 use crate::held::Held;
@@ -9,7 +9,7 @@ use crate::time::{Duration, Instant};
 use crate::units::Position;
 use crate::wire::unserved::Unserved;
 
-/// What was told last holds for so long: three of its cycles.
+/// For how long the last message holds: three of its cycles.
 const HOLDS: Duration = Duration::from_millis(600);
 
 /// What the modem told last, and when.
@@ -32,15 +32,15 @@ impl Unknown {
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Whether an unknown vehicle comes into the next conflict area before any other on its leg, or is in it.
+    /// Whether an unknown vehicle is in the next conflict area, or comes into it as the first vehicle of its leg.
     pub fn is_crossed_by_unknown(&self, now: Instant) -> bool {
         let (Some(crossing), Some(told)) = (self.coordination.crossing(), self.unknown.told(now)) else { return false };
         let crosses = |leg: &u8| told.legs & (1 << leg) != 0 && crossing.intersection.conflict(crossing.leg, *leg);
         told.intersection == crossing.intersection.id && (0..8).any(|leg| crosses(&leg))
     }
 
-    /// Where the ego, as far back as it may be, has to be able to stop for an unknown vehicle: at the next conflict area, unless it
-    /// could not any more when it learned of that, and behind the one ahead.
+    /// Where the ego, as far back as it may be, has to be able to stop for an unknown vehicle: before the next conflict area, unless the
+    /// ego could not stop there any more when it learned of the vehicle, and behind an unknown vehicle ahead.
     pub fn stop_for_unknown(&self, now: Instant, rearmost: Position) -> Option<Position> {
         let is_barred = self.coordination.choice().is_held && self.is_crossed_by_unknown(now);
         let line = self.area_begins().filter(|begins| is_barred && rearmost <= *begins);
@@ -48,7 +48,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         [line, ahead].into_iter().flatten().min()
     }
 
-    /// The rear bumper of the nearest unknown vehicle ahead on the ego's own leg, where it was.
+    /// The rear bumper of the nearest unknown vehicle ahead on the ego's own leg, where that vehicle was.
     pub fn unknown_ahead(&self, now: Instant) -> Option<Position> {
         let (crossing, told) = (self.coordination.crossing()?, self.unknown.told(now)?);
         let ahead = told.ahead.filter(|_| told.intersection == crossing.intersection.id)?;

@@ -1,21 +1,21 @@
-//! Random motions within random limits, in exact rational arithmetic, and what the bound's public functions say of them: a
-//! sample anywhere in its uncertainty, any number of steps, two bounds joined. Every truth is inside.
+//! Random motions within random limits, in exact rational arithmetic, and the results of the bound's public functions for them: a sample
+//! anywhere in its uncertainty, any number of steps, two bounds joined. Every true state is inside.
 
 use super::super::*;
 use super::{down, up};
 
-/// 2⁻¹² · 10⁻¹² µm: in these, every word and half of every product of a rate and two times are whole numbers.
+/// 2⁻¹² · 10⁻¹² µm: in this unit, every word, and half of every product of a rate and two times, is a whole number.
 const PER_MICROMETRE: i128 = 1_000_000_000_000 << 12;
 /// 2⁻¹¹ · 10⁻⁶ µm/s.
 const PER_MICROMETRE_PER_SECOND: i128 = 1_000_000 << 11;
 
-/// What the words of a position and of a speed are in these units, exactly.
+/// A word of a position and a word of a speed in these units, exactly.
 const PER_POSITION_WORD: i128 = (PER_MICROMETRE * 15_625) >> 14;
 const PER_SPEED_WORD: i128 = (PER_MICROMETRE_PER_SECOND * 15_625) >> 17;
 /// The word of 0.1 m/s².
 const LEAST: i64 = (1 << 25) / 10;
 
-/// A generator of its own, so that nothing of the core is in it.
+/// A generator of its own, so that it shares nothing with the core.
 pub struct Random(pub u64);
 
 impl Random {
@@ -26,13 +26,13 @@ impl Random {
         x ^ (x >> 31)
     }
 
-    /// From 0 to `most`, and of every order of magnitude.
+    /// A value from 0 to `most`, of any order of magnitude.
     pub fn scaled(&mut self, most: i64) -> i64 {
         let most = most.min((1 << (self.bits() % 62 + 1)) - 1);
         (self.bits() >> 1).cast_signed() % (most + 1)
     }
 
-    /// From `low` to `high`, and one of the two as often as not.
+    /// A value from `low` to `high`; as often as not it is one of the two.
     fn within(&mut self, low: i64, high: i64) -> i64 {
         match self.bits() % 4 {
             0 => low,
@@ -42,7 +42,8 @@ impl Random {
     }
 }
 
-/// A vehicle: two positions that its own is between, as rest comes at moments that are no whole numbers; and its speed.
+/// A vehicle: its speed, and two positions that its position is between. Two are needed because a vehicle comes to rest at moments that
+/// are no whole numbers.
 #[derive(Clone, Copy)]
 struct Body {
     position: (i128, i128),
@@ -55,7 +56,7 @@ impl Body {
         Self { position: (position, position), speed: i128::from(speed) * PER_SPEED_WORD }
     }
 
-    /// After so many µs at so many µm/s²; not beyond the top speed, and not backwards.
+    /// The vehicle after this many µs at this rate in µm/s². It does not exceed the top speed and does not move backwards.
     fn after(self, rate: i64, micros: i64) -> Self {
         let (a, t) = (i128::from(rate) << 11, i128::from(micros));
         let top = i128::from(TOP_SPEED) * PER_MICROMETRE_PER_SECOND;
@@ -64,7 +65,7 @@ impl Body {
             return self.after(0, micros);
         }
         let way = if speed < 0 {
-            // v²/2b: in these units 2⁻¹¹ less.
+            // v²/2b, which is 2⁻¹¹ less in these units.
             let square = self.speed * self.speed;
             (down(square, -a).0, up(square, -a).0)
         } else {
@@ -87,7 +88,7 @@ impl Body {
     }
 }
 
-/// A motion, each piece with its rate and what it lasts.
+/// A motion in pieces, each with its rate and its duration.
 struct Motion {
     limits: (i64, i64),
     now: i64,
@@ -104,12 +105,12 @@ impl Motion {
         }
     }
 
-    /// A sample that may be anywhere in its uncertainty, taken within the uncertainty of its instant.
+    /// A sample with an error of anything up to its uncertainty, of an instant that is off by anything up to its uncertainty.
     fn sample(&mut self, random: &mut Random, reach: &AccelerationRange) -> Bound {
         let [earlier, later] = [random.scaled(2_000_000), random.scaled(2_000_000)];
         let at = self.now + random.within(-later, earlier);
         let (off, faster) = (random.scaled(13 << 20), random.scaled(3 << 23));
-        // The word of the truth, and a word more of uncertainty for what is lost in it.
+        // The word of the true value, and a word more of uncertainty for what is lost by rounding.
         let position = down(self.body.position.0, PER_POSITION_WORD).0 as i64 + random.within(-off, off);
         let speed = down(self.body.speed, PER_SPEED_WORD).0 as i64;
         let speed = (speed + random.within(-faster, faster)).max(0);
@@ -130,7 +131,7 @@ fn drive(seed: u64) {
         acceleration: Acceleration::from_bits(random.within(LEAST, i32::MAX.into()) as i32),
         braking: Acceleration::from_bits(random.within(LEAST, i32::MAX.into()) as i32),
     };
-    // The whole of a limit in µm/s² is less than its word says.
+    // A limit in whole µm/s² is no more than its word says.
     let whole = |limit: Acceleration| micro_down_64(limit.to_bits().into(), 25);
     let start = Body::from_words(random.within(-560_000 << 20, 8_000_000 << 20), random.within(0, 65 << 23) as i32);
     let limits = (whole(reach.braking), whole(reach.acceleration));
@@ -141,7 +142,7 @@ fn drive(seed: u64) {
         let until = bound.at().as_micros().cast_signed().max(truth.now) + random.scaled(30_000_000);
         truth.goes_on(&mut random, until);
         let now = Instant::from_micros(until.cast_unsigned());
-        // In steps, and in one.
+        // In steps, and in a single step.
         bound = bound.after(now, &reach);
         for of in [bound, whole_way.after(now, &reach)] {
             assert!(truth.body.is_inside(&of), "seed {seed}, step {step}: {of:?}");
