@@ -21,7 +21,7 @@ use std::io;
 /// Opens a CAN interface of this machine.
 ///
 /// # Errors
-/// What [`socketcan::SocketCan::open`] says.
+/// The errors of [`socketcan::SocketCan::open`].
 #[cfg(target_os = "linux")]
 pub fn open(name: &str) -> Result<socketcan::SocketCan, Error> {
     socketcan::SocketCan::open(name).map_err(|error| error.in_option("--bus"))
