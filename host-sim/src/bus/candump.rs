@@ -4,9 +4,9 @@
 //! (1436509052.249713) vcan0 044#2A366C2BBA           candump -l, the form that is written
 //!  (1436509052.249713)  vcan0  044   [5]  2A 36 6C 2B BA    candump's screen with -t a, or without the time
 //! ```
-//! Both forms may be mixed. Three digits are a standard identifier, eight an extended one; `#R` and `remote request`
+//! Both forms may be mixed. Three digits are a standard identifier, eight an extended one. `#R` and `remote request`
 //! are remote frames. CAN FD (`##`, or two digits in the brackets), CAN XL and error frames are recognised, so that a
-//! log of a real bus reads to its end, but they are none that a classic node could be given. Direction flags (`-x`),
+//! log of a real bus can be read to its end, but a classic node cannot be given such frames. Direction flags (`-x`),
 //! the text column (`-a`) and blank lines are skipped. Anything else is an error with its line.
 
 mod line;
@@ -29,16 +29,16 @@ pub type Interface = heapless::String<INTERFACE_CHARS>;
 /// One line of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// When the frame was on the bus, on the log's clock, by 1 µs (finer digits are cut off); `None` in the screen
-    /// form without a time. Times as differences (`-t d`) cannot be told from others and are read as they stand.
+    /// Time of the frame on the log's clock, by 1 µs (finer digits are cut off); `None` in the screen form without a
+    /// time. Times given as differences (`-t d`) look like any others and are read as they are.
     pub at: Option<Instant>,
-    /// Where it was heard.
+    /// The interface that received the frame.
     pub interface: Interface,
-    /// What it was.
+    /// The frame.
     pub content: Content,
 }
 
-/// What was on the bus.
+/// The content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
     /// A classic data or remote frame.
@@ -72,7 +72,7 @@ impl LogReader<BufReader<File>> {
 }
 
 impl<R: BufRead> LogReader<R> {
-    /// Reads from `input`; the file's name is for the errors.
+    /// Reads from `input`; errors name the file.
     pub fn new(file: &Path, input: R) -> Self {
         Self { file: file.into(), input, line: 0, text: Vec::new() }
     }
@@ -82,7 +82,7 @@ impl<R: BufRead> LogReader<R> {
         self.line
     }
 
-    /// Reads on to the next line that is not blank; `None` at the end.
+    /// Reads up to the next line that is not blank; `None` at the end.
     fn read(&mut self) -> Result<Option<Entry>, Error> {
         /// An XL frame of 2048 bytes fits; a binary file without line ends does not fill the memory.
         const LONGEST_LINE: u64 = 8192;

@@ -1,7 +1,7 @@
 //! Seeded faults in front of a node of any bus: frames that it receives are dropped, corrupted, duplicated or delayed.
 //!
-//! A corrupt bit stands for what CAN's own CRC cannot see: a gateway, a memory, a driver. What the node sends is left
-//! alone; wrap the nodes that receive it.
+//! A corrupt bit stands for an error that CAN's own CRC does not see: in a gateway, in a memory, in a driver. Frames
+//! that the node sends are not changed; wrap the nodes that receive them.
 
 use super::memory::{insert, take};
 use super::{Bus, Frame};
@@ -11,22 +11,22 @@ use rand_chacha::ChaCha8Rng;
 use std::collections::VecDeque;
 use std::io;
 
-/// How often what goes wrong: shares of all frames, 0 to 1, independent of one another.
+/// The rate of each fault: fractions of all frames, 0 to 1, independent of one another.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FaultModel {
-    /// Fraction that never arrives.
+    /// Fraction of frames that never arrive.
     pub drop: f64,
-    /// Fraction with one bit of the data flipped.
+    /// Fraction of frames with one bit of the data flipped.
     pub corrupt: f64,
-    /// Fraction that arrives twice.
+    /// Fraction of frames that arrive twice.
     pub duplicate: f64,
-    /// Fraction that arrives late, and so perhaps after younger frames.
+    /// Fraction of frames that arrive late, and so perhaps after later frames.
     pub delay: f64,
     /// The longest delay; delays are uniform up to it.
     pub longest_delay: Duration,
 }
 
-/// What went wrong so far.
+/// Counts of the faults so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultCounts {
     /// Frames that came from the bus.
@@ -41,7 +41,7 @@ pub struct FaultCounts {
     pub delayed: u64,
 }
 
-/// A node behind faults.
+/// A node of a bus, with seeded faults on its receiving side.
 #[derive(Debug)]
 pub struct Faults<B> {
     bus: B,
@@ -52,19 +52,19 @@ pub struct Faults<B> {
 }
 
 impl<B: Bus> Faults<B> {
-    /// Wraps the node of the vehicle with that index.
+    /// Wraps the node of the vehicle with this index.
     pub fn new(bus: B, model: FaultModel, seed: u64, vehicle: u32) -> Self {
         let generator = stream(seed, Purpose::BusFaults(vehicle));
         Self { bus, model, generator, arrived: VecDeque::new(), counts: FaultCounts::default() }
     }
 
-    /// What went wrong so far.
+    /// Counts of the faults so far.
     pub fn counts(&self) -> FaultCounts {
         self.counts
     }
 
     fn arrive(&mut self, at: Instant, frame: Frame) {
-        // All drawn whatever happens, so that one kind of fault does not shift the others.
+        // All numbers are drawn in any case, so that one kind of fault does not shift the others.
         let mut draw = || unit(&mut self.generator);
         let (drop, corrupt, bit, duplicate, delay, share) = (draw(), draw(), draw(), draw(), draw(), draw());
         self.counts.frames += 1;
@@ -110,7 +110,7 @@ mod tests {
 
     const FRAMES: u64 = 4000;
 
-    /// What arrives of 4000 frames, 1 ms apart, whose data is their number.
+    /// The arrivals of 4000 frames, 1 ms apart, whose data is their number.
     fn arrivals(model: FaultModel, seed: u64) -> (Vec<(Instant, Frame)>, FaultCounts) {
         let bus = MemoryBus::new();
         let (mut sender, node) = (bus.node(), bus.node());

@@ -1,7 +1,7 @@
-//! Any classic CAN frame, ours or foreign: what goes over a [`Bus`](super::Bus) and stands in a log.
+//! Any classic CAN frame, of the catalogue or not: the frames on a [`Bus`](super::Bus) and in a log.
 //!
-//! The core's own frame type holds only what its catalogue has, standard identifiers and 8 bytes; a real bus carries
-//! other traffic too, and the unit has to be shown it.
+//! The core's own frame type holds only what its catalogue uses: standard identifiers and 8 bytes. A real bus carries
+//! other frames too, and the unit has to receive them.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 
@@ -15,20 +15,20 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A data frame with the standard identifier of that number; `None` above 0x7FF or 8 bytes.
+    /// A data frame with a standard identifier; `None` above 0x7FF or 8 bytes.
     #[must_use]
     pub fn standard(id: u16, data: &[u8]) -> Option<Self> {
         embedded_can::Frame::new(StandardId::new(id)?, data)
     }
 
-    /// A data frame with the extended identifier of that number; `None` above 0x1FFF_FFFF or 8 bytes.
+    /// A data frame with an extended identifier; `None` above 0x1FFF_FFFF or 8 bytes.
     #[must_use]
     pub fn extended(id: u32, data: &[u8]) -> Option<Self> {
         embedded_can::Frame::new(ExtendedId::new(id)?, data)
     }
 
-    /// The same frame with one bit of its data the other way round, counted from the first byte's lowest bit, modulo
-    /// their number; unchanged if it has no data.
+    /// The same frame with one bit of its data flipped. Bits are counted from the lowest bit of the first byte, modulo
+    /// their number. A frame without data is unchanged.
     #[must_use]
     pub fn with_flipped_bit(mut self, bit: usize) -> Self {
         let bits = embedded_can::Frame::data(&self).len() * 8;
@@ -74,8 +74,8 @@ impl embedded_can::Frame for Frame {
     }
 }
 
-/// Any implementation's classic frame. Its lengths and identifiers are legal by the trait's contract; what lies beyond
-/// 8 bytes all the same is cut off.
+/// From the classic frame of any implementation. By the trait's contract its lengths and identifiers are legal. If
+/// there are more than 8 bytes nevertheless, the rest is cut off.
 impl<F: embedded_can::Frame> From<&F> for Frame {
     fn from(other: &F) -> Self {
         let dlc = other.dlc().min(8);

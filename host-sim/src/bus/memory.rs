@@ -1,7 +1,7 @@
 //! A CAN bus in memory: frames that one node sends leave at every other node in the order of their times.
 //!
-//! It has no transmission time and no arbitration: frames of the same instant arrive in the order of sending. A node
-//! may send ahead of time; nobody receives the frame before its time has come.
+//! The bus has no transmission time and no arbitration: frames of the same instant arrive in the order of sending. A
+//! node may send ahead of time; no node receives the frame before its time.
 
 use super::{Bus, Frame};
 use holdover::time::Instant;
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use std::io;
 use std::rc::Rc;
 
-/// The bus; it lives as long as its nodes, which all belong to one thread: a world is run by one.
+/// The bus. It lives as long as its nodes. All nodes belong to one thread, because one thread runs a world.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryBus {
     inboxes: Rc<RefCell<Vec<Inbox>>>,
@@ -32,7 +32,7 @@ impl MemoryBus {
         Self::default()
     }
 
-    /// Attaches one more node. It receives what is sent from now on.
+    /// Attaches one more node. It receives the frames that are sent from now on.
     #[must_use]
     pub fn node(&self) -> MemoryNode {
         let mut inboxes = self.inboxes.borrow_mut();
@@ -56,7 +56,7 @@ impl Bus for MemoryNode {
     }
 }
 
-/// Puts a frame behind all that are not later. Nearly always that is the end, so the search starts there.
+/// Inserts a frame after all frames that are not later. That is nearly always the end, so the search starts there.
 pub(super) fn insert(inbox: &mut Inbox, at: Instant, frame: Frame) {
     let later = inbox.iter().rev().take_while(|(other, _)| *other > at).count();
     inbox.insert(inbox.len() - later, (at, frame));

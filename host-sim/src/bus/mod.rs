@@ -1,7 +1,7 @@
-//! CAN buses behind one trait: a node sends frames, and receives in the order of time what the other nodes sent.
+//! CAN buses behind one trait: a node sends frames, and receives the frames of the other nodes in the order of time.
 //!
-//! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are middleware
-//! that wraps a node of any bus. [`port`] is for those who live by the bus's time.
+//! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are
+//! middleware that wraps a node of any bus. [`port`] is a node that follows the bus's own time.
 
 pub mod candump;
 pub mod fault;
@@ -21,7 +21,7 @@ use std::io;
 /// Opens a CAN interface of this machine.
 ///
 /// # Errors
-/// What [`socketcan::SocketCan::open`] says.
+/// The errors of [`socketcan::SocketCan::open`].
 #[cfg(target_os = "linux")]
 pub fn open(name: &str) -> Result<socketcan::SocketCan, Error> {
     socketcan::SocketCan::open(name).map_err(|error| error.in_option("--bus"))
@@ -30,7 +30,7 @@ pub fn open(name: &str) -> Result<socketcan::SocketCan, Error> {
 /// Opens a CAN interface of this machine.
 ///
 /// # Errors
-/// Always: there are none.
+/// Always: CAN interfaces are supported on Linux only.
 #[cfg(not(target_os = "linux"))]
 pub fn open(name: &str) -> Result<Box<dyn Port>, Error> {
     let cause = format!("{} is an interface of SocketCAN, which is Linux's", crate::error::quoted(name));
@@ -39,14 +39,14 @@ pub fn open(name: &str) -> Result<Box<dyn Port>, Error> {
 
 /// One node of a classic CAN bus.
 pub trait Bus {
-    /// Puts a frame on the bus at that time.
+    /// Puts a frame on the bus at the time `at`.
     ///
     /// # Errors
-    /// The hardware's, or the operating system's; a bus in memory has none.
+    /// Errors of the hardware or of the operating system; a bus in memory has none.
     fn send(&mut self, at: Instant, frame: Frame) -> io::Result<()>;
 
-    /// Takes the oldest frame from another node that was on the bus at or before `upto`, and the time it was; `None`:
-    /// there is none (yet). It does not wait.
+    /// Takes the oldest frame of another node that was on the bus at or before `upto`, with its time; `None`: there is
+    /// none yet. It does not wait.
     ///
     /// # Errors
     /// As [`Bus::send`].

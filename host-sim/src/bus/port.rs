@@ -1,26 +1,27 @@
-//! A node of a bus that runs by its own time: frames enter and are sent at once; what happens on the bus leaves when it
-//! does, with the time at which it did.
+//! A node of a bus in real time: frames enter and are sent at once; events of the bus leave as they occur, with their
+//! times.
 //!
-//! [`Bus`](super::Bus) is for those who make time themselves; a port is for those who have to keep up with it.
+//! [`Bus`](super::Bus) is for a caller that sets the time itself; a port is for a caller that has to keep up with the
+//! bus.
 
 use super::Frame;
 use holdover::time::Instant;
 use std::io;
 
-/// Something that happened on the bus.
+/// An event on the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A frame that this port sent is on the bus now.
     Sent(Frame),
     /// A frame of another node.
     Received(Frame),
-    /// The controller, or somebody who plays one, reports an error of the bus.
+    /// An error of the bus, reported by the controller or by a node that plays one.
     Error(BusError),
-    /// The interface has gone down: nothing is heard and nothing can be sent until it is up again.
+    /// The interface has gone down. Until it is up again, no frame can be received or sent.
     Down,
 }
 
-/// What an error frame of Linux says.
+/// The content of an error frame of Linux.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BusError {
     /// Its classes, as bits of the identifier (`linux/can/error.h`).
@@ -30,11 +31,11 @@ pub struct BusError {
 }
 
 impl BusError {
-    /// Nobody acknowledged a frame.
+    /// No node acknowledged a frame.
     pub const NO_ACKNOWLEDGEMENT: Self = Self { classes: 0x20, data: [0; 8] };
     /// The controller has left the bus.
     pub const BUS_OFF: Self = Self { classes: 0x40, data: [0; 8] };
-    /// Classes with their names.
+    /// The classes with their names.
     const CLASSES: [(u32, &'static str); 10] = [
         (0x001, "transmission timeout"),
         (0x002, "lost arbitration"),
@@ -48,7 +49,7 @@ impl BusError {
         (0x200, "error counters"),
     ];
 
-    /// What it says, in words.
+    /// The error in words.
     #[must_use]
     pub fn words(&self) -> String {
         let named = Self::CLASSES.iter().filter(|(class, _)| self.classes & class != 0).map(|(_, name)| *name);
@@ -65,20 +66,20 @@ pub trait Port {
     /// Sends a frame now.
     ///
     /// # Errors
-    /// `NetworkDown` while the interface is down, and whatever else the system refuses it for.
+    /// `NetworkDown` while the interface is down, and any other reason for which the system refuses the frame.
     fn send(&mut self, frame: Frame) -> io::Result<()>;
 
-    /// Puts an error frame on the bus, as a controller would that met with an error.
+    /// Puts an error frame on the bus, as a controller would that detected an error.
     ///
     /// # Errors
     /// As [`Port::send`].
     fn send_error(&mut self, error: BusError) -> io::Result<()>;
 
-    /// The next thing that happens, with its time, waiting for it until then at the latest; what has happened already
-    /// comes at once, whatever `until` is.
+    /// The next event, with its time. It waits for the event until `until` at the latest. An event that has already
+    /// occurred is returned at once, whatever `until` is.
     ///
     /// # Errors
-    /// The system's.
+    /// Errors of the system.
     fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>>;
 }
 

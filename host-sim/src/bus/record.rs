@@ -1,4 +1,4 @@
-//! Recording in front of a node of any bus: everything that it sends and receives is written to a candump log.
+//! Recording of the frames of a node: all frames that it sends and receives are written to a candump log.
 
 use super::{Bus, Frame};
 use crate::bus::candump::LogWriter;
@@ -13,8 +13,8 @@ pub struct Recorder<B, W> {
 }
 
 impl<B: Bus, W: Write> Recorder<B, W> {
-    /// Wraps a node. The log is in the order of calls, which is the order of time for a node that receives up to now
-    /// before it sends.
+    /// Wraps a node. The log is in the order of calls. That is the order of time if the node receives up to now before
+    /// it sends.
     pub fn new(bus: B, log: LogWriter<W>) -> Self {
         Self { bus, log }
     }
@@ -22,7 +22,7 @@ impl<B: Bus, W: Write> Recorder<B, W> {
     /// Ends the recording.
     ///
     /// # Errors
-    /// What is still buffered cannot be written.
+    /// The buffered rest cannot be written.
     pub fn finish(self) -> io::Result<W> {
         self.log.finish()
     }

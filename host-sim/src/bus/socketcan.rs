@@ -1,9 +1,9 @@
-//! A CAN interface of Linux: frames enter and are sent by its driver; frames, the echoes of the own ones and error frames
-//! leave with the kernel's time stamps, in microseconds since 1970.
+//! A CAN interface of Linux: frames enter and are sent by its driver. Frames of other nodes, the echoes of the own
+//! frames, and error frames leave with the kernel's time stamps, in microseconds since 1970.
 //!
 //! *Own frames* come back when they really were on the bus. The kernel marks them, but socket libraries do not pass the
-//! mark on; so a frame that equals one which is still awaited is its echo. A foreign frame that is the same, bit for bit,
-//! at the same time would be taken for it, and its echo for the foreign one: which makes no difference.
+//! mark on. So a frame that equals an own frame without an echo yet is taken for that echo. If a foreign frame with the
+//! same bits comes at the same time, the two are taken for one another, which makes no difference.
 
 use super::port::{BusError, Event, Port};
 use super::{Bus, Frame};
@@ -17,21 +17,21 @@ use std::io::{self, ErrorKind};
 use std::os::fd::AsFd;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// What may wait in the kernel for this program: a second of a full bus.
+/// Bytes that may wait in the kernel for this program: a second of a full bus.
 const WAITING_BYTES: i32 = 1 << 22;
-/// The option of Linux for that.
+/// Level of the socket option for that, in Linux.
 const SOL_SOCKET: i32 = 1;
 const SO_RCVBUFFORCE: i32 = 33;
-/// How long a full transmit queue of the driver is waited for.
+/// How long to wait while the driver's transmit queue is full.
 const QUEUE_PATIENCE: Duration = Duration::from_millis(20);
 
 /// A node on a CAN interface.
 #[derive(Debug)]
 pub struct SocketCan {
     socket: CanSocket,
-    /// Sent and not seen on the bus yet.
+    /// Frames that were sent and have not been seen on the bus yet.
     awaited: VecDeque<Frame>,
-    /// Received, and later than what a [`Bus::receive`] asked for.
+    /// An event that was received, and is later than a [`Bus::receive`] asked for.
     early: Option<(Instant, Event)>,
 }
 
@@ -39,7 +39,7 @@ impl SocketCan {
     /// Opens an interface by its name.
     ///
     /// # Errors
-    /// There is no CAN, no such interface, or it is down; with the remedy.
+    /// There is no CAN, no such interface, or the interface is down; with the remedy.
     pub fn open(name: &str) -> Result<Self, Error> {
         let socket = CanSocket::open_iface(0).and_then(|_| CanSocket::open(name));
         let socket = socket.map_err(|error| unopened(name, &error))?;
@@ -51,7 +51,7 @@ impl SocketCan {
             socket.set_recv_timestamp(true)?;
             socket.set_recv_own_msgs(true)?;
             socket.set_error_filter_accept_all()?;
-            // Beyond the system's own limit that takes root; within it, half a thousand frames fit.
+            // Above the system's own limit this needs root rights. Within that limit about 500 frames fit.
             let forced = socket.set_socket_option_int(SOL_SOCKET, SO_RCVBUFFORCE, WAITING_BYTES);
             forced.or_else(|_| socket.as_raw_socket().set_recv_buffer_size(WAITING_BYTES as usize))
         };
@@ -59,10 +59,10 @@ impl SocketCan {
         Ok(Self { socket, awaited: VecDeque::new(), early: None })
     }
 
-    /// Lets the kernel pass nothing but frames with these standard identifiers, of whatever kind and length, and errors.
+    /// Lets the kernel pass only error frames, and frames with these standard identifiers, of any kind and length.
     ///
     /// # Errors
-    /// The system's.
+    /// Errors of the system.
     pub fn hear_only(&self, ids: impl IntoIterator<Item = u16>) -> io::Result<()> {
         const STANDARD: u32 = 0x8000_07FF; // the identifier, and that it is not an extended one
         let filters: Vec<_> = ids.into_iter().map(|id| CanFilter::new(id.into(), STANDARD)).collect();
@@ -75,7 +75,7 @@ impl SocketCan {
         self.awaited.len()
     }
 
-    /// What has happened by now, one by one.
+    /// The next event that has occurred by now.
     fn next(&mut self) -> io::Result<Option<(Instant, Event)>> {
         if let Some(early) = self.early.take() {
             return Ok(Some(early));
@@ -111,7 +111,7 @@ impl SocketCan {
         let given_up = SystemTime::now() + QUEUE_PATIENCE;
         loop {
             match self.socket.write_frame(frame) {
-                // The driver's queue is full: the bus is slower than we are.
+                // The driver's queue is full: the bus is slower than this program.
                 Err(error) if is_queue_full(&error) && SystemTime::now() < given_up => {
                     std::thread::sleep(Duration::from_micros(200));
                 }
@@ -146,7 +146,8 @@ impl Port for SocketCan {
             if left <= 0 {
                 return Ok(None);
             }
-            // The kernel waits for events by whole milliseconds. What comes in the rest has its stamp all the same.
+            // The kernel waits for events in whole milliseconds. An event in the remaining time has its stamp
+            // nevertheless.
             match u16::try_from(left / 1000).unwrap_or(u16::MAX) {
                 0 => std::thread::sleep(Duration::from_micros(left.unsigned_abs())),
                 millis => {
@@ -162,7 +163,7 @@ impl Port for SocketCan {
     }
 }
 
-/// By the bus's own time: what is sent is sent now, whatever its time, and what comes back of it is not passed on.
+/// A bus by its own time: a frame is sent now, whatever its time, and the echoes are not passed on.
 impl Bus for SocketCan {
     fn send(&mut self, _at: Instant, frame: Frame) -> io::Result<()> {
         Port::send(self, frame)
@@ -226,7 +227,7 @@ fn is_down(name: &str) -> bool {
     flags.is_some_and(|flags| flags & UP == 0)
 }
 
-/// The command that takes it up.
+/// The command that sets the interface up.
 fn up(name: &str) -> String {
     let bitrate = if name.starts_with("can") { " type can bitrate 500000" } else { "" };
     format!("ip link set {name} up{bitrate}")

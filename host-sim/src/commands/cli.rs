@@ -1,5 +1,5 @@
-//! The command line as it is typed: arguments enter, raw values leave. What they mean and whether they can be is
-//! decided in [`crate::commands::options`].
+//! The command line as it is typed: arguments enter, raw values leave. [`crate::commands::options`] interprets and
+//! checks them.
 
 use crate::commands::ecu::{self, arguments::EcuArguments};
 use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
@@ -16,17 +16,17 @@ use clap::{Parser, Subcommand};
 
 /// Drives simulated vehicles, each with the onboard unit's own code, over an impaired V2X channel.
 ///
-/// Without a command it does `run`, and without a scenario that is the paper's: five vehicles, the third of them (the
-/// ego) on a channel with delay, loss and a silence of four seconds. It prints how far from the truth the ego's
-/// follower believes the ego to be, beside what the literal paper makes of the same messages, and writes a report with
-/// plots.
+/// Without a command, `run` is executed. Without a scenario, `run` takes that of the paper: five vehicles, the third of
+/// them (the ego) on a channel with delay, loss and a silence of four seconds. It prints the error of the ego's
+/// position as its follower's unit estimates it, beside that of the literal paper's method on the same messages. It
+/// writes a report with plots.
 #[derive(Clone, Debug, Parser)]
 #[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
 pub struct Cli {
-    /// What to do; `run` if no command is given.
+    /// The command; `run` if none is given.
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// The settings of `run`, which may stand without the command.
+    /// The settings of `run`, which may be given without the command.
     #[command(flatten)]
     pub run: RunSettings,
 }
@@ -43,28 +43,28 @@ pub enum Command {
     /// Run a scenario at several prediction steps with many seeds, on all cores
     #[command(after_help = sweep::arguments::AFTER_HELP)]
     Sweep(SweepArguments),
-    /// Measure what the envelope costs: runs without and with it over silences of several lengths, on all cores
+    /// Measure the cost of the envelope: runs without and with it over silences of several lengths, on all cores
     #[command(visible_alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
     EnvelopeCost(EnvelopeCostArguments),
     /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
     #[command(after_help = gains::arguments::AFTER_HELP)]
     Gains(GainsArguments),
-    /// Measure how a string of ten vehicles damps what its leader does, over delays and losses, on all cores
+    /// Measure how a string of ten vehicles damps a disturbance by its leader, over delays and losses, on all cores
     #[command(after_help = string::arguments::AFTER_HELP)]
     String(StringArguments),
     /// Measure the estimate of a target in a silence over five motions, beside seven other methods, on all cores
     #[command(after_help = motions::arguments::AFTER_HELP)]
     Motions(MotionsArguments),
-    /// Give a unit the traffic of a recorded CAN bus and print what it sends, or put that traffic on a bus
+    /// Give a unit the frames of a recorded CAN bus and print what it sends, or put these frames on a bus
     #[command(after_help = replay::arguments::AFTER_HELP)]
     Replay(ReplayArguments),
-    /// Record the traffic of a CAN interface
+    /// Record the frames on a CAN interface
     #[command(after_help = record::arguments::AFTER_HELP)]
     Record(RecordArguments),
-    /// Be an onboard unit on a CAN interface
+    /// Run an onboard unit on a CAN interface
     #[command(after_help = ecu::arguments::AFTER_HELP)]
     Ecu(EcuArguments),
-    /// Drive an onboard unit on a CAN interface through a scenario, and judge it
+    /// Run an onboard unit on a CAN interface through a scenario, and judge it
     #[command(after_help = hil::arguments::AFTER_HELP)]
     Hil(HilArguments),
 }

@@ -1,5 +1,5 @@
-//! The end of a command: results, the same in words and their page enter; what the options ask for leaves, a table or JSON
-//! on stdout and a report in its folder.
+//! The end of a command: results, their text and their page enter; what the options ask for leaves: a table or JSON on
+//! stdout, and a report in its folder.
 
 use std::fs;
 use std::path::PathBuf;
@@ -10,20 +10,20 @@ use crate::error::Error;
 use crate::output;
 use crate::places::can_be_folder;
 
-/// Where results go.
+/// The output of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Destination {
-    /// Results as JSON.
+    /// Whether results are printed as JSON.
     pub json: bool,
     /// Folder of the report; `None`: no report.
     pub report: Option<PathBuf>,
 }
 
 impl Destination {
-    /// Results as JSON or not, and a report in that folder, if any.
+    /// Results as JSON or not, and a report in a folder, if one is given.
     ///
     /// # Errors
-    /// A folder that cannot be one.
+    /// An impossible folder.
     pub fn new(json: bool, report: Option<PathBuf>) -> Result<Self, Error> {
         if let Some(folder) = &report {
             can_be_folder(folder)?;
@@ -31,11 +31,11 @@ impl Destination {
         Ok(Self { json, report })
     }
 
-    /// Prints the results as a table, or as JSON with a word `beside_json` on stderr, if there is one. Then it writes the
-    /// report, so that no results are lost to a report that cannot be written.
+    /// Prints the results as a table, or as JSON with the line `beside_json` on stderr, if there is one. Then it writes
+    /// the report. In this order no results are lost if the report cannot be written.
     ///
     /// # Errors
-    /// Places that cannot be written.
+    /// Output that cannot be written.
     pub fn deliver(
         &self,
         results: &impl Serialize,
@@ -63,7 +63,7 @@ impl Destination {
 /// Results as one JSON value.
 ///
 /// # Errors
-/// Results that JSON has no value for.
+/// Results that JSON cannot represent.
 pub fn json(results: &impl Serialize) -> Result<String, Error> {
     serde_json::to_string(results).map_err(|error| Error::new(error.to_string(), "report this"))
 }

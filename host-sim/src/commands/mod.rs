@@ -1,4 +1,4 @@
-//! The commands: what is typed enters; results on stdout, reports and a verdict leave.
+//! The commands: the command line enters; results on stdout, reports and a verdict leave.
 //!
 //! ```text
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending

@@ -1,5 +1,5 @@
-//! The command line as it is meant: typed values enter; options that have been checked, with every input file read, or
-//! an error leave. After this only writing can fail.
+//! The command line as it is meant: typed values enter; checked options leave, with every input file read, or an error.
+//! After this only writing can fail.
 
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
@@ -23,7 +23,7 @@ use crate::input::library;
 use crate::output;
 use crate::verdict::Verdict;
 
-/// What to do.
+/// A checked command.
 #[derive(Clone, Debug)]
 pub enum Options {
     /// Run a string of vehicles.
@@ -36,7 +36,7 @@ pub enum Options {
     Evaluate(EvaluateOptions),
     /// Run a scenario at several steps with many seeds.
     Sweep(SweepOptions),
-    /// Measure what the envelope costs.
+    /// Measure the cost of the envelope.
     EnvelopeCost(EnvelopeCostOptions),
     /// Make and prove the table of gains.
     Gains(GainsOptions),
@@ -46,19 +46,19 @@ pub enum Options {
     Motions(MotionsOptions),
     /// Replay a log.
     Replay(ReplayOptions),
-    /// Record an interface.
+    /// Record a CAN interface.
     Record(RecordOptions),
-    /// Be a unit.
+    /// Run a unit on a CAN interface.
     Ecu(EcuOptions),
-    /// Judge one.
+    /// Judge a unit on a CAN interface.
     Hil(Box<HilOptions>),
 }
 
 impl Options {
-    /// Reads what the command line names and checks it.
+    /// Reads and checks the command line.
     ///
     /// # Errors
-    /// Whatever makes the input unusable, and places for output that cannot be written.
+    /// Unusable input, and output that cannot be written.
     pub fn read(cli: Cli) -> Result<Self, Error> {
         match cli.command {
             Some(Command::Run(arguments)) => Self::of_run(arguments),
@@ -90,10 +90,10 @@ impl Options {
         }
     }
 
-    /// Does it.
+    /// Executes the command.
     ///
     /// # Errors
-    /// What each command says.
+    /// The errors of the command.
     pub fn run(&self) -> Result<Verdict, Error> {
         match self {
             Self::Run(options) => run::run(options),

@@ -1,9 +1,9 @@
-//! What a scenario says of the V2X channel: which links are impaired, and how. What that means for a message is
-//! the channel's to say.
+//! The description of the V2X channel in a scenario: which links are impaired, and how. The simulated channel applies
+//! it to the messages.
 
 use crate::input::recording::ChannelTrace;
 
-/// One sender, one receiver, by the vehicles' indices.
+/// A link: one sender and one receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Link {
     /// Index of the sender.
@@ -21,46 +21,46 @@ pub struct Window {
     pub to_s: f64,
 }
 
-/// What a link does to messages.
+/// How a link impairs messages.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Impairment {
-    /// By chance.
+    /// Random impairment.
     Random {
         /// Mean of the delay before truncation at 0; not negative.
         delay_mean_s: f64,
         /// Standard deviation of the delay before truncation at 0.
         delay_std_s: f64,
-        /// Share of messages lost, 0 to 1.
+        /// Fraction of messages lost, 0 to 1.
         loss: f64,
-        /// Share of messages that arrive twice, 0 to 1.
+        /// Fraction of messages that arrive twice, 0 to 1.
         duplicate: f64,
-        /// When everything sent is lost; they may touch and overlap.
+        /// Times at which every message sent is lost. They may touch and overlap.
         outages: Vec<Window>,
     },
-    /// As recorded.
+    /// As in a recording.
     Recorded(ChannelTrace),
 }
 
-/// Which links are impaired; the others are clean, without delay and without loss.
+/// Which links are impaired. The other links have no delay and no loss.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AppliesTo {
     /// Every link.
     All,
-    /// Every link that one of these vehicles transmits or receives on.
+    /// Every link on which one of these vehicles transmits or receives.
     Vehicles(Vec<usize>),
 }
 
 /// The channel as the scenario describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelModel {
-    /// What impaired links do.
+    /// The impairment.
     pub impairment: Impairment,
-    /// Which links those are.
+    /// The links that are impaired.
     pub applies_to: AppliesTo,
 }
 
 impl ChannelModel {
-    /// Whether that link is impaired.
+    /// Whether a link is impaired.
     #[must_use]
     pub fn impairs(&self, link: Link) -> bool {
         match &self.applies_to {

@@ -1,10 +1,10 @@
-//! Kinds of vehicles: a name enters; what is known of such a vehicle leaves, as its unit is told it and as it is; and how
-//! one of them can differ from that.
+//! Kinds of vehicles: a name enters; the figures of such a vehicle leave, those of its unit's configuration and those
+//! of its body; and the ways in which a vehicle can differ from them.
 //!
 //! The figures are round ones of vehicles on European roads. Drag is `½ ρ c_w A` with ρ = 1.2 kg/m³: 0.30 · 2.2 m² for a
 //! car, 0.34 · 4.7 m² for a high van, 0.60 · 8.5 m² for a city bus. Rolling resistance is `c_rr m g`, with 0.010 for car
 //! tyres, 0.011 for a van's and 0.008 for a bus's. Brake force per torque is one over the radius of the wheels.
-//! Passengers who stand decide what a bus may do: 1.2 m/s² and 2.5 m/s³, and 3 m/s² of braking in normal driving.
+//! Standing passengers decide what a bus may do: 1.2 m/s² and 2.5 m/s³, and 3 m/s² of braking in normal driving.
 
 use holdover::Config;
 use holdover::model::Body;
@@ -25,10 +25,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 3] = [Self::Car, Self::Van, Self::Bus];
 
-    /// As scenario files spell it.
+    /// The name in scenario files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -38,13 +38,13 @@ impl Kind {
         }
     }
 
-    /// The kind of that name.
+    /// The kind with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
-    /// Eqs 1 to 3 of it.
+    /// The parameters of eqs 1 to 3.
     #[must_use]
     pub const fn body(self) -> Body {
         match self {
@@ -54,7 +54,7 @@ impl Kind {
         }
     }
 
-    /// What it publishes that it can and will do.
+    /// The published limits.
     #[must_use]
     pub const fn limits(self) -> Limits {
         let (acceleration, braking, jerk, emergency) = match self {
@@ -70,7 +70,7 @@ impl Kind {
         }
     }
 
-    /// Bumper to bumper.
+    /// Length, bumper to bumper.
     #[must_use]
     pub const fn length_m(self) -> f64 {
         match self {
@@ -121,20 +121,20 @@ impl Kind {
     }
 }
 
-/// How the real vehicle and its road differ from what its unit believes.
+/// Differences of the real vehicle and its road from what its unit assumes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Its mass is this many times as much; 0.5 to 2.
+    /// Factor on the mass; 0.5 to 2.
     pub mass_scale: f64,
-    /// The road rises by this share of the way; -0.15 to 0.15.
+    /// Grade of the road, rise per distance; -0.15 to 0.15.
     pub grade: f64,
-    /// Wind against it; -30 to 30 m/s.
+    /// Head wind; -30 to 30 m/s.
     pub headwind_mps: f64,
-    /// The share of the engine's force that can be had; 0.05 to 1.
+    /// Available fraction of the engine's force; 0.05 to 1.
     pub throttle: f64,
 }
 
 impl Difference {
-    /// The vehicle is what its unit believes, on a level road without wind.
+    /// No difference: the vehicle is as its unit assumes, on a level road without wind.
     pub const NONE: Self = Self { mass_scale: 1.0, grade: 0.0, headwind_mps: 0.0, throttle: 1.0 };
 }

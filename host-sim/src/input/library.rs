@@ -1,4 +1,4 @@
-//! The scenarios that come with the program: a name or a path enters, the text of a scenario and what kind it is leave.
+//! The scenarios that come with the program: a name or a path enters; the text of a scenario and its kind leave.
 
 use std::path::{Path, PathBuf};
 
@@ -9,9 +9,9 @@ use crate::error::{Error, quoted};
 /// A scenario that comes with the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// What `run` calls it.
+    /// Its name on the command line.
     pub name: &'static str,
-    /// Its file.
+    /// The text of its file.
     pub text: &'static str,
 }
 
@@ -21,22 +21,22 @@ macro_rules! entries {
     };
 }
 
-/// All of them; the files are in `scenarios/`.
+/// All scenarios of the library; the files are in `scenarios/`.
 pub const LIBRARY: &[Entry] = entries!["paper", "corridor", "motorway", "merge", "stop-and-go", "storm"];
 
-/// What a scenario is of.
+/// The kind of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Vehicles in one string.
+    /// A string of vehicles.
     String,
     /// Roads that cross.
     Corridor,
 }
 
-/// The file of that path, or the scenario of that name: where it is, as errors name it, and its text.
+/// The file at a path, or the scenario of a name: its place, as errors name it, and its text.
 ///
 /// # Errors
-/// Neither is there, or the file is not text.
+/// There is neither, or the file is not text.
 pub fn text(named: &Path) -> Result<(PathBuf, String), Error> {
     match std::fs::read(named) {
         Ok(bytes) => {
@@ -53,12 +53,12 @@ pub fn text(named: &Path) -> Result<(PathBuf, String), Error> {
     }
 }
 
-/// What kind of scenario that text is; that of a string unless it says otherwise.
+/// The kind of a scenario text; a string by default.
 ///
 /// # Errors
-/// It says something else.
+/// The text names an unknown kind.
 pub fn kind(file: &Path, text: &str) -> Result<Kind, Error> {
-    // What is not TOML at all is left to the reader of the scenario, who says where.
+    // Text that is not TOML is left to the reader of the scenario, which reports the line.
     let Ok(table) = DeTable::parse(text) else { return Ok(Kind::String) };
     let Some((key, value)) = table.get_ref().get_key_value("kind") else { return Ok(Kind::String) };
     match value.get_ref() {
@@ -73,7 +73,7 @@ pub fn kind(file: &Path, text: &str) -> Result<Kind, Error> {
     }
 }
 
-/// The list of the scenarios, a line each.
+/// The list of the scenarios, one line each.
 #[must_use]
 pub fn list() -> String {
     let about = |text: &str| {

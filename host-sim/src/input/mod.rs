@@ -1,4 +1,4 @@
-//! What the user gives: files enter; scenarios and recordings that have been checked, or an error with its line, leave.
+//! The user's input: files enter; checked scenarios and recordings leave, or an error with its line.
 
 pub mod impairment;
 pub mod kind;

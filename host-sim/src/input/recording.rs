@@ -1,8 +1,8 @@
 //! Recorded motion and recorded channels: a CSV file enters, checked rows leave.
 //!
-//! Columns are found by their name in the header line, in any order; further columns are ignored, and so are a byte
-//! order mark, CRLF and blank lines. There are no comments. Whatever cannot be used ends with file, line, cause and
-//! remedy ([`Error`]); nothing is repaired silently.
+//! Columns are found by their names in the header line, in any order. Other columns are ignored, and so are a byte
+//! order mark, CRLF and blank lines. There are no comments. An unusable file ends with file, line, cause and remedy
+//! ([`Error`]); nothing is repaired silently.
 
 mod columns;
 
@@ -17,7 +17,8 @@ pub const CHANNEL_COLUMNS: &str = "t_s,delay_s";
 
 const TIME: Column = Column { name: "t_s", unit: "s", limits: -1e12..=1e12 };
 const POSITION: Column = Column { name: "position_m", unit: "m", limits: -1e9..=1e9 };
-/// A vehicle's message ends at 65.534 m/s; a few centimetres per second below zero are a standing car's sensor noise.
+/// The message's range ends at 65.534 m/s. A few centimetres per second below zero are the sensor noise of a standing
+/// car.
 const SPEED: Column = Column { name: "speed_mps", unit: "m/s", limits: -0.5..=65.534 };
 const ACCELERATION: Column = Column { name: "acceleration_mps2", unit: "m/s²", limits: -50.0..=50.0 };
 const DELAY: Column = Column { name: "delay_s", unit: "s", limits: 0.0..=1e6 };
@@ -27,9 +28,9 @@ const DELAY: Column = Column { name: "delay_s", unit: "s", limits: 0.0..=1e6 };
 pub struct MotionRow {
     /// Time on the recording's own clock.
     pub t_s: f64,
-    /// Way along the path.
+    /// Distance along the path.
     pub position_m: f64,
-    /// Speed along the path; as recorded, so noise may take it a little below 0.
+    /// Speed along the path, as recorded: noise may take it a little below 0.
     pub speed_mps: f64,
     /// Acceleration along the path, if the file has it.
     pub acceleration_mps2: Option<f64>,
@@ -41,13 +42,13 @@ pub struct Motion {
     rows: Vec<MotionRow>,
 }
 
-/// Speeds of this long make an acceleration where the file has none, in seconds.
+/// Time over which speeds give an acceleration if the file has none, in seconds.
 const SLOPE_WINDOW_S: f64 = 0.5;
 
-/// Position, speed and acceleration at one time.
+/// The motion at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionState {
-    /// Way along the path.
+    /// Distance along the path.
     pub position_m: f64,
     /// Speed along the path.
     pub speed_mps: f64,
@@ -56,7 +57,7 @@ pub struct MotionState {
 }
 
 impl Motion {
-    /// A drive that was computed: at least two rows, time strictly increasing.
+    /// A drive that was computed: at least two rows, with time strictly increasing.
     pub(crate) fn of(rows: Vec<MotionRow>) -> Self {
         debug_assert!(rows.len() > 1 && rows.windows(2).all(|pair| pair[0].t_s < pair[1].t_s));
         Self { rows }
@@ -65,15 +66,15 @@ impl Motion {
     /// Reads the file.
     ///
     /// # Errors
-    /// See [`Motion::parse`]; and a file that cannot be read.
+    /// The errors of [`Motion::parse`], and a file that cannot be read.
     pub fn read(file: &Path) -> Result<Self, Error> {
         Self::parse(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?)
     }
 
-    /// Reads the bytes of a file; its name is for the errors.
+    /// Reads the bytes of a file; errors name `file`.
     ///
     /// # Errors
-    /// Not text, no rows or only one, a column missing, not a number or out of range, time not increasing.
+    /// Not text, no row or only one, a missing column, not a number or out of range, time not increasing.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Error> {
         let table = Table::parse(file, bytes, MOTION_COLUMNS)?;
         let (t, position, speed) = (table.column(&TIME)?, table.column(&POSITION)?, table.column(&SPEED)?);
@@ -93,7 +94,7 @@ impl Motion {
         Ok(Self { rows })
     }
 
-    /// The samples, in the order of time.
+    /// The samples in the order of time.
     #[must_use]
     pub fn rows(&self) -> &[MotionRow] {
         &self.rows
@@ -111,8 +112,9 @@ impl Motion {
         self.rows[self.rows.len() - 1].t_s
     }
 
-    /// The acceleration that a sender knows at a time: the recorded one of the last sample at or before it; if the file has
-    /// none, the least-squares slope of the speeds of the last 0.5 s, 0 with fewer than 3 samples.
+    /// The acceleration that a sender knows at a time: the recorded one of the last sample at or before it. If the file
+    /// has no accelerations, it is the least-squares slope of the speeds of the last 0.5 s, and 0 with fewer than 3
+    /// samples.
     #[must_use]
     pub fn past_slope(&self, t_s: f64) -> f64 {
         let end = self.rows.partition_point(|row| row.t_s <= t_s);
@@ -120,21 +122,21 @@ impl Motion {
         if let Some(recorded) = newest.acceleration_mps2 {
             return recorded;
         }
-        // The sample at exactly 0.5 s counts, and differences of decimal fractions are exact only nearly.
+        // The sample at exactly 0.5 s counts. Differences of decimal fractions are only nearly exact.
         let from_s = newest.t_s - SLOPE_WINDOW_S - 1e-9;
         let start = self.rows[..end].partition_point(|row| row.t_s < from_s);
         slope(&self.rows[start..end])
     }
 
-    /// From the first sample to the last.
+    /// Time from the first sample to the last.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.end_s() - self.start_s()
     }
 
-    /// The state at a time on the recording's own clock; position and speed are linear between samples. So is the
-    /// acceleration if the file has it; otherwise it is the slope of the speed. Before the first sample it is the
-    /// first, after the last the last; the acceleration there is 0 unless recorded.
+    /// The motion at a time on the recording's own clock. Position and speed are linear between samples. So is the
+    /// acceleration if the file has it; otherwise it is the slope of the speed. Before the first sample the first one
+    /// holds, after the last sample the last one. The acceleration there is 0 unless recorded.
     #[must_use]
     pub fn at(&self, t_s: f64) -> MotionState {
         let next = self.rows.partition_point(|row| row.t_s <= t_s);
@@ -163,31 +165,31 @@ impl Motion {
 /// A message of a recorded channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelRow {
-    /// When it was sent, on the recording's own clock.
+    /// Time of sending, on the recording's own clock.
     pub t_s: f64,
-    /// How long it took; `None`: it was lost.
+    /// Delay; `None`: the message was lost.
     pub delay_s: Option<f64>,
 }
 
-/// A recorded channel: at least one row, time not decreasing (messages may be sent at the same time).
+/// A recorded channel: at least one row, with time not decreasing (messages may be sent at the same time).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTrace {
     rows: Vec<ChannelRow>,
 }
 
 impl ChannelTrace {
-    /// Reads a file of at least two rows: one message is no recording of a channel.
+    /// Reads a file of at least two rows: a single message is not a recording of a channel.
     ///
     /// # Errors
-    /// See [`ChannelTrace::parse`]; only one row; and a file that cannot be read.
+    /// The errors of [`ChannelTrace::parse`], a single row, and a file that cannot be read.
     pub fn read(file: &Path) -> Result<Self, Error> {
         Self::parse_rows(file, &std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?, 2)
     }
 
-    /// Reads the bytes of a file; its name is for the errors.
+    /// Reads the bytes of a file; errors name `file`.
     ///
     /// # Errors
-    /// Not text, no rows, a column missing, not a number or negative, time running backwards.
+    /// Not text, no rows, a missing column, not a number or negative, time decreasing.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Error> {
         Self::parse_rows(file, bytes, 1)
     }
@@ -211,9 +213,9 @@ impl ChannelTrace {
         &self.rows
     }
 
-    /// What becomes of a message sent that long after the start: the delay of the latest row at or before that time,
-    /// counted from the first row; `None`: lost. Past its end the recording starts again from its beginning, one mean
-    /// interval after its last row. A recording of one row is that row for ever.
+    /// The delay of a message that is sent this long after the start: the delay of the latest row at or before that
+    /// time, counted from the first row. `None`: lost. After its end the recording starts again from its beginning, one
+    /// mean interval after its last row. A recording of one row repeats that row for ever.
     #[must_use]
     pub fn delay_at(&self, since_start_s: f64) -> Option<f64> {
         let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);

@@ -1,7 +1,7 @@
-//! Scenario files: TOML enters, a checked scenario or an error with file, line, cause and remedy leaves.
+//! Scenario files: TOML enters; a checked scenario leaves, or an error with file, line, cause and remedy.
 //!
-//! Every key has a default, and the defaults together are the paper's scenario; `scenarios/paper.toml` states and
-//! explains all of them. What stands in a [`Scenario`] has been checked: whoever uses one need not check again.
+//! Every key has a default, and the defaults together are the paper's scenario. `scenarios/paper.toml` states and
+//! explains all keys. The values of a [`Scenario`] have been checked, so its users need not check again.
 
 mod draw;
 pub(crate) mod envelope;
@@ -21,48 +21,51 @@ use crate::input::library;
 use crate::input::recording::Motion;
 use std::path::{Path, PathBuf};
 
-/// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the eight that are nearest.
+/// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the nearest eight.
 pub const MAX_VEHICLES: usize = 11;
 
-/// What happens, to whom, for how long.
+/// A scenario of a string of vehicles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Seed of everything random.
     pub seed: u64,
-    /// Length of the run; 2 s to a day. With a recorded leader at most, and by default, the recording's length.
+    /// Length of the run; 2 s to a day. With a recorded leader it is at most the recording's length, which is also the
+    /// default.
     pub duration_s: f64,
     /// Tick of every unit and step of the plants; 1 ms to 0.1 s.
     pub period_s: f64,
     /// Prediction step `δt` of the core; 1 ms to 1 s.
     pub step_s: f64,
-    /// How often every vehicle sends its messages; 0.1 Hz to one per tick.
+    /// Rate of every vehicle's messages; 0.1 Hz to one per tick.
     pub message_rate_hz: f64,
-    /// What the first vehicle does.
+    /// The leader.
     pub leader: Leader,
-    /// The vehicles in the order of driving; index 0 is the leader and each next one follows the one before. 2 to
-    /// [`MAX_VEHICLES`].
+    /// The vehicles in the order of driving, 2 to [`MAX_VEHICLES`]. Index 0 is the leader; each next vehicle follows
+    /// the one before.
     pub vehicles: Vec<Vehicle>,
-    /// Index of the vehicle that the figures are about; it follows another one, so it is at least 1.
+    /// Index of the vehicle that the figures are about. It follows another vehicle, so the index is at least 1.
     pub ego: usize,
     /// The V2X channel.
     pub channel: ChannelModel,
-    /// The last gate of every unit.
+    /// The envelope of every unit.
     pub envelope: Envelope,
 }
 
-/// What the first vehicle does.
+/// The motion of the leader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Leader {
-    /// Speed that it wants on the free road, `v_∞`; 0 to 65.534 m/s.
+    /// Target speed on the free road, `v_∞`; 0 to 65.534 m/s.
     pub target_speed_mps: f64,
-    /// The speeds that it wants from those times on: `(s, m/s)`, in order of time; empty: always the one above.
+    /// Target speeds from these times on: `(s, m/s)`, in order of time. Empty: always the target speed above.
     pub program: Vec<(f64, f64)>,
-    /// The drive that it follows instead, from its first sample on. A leader on a recording publishes no driving parameters.
+    /// The recorded drive that it replays instead, from its first sample on. Such a leader publishes no driving
+    /// parameters.
     pub motion: Option<Motion>,
 }
 
 impl Leader {
-    /// The speed that its followers want on a free road: its own; behind a recorded drive, more than a road vehicle drives.
+    /// The target speed of its followers on a free road: its own. Behind a recorded drive, more than a road vehicle
+    /// drives.
     #[must_use]
     pub fn followers_target_speed_mps(&self) -> f64 {
         if self.motion.is_some() { 50.0 } else { self.target_speed_mps }
@@ -72,42 +75,42 @@ impl Leader {
 /// A vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
-    /// What its unit is told of its body, and its length and lag unless they are given.
+    /// The kind gives its unit's configuration, and its length and lag unless they are given.
     pub kind: Kind,
     /// Where it starts.
     pub start: Start,
-    /// Speed at the start; 0 to 65.534 m/s. The leader's is the recording's if it drives one.
+    /// Speed at the start; 0 to 65.534 m/s. A leader on a recording starts with the recording's speed.
     pub speed_mps: Span,
-    /// Bumper to bumper, `l`; 0.5 to 40.95 m.
+    /// Length, bumper to bumper, `l`; 0.5 to 40.95 m.
     pub length_m: f64,
-    /// Time constant of its actuators as it publishes it, `T`; 0 to 1.998 s.
+    /// Published time constant of its actuators, `T`; 0 to 1.998 s.
     pub lag_s: f64,
-    /// The time constant that its actuators really have; 0 to 5 s, `lag_s` by default.
+    /// Real time constant of its actuators; 0 to 5 s, `lag_s` by default.
     pub plant_lag_s: f64,
-    /// How its body and its road differ otherwise from what its unit believes.
+    /// Other differences of its body and its road from what its unit assumes.
     pub difference: Difference,
-    /// Time gap that it keeps, `t_g`; 0.1 to 3.995 s.
+    /// Time gap, `t_g`; 0.1 to 3.995 s.
     pub time_gap_s: f64,
-    /// Distance that it keeps at standstill, `s_0`; 0 to 10.23 m.
+    /// Standstill distance, `s_0`; 0 to 10.23 m.
     pub standstill_m: f64,
     /// Share by which it exceeds the speed that it wants on a free road to catch up with the vehicle ahead; 0 to 0.75.
     pub catch_up: f64,
     /// How well it knows its own motion, as it publishes it.
     pub accuracy: Accuracy,
-    /// Its sensor of the vehicle ahead, if it has one.
+    /// Its range sensor for the vehicle ahead, if it has one.
     pub range_sensor: Option<RangeSensor>,
 }
 
-/// Where a vehicle starts. No vehicle can start inside the one ahead of it, whatever is drawn.
+/// Start of a vehicle. Whatever is drawn, no vehicle starts inside the vehicle ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
-    /// With its front bumper at that position of the lane, in metres.
+    /// Position of its front bumper on the lane, in metres.
     Position(Span),
-    /// That far behind the rear bumper of the vehicle ahead, in metres.
+    /// Distance from its front bumper to the rear bumper of the vehicle ahead, in metres.
     Gap(Span),
 }
 
-/// A number, or a range in which one is drawn uniformly; `low <= high`.
+/// A number, or a range from which a number is drawn uniformly; `low <= high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// The smallest value.
@@ -116,7 +119,7 @@ pub struct Span {
     pub high: f64,
 }
 
-/// Where a vehicle really starts, and how fast.
+/// The drawn position and speed of a vehicle at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InitialState {
     /// Front bumper along the lane.
@@ -125,7 +128,7 @@ pub struct InitialState {
     pub speed_mps: f64,
 }
 
-/// What the command line says instead of the scenario file.
+/// The values that the command line sets instead of the scenario file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// `--seed`.
@@ -141,7 +144,8 @@ pub struct Overrides {
 }
 
 impl Scenario {
-    /// The scenario in that file or of that name in the library, or the paper's if there is none, with what the command line says instead.
+    /// The scenario of a file, or of a name in the library, or the paper's if there is no `file`, with the values of
+    /// the command line.
     ///
     /// # Errors
     /// A file that cannot be read, text that is not TOML, unknown keys, wrong types, impossible values.
@@ -155,15 +159,15 @@ impl Scenario {
         Self::parse(&file, &text, overrides)
     }
 
-    /// The scenario in the text of that file; relative paths in it start from the file's folder.
+    /// The scenario in the text of a file. Relative paths in it start from the file's folder.
     ///
     /// # Errors
-    /// As [`Scenario::read`].
+    /// The errors of [`Scenario::read`].
     pub fn parse(file: &Path, text: &str, overrides: &Overrides) -> Result<Self, Error> {
         validate::scenario(file, text, overrides)
     }
 
-    /// The same scenario at another prediction step.
+    /// The same scenario with another prediction step.
     ///
     /// # Errors
     /// A step outside 1 ms to 1 s.
@@ -171,9 +175,8 @@ impl Scenario {
         Ok(Self { step_s: validate::step(step_s)?, ..self.clone() })
     }
 
-    /// Where every vehicle starts, drawn by that seed; the same for the same seed, and each vehicle's own numbers are
-    /// drawn apart from those of the others. A leader without a position starts far enough along the lane for the
-    /// last vehicle to start at 0 or beyond.
+    /// The starts of all vehicles, drawn by a seed; the same for the same seed. Each vehicle has random numbers of its
+    /// own. A leader without a position starts so far along the lane that the last vehicle starts at 0 or beyond.
     #[must_use]
     pub fn initial_states(&self, seed: u64) -> Vec<InitialState> {
         draw::initial_states(self, seed)

@@ -1,4 +1,4 @@
-//! The figures of a run: a trace enters, the figures of merit and why it failed, if it did, leave.
+//! The figures of a run: a trace enters; the figures of merit leave, and the reasons of a failed verdict.
 
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
@@ -32,16 +32,17 @@ impl Errors {
     }
 }
 
-/// The last gate.
+/// The envelope.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnvelopeFigures {
-    /// Whether it was engaged.
+    /// Whether the envelope was engaged.
     pub engaged: bool,
-    /// Share of time in which it changed the command of a vehicle whose link to the one ahead is impaired, 0 to 1.
+    /// Fraction of time in which it changed the command of a vehicle whose link to the vehicle ahead is impaired, 0 to
+    /// 1.
     pub limited_share: f64,
 }
 
-/// Wall-clock figures; everything else is the same for the same seed.
+/// Wall-clock figures. All other figures are the same for the same seed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Timing {
     /// Simulated seconds per second.
@@ -51,28 +52,28 @@ pub struct Timing {
 /// The figures of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// Ours.
+    /// The errors of the unit.
     #[serde(flatten)]
     pub ours: Errors,
-    /// The literal paper's, on the same messages.
+    /// The errors of the literal paper's method, on the same messages.
     pub paper: Errors,
     /// Smallest bumper gap along the virtual lane.
     pub min_gap_m: Option<f64>,
     /// Lowest speed of any vehicle.
     pub min_speed_mps: Option<f64>,
-    /// Full stops of vehicles that a unit drives.
+    /// Full stops of vehicles that are driven by a unit.
     pub full_stops: usize,
     /// Episodes of a bumper gap below 0.
     pub collisions: usize,
     /// Wall-clock figures.
     pub timing: Timing,
-    /// What was certain of the targets.
+    /// The bounds of the targets.
     pub bound: BoundFigures,
-    /// The last gate.
+    /// The envelope.
     pub envelope: EnvelopeFigures,
 }
 
-/// The errors over time, from when they count on: `(time, error)`.
+/// The errors over time, from [`SETTLED_FROM_S`] on: `(time, error)`.
 #[must_use]
 pub fn errors(trace: &Trace, estimates: impl Fn(usize) -> Option<f64>) -> Vec<(f64, f64)> {
     let truth = &trace.vehicles[trace.measured.vehicle];
@@ -80,17 +81,17 @@ pub fn errors(trace: &Trace, estimates: impl Fn(usize) -> Option<f64>) -> Vec<(f
     settled.filter_map(|(tick, at_s)| Some((*at_s, estimates(tick)? - truth[tick].position_m))).collect()
 }
 
-/// Where the follower's unit believes the measured vehicle is, at that tick.
+/// The measured vehicle's position as its follower's unit estimates it, at a tick.
 pub fn ours(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
     |tick| trace.vehicles[trace.measured.by][tick].target.map(|belief| belief.position_m)
 }
 
-/// Where the literal paper believes it is, at that tick.
+/// The measured vehicle's position as the literal paper's method estimates it, at a tick.
 pub fn papers(trace: &Trace) -> impl Fn(usize) -> Option<f64> + '_ {
     |tick| trace.paper.get(tick).copied().flatten()
 }
 
-/// The bumper gap of each vehicle but the first to the one ahead, over time.
+/// For each vehicle but the first: the bumper gap to the vehicle ahead, over time.
 #[must_use]
 pub fn gaps(scenario: &Scenario, trace: &Trace) -> Vec<Vec<(f64, f64)>> {
     let gap = |follower: usize| {
@@ -110,7 +111,7 @@ pub fn speeds(trace: &Trace) -> Vec<Vec<(f64, f64)>> {
     trace.vehicles.iter().map(speeds).collect()
 }
 
-/// The followers whose link to the vehicle ahead is impaired; all, if that is nobody's.
+/// The followers whose link to the vehicle ahead is impaired; all followers, if no such link is impaired.
 #[must_use]
 pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
     let followers = 1..scenario.vehicles.len();
@@ -119,7 +120,7 @@ pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
     if found.is_empty() { followers.collect() } else { found }
 }
 
-/// Share of time in which the envelope changed the command of one of these vehicles, 0 to 1.
+/// Fraction of time in which the envelope changed the command of one of these vehicles, 0 to 1.
 #[must_use]
 pub fn limited_share(trace: &Trace, vehicles: &[usize]) -> f64 {
     let ticks = || vehicles.iter().flat_map(|index| &trace.vehicles[*index]);
@@ -148,7 +149,7 @@ pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Su
     }
 }
 
-/// Why a run failed; empty if it passed.
+/// The reasons why a run failed; empty if it passed.
 #[must_use]
 pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     let mut failures = Vec::new();
@@ -158,8 +159,8 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     if summary.bound.violations > 0 {
         failures.push(format!("{} tick(s) at which a target was outside its bound", summary.bound.violations));
     }
-    // A recorded or programmed leader may stop, and everyone behind it then has to; and stopping in a silence is what the envelope is
-    // for.
+    // A recorded or programmed leader may stop, and then all vehicles behind it have to stop. With the envelope,
+    // stopping in a silence is intended.
     let stops = scenario.leader.program.iter().any(|(_, speed_mps)| *speed_mps < STANDING_BELOW_MPS);
     let may_stop = scenario.leader.motion.is_some() || stops || scenario.envelope.engaged;
     if summary.full_stops > 0 && !may_stop {
@@ -171,7 +172,7 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     failures
 }
 
-/// The name of a mode, as reports spell it.
+/// The name of a mode in reports.
 #[must_use]
 pub const fn mode_name(mode: ModeCode) -> &'static str {
     match mode {

@@ -1,19 +1,19 @@
-//! A decoded message in float64: the core's fixed-point message enters, the same numbers leave as the baselines read
-//! them. Every conversion here is exact, because each of the core's formats fits into a float64.
+//! A decoded message in float64: the core's fixed-point message enters, the same numbers leave for the baselines. Every
+//! conversion is exact, because each of the core's formats fits into a float64.
 
 use holdover::units::Position;
 use holdover::wire::Predecessor;
 use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::motion::Motion;
 
-/// A vehicle's state as a receiver decoded it, with when it was true and when it came.
+/// A vehicle's motion as a receiver decoded it, with its stamp and its time of arrival.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heard {
-    /// When it arrived, in seconds of the run's clock.
+    /// Time of arrival, in seconds of the run's clock.
     pub at_s: f64,
-    /// When it was true, in seconds of the same clock.
+    /// Stamp: when the motion was measured, in seconds of the same clock.
     pub stamp_s: f64,
-    /// Whose state it is.
+    /// Index of the vehicle.
     pub vehicle: usize,
     /// Front bumper along the lane.
     pub position_m: f64,
@@ -23,22 +23,22 @@ pub struct Heard {
     pub acceleration_mps2: f64,
     /// The acceleration last demanded of the actuators.
     pub demand_mps2: f64,
-    /// How the vehicle will drive; `None`: this message says nothing about it, and what was said before still holds.
+    /// The vehicle's driving parameters; `None`: this message has none, and the earlier ones still hold.
     pub parameters: Option<HeardParameters>,
 }
 
-/// The parameters of the law that a vehicle says it drives by; limits are magnitudes.
+/// The driving parameters that a vehicle publishes; limits are magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeardParameters {
-    /// Bumper to bumper, `l`.
+    /// Length, bumper to bumper, `l`.
     pub length_m: f64,
-    /// Distance kept at standstill, `s_0`.
+    /// Standstill distance, `s_0`.
     pub standstill_m: f64,
-    /// It says that it follows nobody.
+    /// Whether it publishes that it follows no vehicle.
     pub leads: bool,
-    /// Whom it follows, as far as the receiver knows that vehicle.
+    /// The vehicle that it follows, if the receiver knows that vehicle.
     pub predecessor: Option<usize>,
-    /// Speed that it wants on a free road, `v_∞`.
+    /// Target speed on a free road, `v_∞`.
     pub target_speed_mps: f64,
     /// Share by which it exceeds that to catch up.
     pub catch_up: f64,
@@ -59,8 +59,8 @@ pub struct HeardParameters {
 }
 
 impl Heard {
-    /// What a decoded motion message says. Its position and stamp stand on the wire modulo their range, so the receiver
-    /// gives them unwrapped, on the clock that `at_s` is read from too.
+    /// The motion of a decoded message. On the wire, position and stamp are modulo their ranges, so the receiver passes
+    /// them unwrapped, on the same clock as `at_s`.
     #[must_use]
     pub fn from_motion(at_s: f64, stamp_s: f64, vehicle: usize, position: Position, motion: &Motion) -> Self {
         Self {
@@ -75,7 +75,7 @@ impl Heard {
         }
     }
 
-    /// The same, with what the vehicle's latest driving parameters message says.
+    /// The same, with the vehicle's latest driving parameters.
     #[must_use]
     pub fn with_parameters(self, parameters: HeardParameters) -> Self {
         Self { parameters: Some(parameters), ..self }
@@ -83,8 +83,8 @@ impl Heard {
 }
 
 impl HeardParameters {
-    /// What a decoded driving parameters message says. It names the predecessor by the hash of its station; which vehicle of the run
-    /// that is, the receiver says.
+    /// The decoded driving parameters. The message names the predecessor by the hash of its station. The receiver
+    /// passes the index of that vehicle.
     #[must_use]
     pub fn from_parameters(parameters: &DrivingParameters, predecessor: Option<usize>) -> Self {
         Self {

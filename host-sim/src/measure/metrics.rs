@@ -1,19 +1,20 @@
-//! Figures of merit: series of samples enter, numbers leave; no state, no output, no units but those named here.
+//! Figures of merit: series of samples enter, numbers leave. There is no state and no output; the units are those named
+//! here.
 //!
 //! Three rules hold throughout. An empty series has no figure (`None`), which is not the same as 0. A sample that is
-//! not a number makes the figure not a number, so it can never pass a limit unseen. Times are compared with a tolerance
+//! not a number makes the figure not a number, so it never passes a limit unseen. Times are compared with a tolerance
 //! of one nanosecond, because a tick's time is a product of a count and a step that binary fractions cannot hold.
 
-/// Errors count from this time of a run on, in seconds: before it the link has not settled.
+/// Errors count from this time of a run on, in seconds. Before it the link has not settled.
 pub const SETTLED_FROM_S: f64 = 1.0;
 
-/// A vehicle slower than this, in m/s, stands.
+/// A vehicle slower than this, in m/s, is at standstill.
 pub const STANDING_BELOW_MPS: f64 = 0.1;
 
-/// A vehicle that stands for this long or longer, in seconds, has made a full stop.
+/// A vehicle at standstill for this time or longer, in seconds, has made a full stop.
 pub const FULL_STOP_FROM_S: f64 = 0.5;
 
-/// The age classes `[from, to)` of an estimate, in seconds; the last one has no end.
+/// The age classes `[from, to)` of an estimate, in seconds. The last class has no end.
 pub const AGE_CLASSES_S: [(f64, f64); 6] =
     [(0.0, 0.1), (0.1, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 5.0), (5.0, f64::INFINITY)];
 
@@ -22,7 +23,7 @@ const TIME_TOLERANCE_S: f64 = 1e-9;
 /// The errors of one class of samples; every figure is `None` where the class is empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ErrorStatistics {
-    /// How many samples the class has.
+    /// Number of samples in the class.
     pub count: usize,
     /// Root of the mean square.
     pub rms: Option<f64>,
@@ -50,14 +51,14 @@ pub fn max_abs(values: &[f64]) -> Option<f64> {
     values.iter().map(|value| value.abs()).reduce(|a, b| if a > b || a.is_nan() { a } else { b })
 }
 
-/// The `percent`-th percentile of the magnitudes by nearest rank: the `⌈percent/100 · n⌉`-th smallest of `n`, the
-/// smallest for 0 or less, the largest for 100 or more. It is always one of the samples, never between two.
+/// The `percent`-th percentile of the magnitudes by nearest rank: the `⌈percent/100 · n⌉`-th smallest of `n`. It is the
+/// smallest for 0 or less, and the largest for 100 or more. It is always one of the samples, never between two.
 pub fn percentile_abs(values: &[f64], percent: f64) -> Option<f64> {
     if values.is_empty() || values.iter().any(|value| value.is_nan()) {
         return values.first().map(|_| f64::NAN);
     }
     let mut magnitudes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    // percent · n before the division: 99 · 100 / 100 is exactly 99, while 0.07 · 100 would be above 7.
+    // The product comes before the division: 99 · 100 / 100 is exactly 99, while 0.07 · 100 would be above 7.
     let rank = (percent * values.len() as f64 / 100.0).ceil().clamp(1.0, values.len() as f64) as usize;
     let (_, magnitude, _) = magnitudes.select_nth_unstable_by(rank - 1, f64::total_cmp);
     Some(*magnitude)
@@ -99,8 +100,8 @@ fn lasts(from: f64, to: f64) -> bool {
     to - from >= FULL_STOP_FROM_S - TIME_TOLERANCE_S
 }
 
-/// Collisions of one pair of vehicles: episodes in which the bumper gap is below 0. Touching at exactly 0 is none.
-/// `gaps` are `(t_s, gap_m)` in order of time.
+/// Collisions of one pair of vehicles: episodes in which the bumper gap is below 0. A gap of exactly 0 is not a
+/// collision. `gaps` are `(t_s, gap_m)` in order of time.
 pub fn collisions(gaps: &[(f64, f64)]) -> usize {
     let overlaps = |gap: f64| gap < 0.0;
     let first = gaps.first().is_some_and(|first| overlaps(first.1));
@@ -117,8 +118,8 @@ pub fn error_statistics_since(samples: &[(f64, f64)], from_s: f64) -> ErrorStati
     ErrorStatistics::of(&errors_since(samples, from_s))
 }
 
-/// The figures of `(age_s, error)` samples in each of [`AGE_CLASSES_S`], whose bounds are taken exactly. An age below 0
-/// (a stamp ahead of the clock) belongs to the first class, an unknown age (not a number) to the last.
+/// The figures of `(age_s, error)` samples in each of [`AGE_CLASSES_S`], whose limits are compared exactly. An age
+/// below 0 (a stamp ahead of the clock) belongs to the first class, an unknown age (not a number) to the last.
 pub fn errors_by_age(samples: &[(f64, f64)]) -> [ErrorStatistics; AGE_CLASSES_S.len()] {
     let mut classes: [Vec<f64>; AGE_CLASSES_S.len()] = Default::default();
     for &(age, error) in samples {
@@ -128,8 +129,8 @@ pub fn errors_by_age(samples: &[(f64, f64)]) -> [ErrorStatistics; AGE_CLASSES_S.
     classes.map(|errors| ErrorStatistics::of(&errors))
 }
 
-/// The figures of `(outage_s, error)` samples for each length in `outages_s`, in that order. A sample belongs to the
-/// length that it names; one of another length is not counted.
+/// The figures of `(outage_s, error)` samples for each length in `outages_s`, in that order. A sample counts for the
+/// length that it names. A sample of a length that is not in `outages_s` is not counted.
 pub fn errors_by_outage(samples: &[(f64, f64)], outages_s: &[f64]) -> Vec<ErrorStatistics> {
     let of_length = |outage: f64| -> Vec<f64> {
         samples.iter().filter(|s| (s.0 - outage).abs() <= TIME_TOLERANCE_S).map(|s| s.1).collect()

@@ -1,4 +1,4 @@
-//! What is made of a run: a trace enters, figures leave; and the other methods and the reference that ours is compared with.
+//! Evaluation of a run: a trace enters, figures leave. The other methods and the float64 reference are here too.
 
 pub mod baseline;
 pub mod figures;

@@ -1,5 +1,5 @@
-//! A listener on a vehicle's bus: the `Peer*` frames that its unit receives enter, the decoded messages in float64, as the
-//! baselines read them, leave. So they get what the unit gets, neither more nor less.
+//! A listener on a vehicle's bus: the `Peer*` frames that its unit receives enter; the decoded messages leave in
+//! float64, for the baselines. So the baselines get exactly the messages that the unit gets.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -25,16 +25,16 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// On a bus whose catalogue starts at `base`.
+    /// A listener on a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
         Self { receiver: Receiver::new(base, Role::Unit), parameters: BTreeMap::new() }
     }
 
-    /// Takes in a frame that was on the bus at `at_s`. Gives a motion that it completes, with the latest driving parameters from the
-    /// same slot. `near` is a position to unwrap positions near.
+    /// Takes in a frame that was on the bus at `at_s`. Returns the motion that it completes, with the latest driving
+    /// parameters of the same slot. `near` is a position near which positions are unwrapped.
     pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
-        let at = Instant::from_micros(gnss(at_s).as_micros()); // which has no times before its start
+        let at = Instant::from_micros(gnss(at_s).as_micros()); // GNSS time has no values before its start
         match self.receiver.receive(at, frame) {
             Ok(Received::Whole(Message::Peer(slot, Said::DrivingParameters(parameters)))) => {
                 let predecessor = match parameters.predecessor {
@@ -75,16 +75,16 @@ impl Tap {
         Self { measured, node: world.vehicles()[measured.by].listen(), observer: Observer::new(BaseId::DEFAULT) }
     }
 
-    /// Whose position is estimated by whom.
+    /// The vehicle whose position is estimated, and the vehicle that estimates it.
     #[must_use]
     pub fn measured(&self) -> Measured {
         self.measured
     }
 
-    /// Hands out what that vehicle's unit has received up to now; vehicles are called as in the world.
+    /// Passes on what that vehicle's unit has received up to now. Vehicles have their indices in the world.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn hear(&mut self, world: &World<'_>, at_s: f64, mut take: impl FnMut(Heard)) -> io::Result<()> {
         let by = &world.vehicles()[self.measured.by];
         let near = metres(world.vehicles()[self.measured.vehicle].plant.position_m);
@@ -97,7 +97,7 @@ impl Tap {
     }
 }
 
-/// The same by other names.
+/// The same message with the exchanged names.
 fn renamed(heard: Heard, alias: Alias) -> Heard {
     let vehicle = |index| index_of(alias.of(station(index))).unwrap_or(index);
     let of_parameters = |parameters: HeardParameters| HeardParameters {

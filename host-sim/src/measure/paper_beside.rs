@@ -1,5 +1,5 @@
-//! The literal paper beside a unit: what that unit receives enters; where the paper believes that the measured vehicle is
-//! goes into the trace.
+//! The literal paper's method beside a unit: the messages that the unit receives enter; the method's estimate of the
+//! measured vehicle's position goes into the trace.
 
 use std::io;
 
@@ -9,7 +9,7 @@ use super::observer::Tap;
 use crate::input::scenario::Scenario;
 use crate::sim::world::{Trace, World};
 
-/// The paper, and its ear on the bus of the measuring vehicle.
+/// The literal paper's method, and its listener on the bus of the measuring vehicle.
 pub struct PaperBeside {
     tap: Tap,
     paper: Paper,
@@ -23,10 +23,10 @@ impl PaperBeside {
         Self { paper: Paper::new(tap.measured().vehicle, scenario.step_s), tap }
     }
 
-    /// Notes what it believes in a tick; after the units have acted in it.
+    /// Records the estimate of a tick. It has to be called after the units have acted in that tick.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn note(&mut self, world: &World<'_>, at_s: f64, trace: &mut Trace) -> io::Result<()> {
         self.tap.hear(world, at_s, |heard| self.paper.hear(&heard))?;
         trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));

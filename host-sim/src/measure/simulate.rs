@@ -1,4 +1,5 @@
-//! A whole run: a scenario and a seed enter; the trace, with the literal paper beside the unit, and its figures leave.
+//! A whole run: a scenario and a seed enter; the trace leaves, with the literal paper's estimates beside the unit's,
+//! and the figures.
 
 use std::io;
 use std::path::Path;
@@ -10,10 +11,10 @@ use crate::error::Error;
 use crate::input::scenario::Scenario;
 use crate::sim::world::{Trace, World};
 
-/// Runs the scenario, with the wall clock around it.
+/// Runs the scenario and measures the wall-clock time.
 ///
 /// # Errors
-/// What a unit finds wrong with the configuration that the scenario gives it.
+/// An error that a unit finds in the configuration from the scenario.
 pub fn simulate(
     scenario: &Scenario,
     seed: u64,

@@ -1,7 +1,7 @@
-//! Text and numbers for HTML and SVG: a value enters, its escaped or rounded spelling leaves.
+//! Text and numbers for HTML and SVG: a value enters; its escaped or rounded text leaves.
 
-/// `text` fit for element content and for quoted attributes, in HTML and in XML alike. Control characters, which XML
-/// cannot carry even escaped, become U+FFFD.
+/// `text`, escaped for element content and for quoted attributes, in HTML and in XML. Control characters become U+FFFD,
+/// because XML cannot carry them even if escaped.
 pub fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -28,7 +28,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    // Rounding first: 0.09996 to three digits is 0.100, one decade up.
+    // Rounding comes first: 0.09996 to three digits is 0.100, one decade higher.
     let scientific = format!("{value:.*e}", digits.saturating_sub(1));
     let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
     let spelled = if (-6..9).contains(&exponent) {
@@ -45,7 +45,7 @@ pub fn quantity(value: f64, unit: &str) -> String {
     format!("{}\u{a0}{unit}", significant(value, 3))
 }
 
-/// A count with its thousands parted: `31,097`.
+/// A count with its thousands separated: `31,097`.
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut parted = String::new();

@@ -1,12 +1,12 @@
-//! The HTML report: results enter, one self-contained page with plots leaves. No script, no font, no image and no
-//! address of anything outside; no time of day, so the same results are the same bytes.
+//! The HTML report: results enter; one self-contained page with plots leaves. The page has no script, no font, no image
+//! and no external address. It has no time of day, so the same results give the same bytes.
 //!
 //! ```text
 //! results -> run, evaluate, sweep -> plot (figures) -> page (tables, prose, style) -> String
 //! ```
 //!
-//! [`plot`] knows axes and shapes but nothing of vehicles; [`page`] knows HTML; [`run`], [`evaluate`] and [`sweep`] say
-//! which figures the report of each command has. Everything is escaped in one place, [`markup`].
+//! [`plot`] draws axes and shapes and does not depend on vehicles. [`page`] writes HTML. [`run`], [`evaluate`] and
+//! [`sweep`] choose the figures of each command's report. [`markup`] is the only place where text is escaped.
 
 pub mod evaluate;
 pub mod markup;

@@ -19,17 +19,17 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Text, on the left.
+    /// Text, aligned left.
     pub fn text(text: impl Into<String>) -> Self {
         Self { text: text.into(), class: "" }
     }
 
-    /// A number, on the right.
+    /// A number, aligned right.
     pub fn number(text: impl Into<String>) -> Self {
         Self { text: text.into(), class: "number" }
     }
 
-    /// A number that matters more than its neighbours.
+    /// A number that is emphasised.
     pub fn strong(text: impl Into<String>) -> Self {
         Self { text: text.into(), class: "number strong" }
     }
@@ -45,7 +45,7 @@ impl Cell {
     }
 }
 
-/// A page that grows from top to bottom.
+/// A page that is built from top to bottom.
 pub struct Page {
     title: String,
     body: String,
@@ -53,13 +53,13 @@ pub struct Page {
 }
 
 impl Page {
-    /// A page called `title`; `kicker` says above it what kind of page this is.
+    /// A page with this title. The `kicker` above it names the kind of page.
     pub fn new(kicker: &str, title: &str) -> Self {
         let body = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
         Self { title: title.into(), body, figures: 0 }
     }
 
-    // Writing to a String cannot fail, so the results of `write!` below carry nothing.
+    // Writing to a String cannot fail, so the results of `write!` below are ignored.
 
     /// The verdict with its reasons.
     pub fn verdict(&mut self, passed: bool, reasons: &[String]) {
@@ -114,7 +114,7 @@ impl Page {
         self.body.push_str("</dl>\n");
     }
 
-    /// A table; the first cell of each row is its heading, and a column is aligned as its cells in the first row are.
+    /// A table. The first cell of each row is its heading. A column is aligned like its cell in the first row.
     pub fn table(&mut self, caption: &str, header: &[&str], rows: &[Vec<Cell>]) {
         let _ = write!(self.body, "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escape(caption));
         for (index, name) in header.iter().enumerate() {
@@ -135,7 +135,7 @@ impl Page {
         self.body.push_str("</tbody></table></div>\n");
     }
 
-    /// A numbered figure of one or more panels, one above the other. `title` names it; `caption` says what one sees.
+    /// A numbered figure of one or more panels, one above the other, with its title and its caption.
     pub fn figure(&mut self, title: &str, caption: &str, panels: &[&dyn Figure]) {
         self.figures += 1;
         let _ = writeln!(self.body, "<figure id=\"figure-{}\">", self.figures);

@@ -1,6 +1,6 @@
 //! The report of a sweep: a row of figures for each prediction step enters, an HTML page leaves.
 //!
-//! But for the section on cost, which is wall time, the same rows are the same bytes.
+//! Except for the section on computing time, which is wall time, the same rows give the same bytes.
 
 use super::{
     markup::{count, quantity, significant},
@@ -20,9 +20,9 @@ const LITERAL: &str = "The literal paper keeps no standstill distance, and knows
 pub struct SweepRow {
     /// Prediction step in seconds.
     pub step_s: f64,
-    /// Our largest error.
+    /// The unit's largest error.
     pub max_ours: Option<f64>,
-    /// Our 99th percentile.
+    /// The unit's 99th percentile.
     pub p99_ours: Option<f64>,
     /// The literal paper's largest error.
     pub max_paper: Option<f64>,
@@ -32,16 +32,16 @@ pub struct SweepRow {
     pub ns_per_tick: f64,
 }
 
-/// Everything that the page of a sweep shows.
+/// The content of the page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SweepReport {
     /// The page's title.
     pub title: String,
-    /// What was run: names and values.
+    /// The settings of the sweep: names and values.
     pub facts: Vec<(String, String)>,
     /// The verdict.
     pub verdict: Verdict,
-    /// The command line that makes this sweep again.
+    /// The command line that repeats this sweep.
     pub command: String,
     /// The rows, in any order of their steps.
     pub rows: Vec<SweepRow>,
@@ -100,7 +100,7 @@ fn errors_figure(page: &mut Page, rows: &[SweepRow]) {
     };
     let mut largest = chart("Largest position error", "largest error", |row| row.max_ours, |row| row.max_paper);
     let mark = |name: &str, point: (f64, f64)| {
-        // A line of one point is its dot; its label stands beside it.
+        // A line of one point is a dot, with its label beside it.
         Layer::Line { series: Series::new(name, [point]), tone: Tone::Other(1), marked: true }
     };
     let [fine, coarse] = PUBLISHED;

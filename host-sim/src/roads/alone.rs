@@ -1,12 +1,16 @@
-//! The reference that drives alone when the link to its target is lost: what is on the roads enters, the acceleration leaves.
+//! The reference that drives alone while the link to its target is lost: the vehicles on the roads enter, the
+//! acceleration leaves.
 //!
-//! On its own road it has an ideal range sensor and an adaptive cruise control, the Intelligent Driver Model with the traffic's
-//! time gap. Nobody can be seen on a crossing road, so it stops before the conflict area of the next intersection and waits
-//! there until it hears again; unless it can no longer stop there.
+//! On its own road the vehicle has an ideal range sensor and an adaptive cruise control: the Intelligent Driver Model
+//! with the traffic's time gap. It sees no vehicle on a crossing road. So it stops before the conflict area of the next
+//! intersection and waits there until it hears again, unless it can no longer stop there.
 //!
-//! It minds whoever is just ahead of it in the order and whoever is just ahead on its leg, followed or not: far behind both it
-//! follows nobody, and would still have to give way to one that it does not hear. If only the link to the one on its leg is
-//! lost, it gives way to the other as its unit does, which also follows the estimate of the one that it does not hear: that can
+//! It watches the links to two vehicles, whether it follows them or not: the one just ahead in the order, and the one
+//! just ahead on its leg. Far behind both it follows no vehicle, but it still has to yield to a vehicle that it does
+//! not hear.
+//!
+//! If only the link to the vehicle on its leg is lost, it yields to the crossing vehicle as its unit does. The unit
+//! also follows its estimate of the silent vehicle, which can only slow the vehicle down.
 //! only slow it down.
 
 use holdover::controller::Mode;
@@ -23,37 +27,38 @@ use crate::sim::vehicle::Unit;
 const ACCELERATION_MPS2: f64 = 1.5;
 /// Comfortable braking of the model.
 const BRAKING_MPS2: f64 = 2.0;
-/// Who would have to brake harder than this to stop before the conflict area goes on.
+/// A vehicle that would have to brake harder than this to stop before the conflict area goes on.
 const HARDEST_MPS2: f64 = 4.0;
-/// Nobody brakes harder than a bus can.
+/// Hardest braking of every vehicle: that of a bus.
 const EMERGENCY_MPS2: f64 = 6.0;
 /// How far before the conflict area the stop line is.
 const LINE_M: f64 = 1.0;
 
-/// To whom the link is lost.
+/// The vehicles to which the link is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lost {
-    /// Whoever is just ahead on the same leg.
+    /// The vehicle just ahead on the same leg.
     pub lane: bool,
-    /// Whoever is just ahead in the order, and comes by a crossing leg.
+    /// The vehicle just ahead in the order, if it comes by a crossing leg.
     pub crossing: bool,
 }
 
 impl Lost {
-    /// By what a unit knows; `None` while it hears both.
+    /// The lost links by what a unit knows; `None` while it hears both vehicles.
     #[must_use]
     pub fn of(unit: &Unit, now: Instant) -> Option<Self> {
         let (choice, limits) = (unit.coordination().choice(), &unit.config().link);
         let is_off = |slot: u8| unit.peers().get(slot.into()).is_some_and(|track| !track.link().is_on(now, limits));
         let lane = choice.lane.is_some_and(is_off);
         let crossing = choice.order.filter(|order| choice.lane != Some(*order)).is_some_and(is_off);
-        // Whatever else keeps a unit from cooperating, nothing is known then of those who cross.
+        // If another cause keeps the unit from cooperating, it knows nothing of crossing vehicles.
         let crossing = crossing || !lane && unit.mode() != Mode::Cooperative;
         (lane || crossing).then_some(Self { lane, crossing })
     }
 }
 
-/// The acceleration that it wants, on its own leg by sight; it stops at the line if it `waits` for those who cross.
+/// The acceleration that the reference demands by sight on its own leg. It stops at the line if it `waits` for crossing
+/// vehicles.
 #[must_use]
 pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic, waits: bool) -> f64 {
     let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
@@ -75,14 +80,15 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
     (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
 }
 
-/// The acceleration of one that drives by sight, but where it hears one that it gives way to no more than its unit asks for.
+/// The acceleration of a vehicle that drives by sight. If it hears a crossing vehicle that it yields to, it accelerates
+/// no more than its unit demands.
 #[must_use]
 pub fn still_given_way(lost: Lost, choice: &Choice, by_sight: f64, by_unit: f64) -> f64 {
     let hears_one_that_crosses = !lost.crossing && choice.order.is_some() && choice.order != choice.lane;
     if hears_one_that_crosses { by_sight.min(by_unit) } else { by_sight }
 }
 
-/// The same within what a vehicle has published that it can do, by which others know what is certain of it.
+/// The acceleration, limited to the vehicle's published limits, by which other vehicles compute its bound.
 #[must_use]
 pub fn published(wanted_mps2: f64, kind: Kind) -> f64 {
     let [braking, acceleration] =
@@ -90,7 +96,7 @@ pub fn published(wanted_mps2: f64, kind: Kind) -> f64 {
     wanted_mps2.clamp(-braking, acceleration)
 }
 
-/// The way to the stop line of the next intersection, if it can still stop there.
+/// The distance to the stop line of the next intersection, if the vehicle can still stop there.
 fn to_stop_line(own: &Sighting, network: &Network) -> Option<f64> {
     let lines = network.lanes[own.road]
         .stops
@@ -127,7 +133,7 @@ mod tests {
         let own = |before_m: f64| example::sighting(0, 0, line_m - before_m);
         let wanted = |before_m, waits| demand(&own(before_m), &[], &network, &corridor.traffic, waits);
         assert!(wanted(30.0, true) < -1.0 && wanted(30.0, false) > 0.0, "{}", wanted(30.0, true));
-        // From 10 m/s with 4 m/s² it takes 12.5 m to stop.
+        // From 10 m/s, stopping at 4 m/s² takes 12.5 m.
         assert!(wanted(12.6, true) < -3.0);
         assert_eq!(wanted(12.4, true), wanted(12.4, false));
         let ahead = Sighting { way_m: line_m - 10.0, speed_mps: 0.0, trip: 1, ..own(0.0) };

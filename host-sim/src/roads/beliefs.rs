@@ -1,10 +1,13 @@
-//! How right the units are about their targets: who is where and what the units believe enter, tick by tick; position errors
-//! on the virtual lane leave, in two classes.
+//! The accuracy of the units' target estimates: true places and estimates enter, tick by tick; position errors on the
+//! virtual lane leave, in two classes.
 //!
-//! A target's true place on the virtual lane is its own bumper if it drives on the same road, and otherwise as far before the
-//! crossing point as it is on its road. When a target's own association changes, what it will do changes with it, and
-//! who heard it before knows only what it has announced: for [`CHANGED_S`] from then on the errors stand apart. Those later on of a
-//! unit that has still heard nothing from the target since count, and are shown apart besides.
+//! If a target drives on the same road, its true place on the virtual lane is its front bumper. Otherwise it is as far
+//! before the crossing point as the target is on its own road.
+//!
+//! When a target begins to follow another vehicle, its future motion changes, and a vehicle that heard it before that
+//! knows only its announced motion. So errors of the first second after such a change ([`CHANGED_S`]) are a class of
+//! their own. Errors after that second count as settled. Those of a unit that has still heard nothing from the target
+//! since the change count as settled, and are also shown separately.
 
 use std::collections::BTreeMap;
 
@@ -13,18 +16,18 @@ use holdover::wire::StationHash;
 use super::network::Network;
 use super::watch::{Sighting, Watch};
 
-/// For so long after a target's own association has changed, errors stand apart.
+/// For this time after a target's own association has changed, errors are a class of their own.
 pub const CHANGED_S: f64 = 1.0;
 
-/// An error that is worth a second look, in metres.
+/// Settled errors beyond this, in metres, are listed.
 pub const BEYOND_M: f64 = 0.2;
 
 /// Errors of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Class {
-    /// Ticks.
+    /// Number of ticks.
     pub count: u64,
-    /// Largest magnitude, and when and whose it was.
+    /// The error of the largest magnitude.
     pub worst: Option<Worst>,
     /// Sum of the squares.
     pub squares: f64,
@@ -33,15 +36,15 @@ pub struct Class {
 /// The largest error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
-    /// With its sign: believed minus true.
+    /// Estimated minus true position.
     pub error_m: f64,
-    /// When.
+    /// Time of the error.
     pub at_s: f64,
-    /// Whose unit believed so.
+    /// Trip of the vehicle whose unit was wrong.
     pub by: usize,
-    /// Of whom.
+    /// Trip of the target.
     pub target: usize,
-    /// How old what it had heard was.
+    /// Age of the unit's newest sample of the target.
     pub age_s: f64,
 }
 
@@ -66,7 +69,7 @@ impl Class {
         (self.count > 0).then(|| (self.squares / self.count as f64).sqrt())
     }
 
-    /// Two classes together.
+    /// The errors of two classes together.
     #[must_use]
     pub fn with(self, other: Self) -> Self {
         let worst = [self.worst, other.worst].into_iter().flatten();
@@ -78,20 +81,20 @@ impl Class {
     }
 }
 
-/// The classes.
+/// The errors of all units.
 pub struct Beliefs<'a> {
     network: &'a Network,
-    /// The target's own association has not changed of late.
+    /// Errors while the target's own association has not changed within [`CHANGED_S`].
     pub settled: Class,
-    /// It has changed within the last [`CHANGED_S`].
+    /// Errors within [`CHANGED_S`] after such a change.
     pub changing: Class,
-    /// Of the first class: it has changed before that, and nothing has been heard from the target since.
+    /// The part of the settled errors where nothing has been heard from the target since its association changed.
     pub unheard: Class,
-    /// For each unit and target whose error was in the first class and beyond [`BEYOND_M`], the largest.
+    /// The largest error of each unit and target whose settled error was beyond [`BEYOND_M`].
     pub beyond: BTreeMap<(usize, usize), Worst>,
-    /// Changes of whom somebody follows.
+    /// Number of changes of association, of all units.
     pub changes: u64,
-    /// Ticks at which what is certain did not hold the truth; in the first of the classes.
+    /// Number of ticks at which the bound did not contain the true motion, in both classes.
     pub violations: u64,
     /// Errors over time of the unit that is watched: `(time, error)`.
     pub watched: Vec<(f64, f64)>,
@@ -100,7 +103,7 @@ pub struct Beliefs<'a> {
 }
 
 impl<'a> Beliefs<'a> {
-    /// Nothing is known yet; errors over time are kept of the unit of that trip.
+    /// No errors yet. The errors over time are recorded for the unit of the trip `watch`.
     #[must_use]
     pub fn new(network: &'a Network, watch: Option<usize>) -> Self {
         Self {
@@ -117,14 +120,14 @@ impl<'a> Beliefs<'a> {
         }
     }
 
-    /// Where a target truly is, on the axis of the way of the one that follows it.
+    /// The true position of a target, on the axis of the follower's way.
     fn truth(&self, own: &Sighting, target: &Sighting) -> Option<f64> {
         if own.road == target.road {
             return Some(target.way_m);
         }
         let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
-        // The two directions of a street share several intersections, and so several virtual lanes: it is about that of the
-        // one that the ego's unit takes for its next.
+        // The two directions of a street share several intersections, so there are several virtual lanes. This is the
+        // virtual lane of the intersection that the ego's unit takes for its next.
         let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
         let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
         Some(here.at_m - there.at_m + target.way_m)
@@ -142,7 +145,7 @@ impl Watch for Beliefs<'_> {
         }
         for own in sightings {
             let (Some(belief), Some(followed)) = (own.belief, own.followed) else { continue };
-            // A target that has left is not looked at any more.
+            // A target that has left is no longer evaluated.
             let Some(target) = sightings.iter().find(|other| other.station == followed) else { continue };
             let Some(truth_m) = self.truth(own, target) else { continue };
             let error_m = belief.position_m - own.odometer_m - truth_m;
@@ -188,9 +191,9 @@ mod tests {
         Sighting { odometer_m: 500.0, ..example::sighting(trip, road, way_m) }
     }
 
-    /// Ticks at which the bound did not hold the truth, of a unit on the one direction of a street that takes its stop of that
-    /// number for the next, while its rear has just left the third; it follows one that comes the other way and is 10 m
-    /// before the third, and is right about that.
+    /// Number of ticks at which the bound did not contain the true motion. The unit drives in one direction of a
+    /// street. Its rear has just left the third intersection, and it takes the stop of this number for its next. Its
+    /// target comes from the other direction, 10 m before the third intersection, and the estimate of it is right.
     fn violations_with_next(stop: usize) -> u64 {
         let network = Network::of(&example::corridor());
         let (own_lane, lane) = (&network.lanes[0], &network.lanes[1]);
@@ -220,8 +223,8 @@ mod tests {
         assert_eq!(violations_with_next(3), 1);
     }
 
-    /// What becomes of an error at that time, in metres, about a target that began to follow somebody else at 10 s, by a unit
-    /// on the same road that heard from it so long before.
+    /// The classes of errors given as time, error in metres, and age of the newest sample. The unit drives on the same
+    /// road as its target, and the target begins to follow another vehicle at 10 s.
     fn judged(errors: &[(f64, f64, f64)]) -> Judged {
         let network = Network::of(&example::corridor());
         let mut beliefs = Beliefs::new(&network, Some(0));
@@ -253,7 +256,7 @@ mod tests {
     }
 
     struct Judged {
-        /// Settled, changing, unheard.
+        /// Counts of settled, changing and unheard errors.
         counts: [u64; 3],
         beyond: Vec<((usize, usize), f64)>,
         settled: Class,

@@ -1,5 +1,5 @@
-//! What is varied between runs of the same trips: a description enters; the conditions of a run, and under them the
-//! configuration of a vehicle's unit, leave.
+//! The conditions that vary between runs of the same trips: a description enters; the conditions of a run leave, and
+//! under them the configuration of a vehicle's unit.
 
 use holdover::Config;
 
@@ -10,34 +10,34 @@ use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, s
 use crate::sim::station::station;
 use crate::sim::world::horizon;
 
-/// What is done when the link to whoever is just ahead is lost.
+/// What a vehicle does when the link to a vehicle just ahead is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhenLost {
-    /// What the unit does: it goes by its estimate.
+    /// The unit drives by its estimate.
     Holdover,
-    /// The vehicle drives alone, [`alone`](super::alone).
+    /// The vehicle drives alone; see [`alone`](super::alone).
     Alone,
 }
 
-/// What is varied between runs of the same trips.
+/// The conditions of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// The links.
     pub radio: Radio,
-    /// How vehicles differ from what they publish.
+    /// Differences of the vehicles from what they publish.
     pub wrong: Wrong,
-    /// The last gate.
+    /// The envelope of every unit.
     pub envelope: Envelope,
-    /// The reference drives otherwise.
+    /// What a vehicle does when a link is lost: holdover, or the reference.
     pub when_lost: WhenLost,
     /// Prediction step.
     pub step_s: f64,
-    /// How many peers a unit has slots for.
+    /// Number of peer slots of a unit.
     pub slots: usize,
 }
 
 impl Conditions {
-    /// As the scenario says.
+    /// The conditions of the scenario.
     #[must_use]
     pub fn of(corridor: &Corridor) -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Conditions {
     }
 }
 
-/// The configuration of the unit of the vehicle with that station's number.
+/// The configuration of the unit of a vehicle, by the number of its station.
 #[must_use]
 pub fn config(corridor: &Corridor, conditions: &Conditions, number: usize, kind: Kind) -> Config {
     let traffic = &corridor.traffic;

@@ -1,5 +1,5 @@
-//! What the tests of a corridor begin with: nothing, or a file's text, enters; the corridor that comes with the program, or the
-//! text's, and a plain sighting of a vehicle, leave.
+//! Inputs of the tests of a corridor: the corridor that comes with the program, the corridor of a text, and a plain
+//! sighting of a vehicle.
 
 use std::path::Path;
 
@@ -8,20 +8,20 @@ use super::read;
 use super::watch::Sighting;
 use crate::sim::station::station;
 
-/// The file that comes with the program.
+/// The scenario file that comes with the program.
 pub const TEXT: &str = include_str!("../../scenarios/corridor.toml");
 
-/// The corridor of a file.
+/// The corridor of a scenario text.
 pub fn of(text: &str) -> Corridor {
     read::corridor(Path::new("corridor.toml"), text, &Default::default()).expect("a corridor")
 }
 
-/// The one that comes with the program.
+/// The corridor that comes with the program.
 pub fn corridor() -> Corridor {
     of(TEXT)
 }
 
-/// A car there at 10 m/s that follows nobody.
+/// A car at `way_m` on a road, at 10 m/s, without a target.
 pub fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
     Sighting {
         trip,

@@ -1,5 +1,5 @@
-//! What is run on a corridor: a description and seeds enter; the runs of every seed under every condition leave, in parallel
-//! and in an order that does not depend on how many threads there are.
+//! The runs on a corridor: a description and seeds enter; the runs of every seed under every condition leave. The runs
+//! are parallel, and their order does not depend on the number of threads.
 
 use std::io;
 
@@ -20,23 +20,23 @@ use crate::error::Error;
 use crate::input::scenario::Envelope;
 use crate::parallel;
 
-/// Prediction steps of the figures over `δt`.
+/// The prediction steps of the study over `δt`.
 pub const STEPS_S: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
 
-/// The figures over `δt` and over what is wrong are of so many seconds of arrivals of the first seed.
+/// The studies over `δt` and over the differences use this many seconds of arrivals, of the first seed.
 pub const EXCERPT_S: f64 = 180.0;
 
-/// The figures of all seeds, beside the references. Each side is what it is called, whether the scenario engages the envelope
-/// or not.
+/// The figures of all seeds, beside the references. Each side keeps its meaning, whether or not the scenario engages
+/// the envelope.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Sides {
-    /// As the scenario says, without the envelope.
+    /// The scenario, without the envelope.
     pub holdover: Side,
-    /// The same with a link without delay, loss and silence.
+    /// The same with links without delay, loss and silence.
     pub perfect_link: Side,
-    /// The same with vehicles that drive alone while the link to whoever is just ahead is lost.
+    /// The same with vehicles that drive alone while the link to the vehicle just ahead is lost.
     pub alone: Side,
-    /// As the scenario says, with the envelope.
+    /// The scenario, with the envelope.
     pub envelope: Side,
 }
 
@@ -46,12 +46,12 @@ pub struct Experiment {
     pub corridor: Corridor,
     /// Its roads.
     pub network: Network,
-    /// The way of each road through its intersections, as the units have it.
+    /// For each road, the way through its intersections, as the units have it.
     pub itineraries: Vec<&'static Itinerary>,
 }
 
 impl Experiment {
-    /// Of a description that was checked.
+    /// The experiment on a checked description.
     #[must_use]
     pub fn new(corridor: Corridor) -> Self {
         let network = Network::of(&corridor);
@@ -59,7 +59,7 @@ impl Experiment {
         Self { corridor, network, itineraries }
     }
 
-    /// The trips of a seed, and the ego's among them.
+    /// The trips of a seed, and the index of the ego's trip.
     #[must_use]
     pub fn trips(&self, seed: u64) -> (Vec<Trip>, Option<usize>) {
         let trips = trips(&self.corridor, &self.network, seed);
@@ -93,7 +93,7 @@ impl Experiment {
         Ok(Outcome::of(seed, &referee, &beliefs, remains))
     }
 
-    /// The runs of all seeds, beside the references; `done` is called after each.
+    /// The runs of all seeds, beside the references. `done` is called after each run.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
@@ -106,7 +106,7 @@ impl Experiment {
         Ok(Sides { holdover: side(0), perfect_link: side(1), alone: side(2), envelope: side(3) })
     }
 
-    /// How the errors grow with what is wrong.
+    /// The errors under each difference between a vehicle and what its unit assumes.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
@@ -131,7 +131,7 @@ impl Experiment {
         Ok(wrongs.iter().zip(&outcomes).map(row).collect())
     }
 
-    /// How the errors grow with the prediction step, and the ego's journal at each.
+    /// The errors at each prediction step, with the ego's journal.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
@@ -148,7 +148,7 @@ impl Experiment {
         parallel::each(&STEPS_S, one).into_iter().collect()
     }
 
-    /// The configuration and the way of the ego's unit, for measuring what it costs.
+    /// The configuration and the way of the ego's unit, to measure its computing time.
     #[must_use]
     pub fn ego_unit(&self, seed: u64, step_s: f64) -> Option<(holdover::Config, &'static Itinerary)> {
         let (trips, ego) = self.excerpt().trips(seed);
@@ -158,13 +158,13 @@ impl Experiment {
         Some((config, self.itineraries[trip.road]))
     }
 
-    /// The same roads with another traffic.
+    /// The same roads with other traffic.
     #[must_use]
     pub fn of(&self, corridor: Corridor) -> Self {
         Self { corridor, network: self.network.clone(), itineraries: self.itineraries.clone() }
     }
 
-    /// The same with no more arrivals than an excerpt has.
+    /// The same experiment with no more arrivals than an excerpt has.
     fn excerpt(&self) -> Self {
         let duration_s = self.corridor.duration_s.min(EXCERPT_S);
         self.of(Corridor { duration_s, ..self.corridor.clone() })
@@ -189,7 +189,8 @@ fn four(corridor: &Corridor) -> [Conditions; 4] {
     [without, perfect_link, Conditions { when_lost: WhenLost::Alone, ..without }, with]
 }
 
-/// What the units refuse; nothing, as long as whatever a file may say is something that they take.
+/// The error for a configuration that the units refuse. It does not occur as long as the units accept every value that
+/// a file may have.
 pub fn refused(error: io::Error) -> Error {
     Error::new(error.to_string(), "report this with the scenario")
 }

@@ -1,5 +1,5 @@
-//! The figures of a corridor: what the referee and the beliefs of runs say enters, the figures of all seeds together and why
-//! they fail, if they do, leave.
+//! The figures of a corridor: the results of the referee and of the estimates enter; the figures of all seeds together
+//! leave, and the reasons of a failed verdict.
 
 use serde::Serialize;
 
@@ -12,34 +12,34 @@ use super::traffic::Remains;
 pub struct Outcome {
     /// The seed.
     pub seed: u64,
-    /// Travel times of those who have left.
+    /// Travel times of the vehicles that have left.
     pub travel_times_s: Vec<f64>,
     /// Full stops.
     pub full_stops: usize,
-    /// Collisions on a road, and in a conflict area.
+    /// Collisions on roads, and in conflict areas.
     pub collisions: [usize; 2],
-    /// As the referee has them.
+    /// Smallest bumper gap on a road, as the referee measured it.
     pub smallest_gap_m: Option<f64>,
-    /// As the referee has them.
+    /// Shortest clearance of a conflict area, as the referee measured it.
     pub smallest_clearance_s: Option<f64>,
-    /// As the referee has them.
+    /// Lowest speed of any vehicle, as the referee measured it.
     pub lowest_speed_mps: Option<f64>,
     /// Ticks of all vehicles, and those at which an envelope changed the command.
     pub ticks: [u64; 2],
-    /// Errors: settled, within a second of a change, and of the settled ones those unheard since.
+    /// Errors: settled; within a second of a change; and those settled ones where nothing was heard since the change.
     pub errors: [Class; 3],
-    /// Pairs of a unit and its target whose settled error was beyond 0.2 m.
+    /// Pairs of a unit and its target with a settled error beyond 0.2 m.
     pub beyond: usize,
     /// Changes of association.
     pub changes: u64,
-    /// Ticks outside the bound.
+    /// Ticks at which a target was outside its bound.
     pub violations: u64,
-    /// What is left.
+    /// The counts at the end of the run.
     pub remains: Remains,
 }
 
 impl Outcome {
-    /// Of a run that is over.
+    /// The result of a run that has ended.
     #[must_use]
     pub fn of(seed: u64, referee: &Referee, beliefs: &Beliefs, remains: Remains) -> Self {
         let on_roads = referee.collisions.iter().filter(|one| matches!(one.place, Place::Road(_))).count();
@@ -81,50 +81,50 @@ impl From<Class> for ErrorFigures {
 /// The figures of all seeds together, under one condition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Side {
-    /// Vehicles that have driven to the end of their way.
+    /// Vehicles that reached the end of their way.
     pub served: usize,
-    /// Vehicles that had not when the run was given up.
+    /// Vehicles that had not reached it when the run was stopped.
     pub unserved: usize,
     /// Bumper gaps below 0 on a road.
     pub collisions_on_roads: usize,
-    /// Two in one conflict area, on ways that cross.
+    /// Two vehicles in one conflict area, on crossing ways.
     pub collisions_at_intersections: usize,
     /// Full stops.
     pub full_stops: usize,
     /// Mean travel time, from the arrival on.
     pub mean_travel_time_s: Option<f64>,
-    /// Longest.
+    /// Longest travel time.
     pub longest_travel_time_s: Option<f64>,
     /// Smallest bumper gap on a road.
     pub smallest_gap_m: Option<f64>,
-    /// Shortest time from one leaving a conflict area to the next one entering it.
+    /// Shortest time from when one vehicle leaves a conflict area to when the next one enters it.
     pub smallest_clearance_s: Option<f64>,
-    /// Lowest speed of anyone.
+    /// Lowest speed of any vehicle.
     pub lowest_speed_mps: Option<f64>,
-    /// Errors of the target's position, where its own association has not changed within a second.
+    /// Errors of the target's position, while its own association has not changed within a second.
     pub position_error: ErrorFigures,
-    /// Where it has.
+    /// Errors within a second after such a change.
     pub position_error_after_change: ErrorFigures,
-    /// Where it has before, and nothing has been heard from it since.
+    /// Errors later than a second after a change, while nothing has been heard from the target since it.
     pub position_error_unheard: ErrorFigures,
-    /// Pairs of a unit and its target whose error in the first of these classes was beyond 0.2 m.
+    /// Pairs of a unit and its target with an error beyond 0.2 m in `position_error`.
     pub pairs_beyond: usize,
     /// Changes of association.
     pub association_changes: u64,
     /// Ticks at which a target was outside its bound.
     pub bound_violations: u64,
-    /// Share of time in which an envelope changed the command.
+    /// Fraction of time in which an envelope changed the command.
     pub limited_share: f64,
-    /// Times that a unit gave way to one that did not heed it.
+    /// Number of times that a unit yielded to a vehicle that did not heed it.
     pub order_disagreements: u64,
-    /// Everything that units refused, these included.
+    /// All refusals of the units, these included.
     pub refusals: u64,
-    /// Messages that found no slot.
+    /// Messages that found no slot in a modem.
     pub turned_away: u64,
 }
 
 impl Side {
-    /// Of the runs of all seeds, in their order.
+    /// The figures of the runs of all seeds, in their order.
     #[must_use]
     pub fn of(outcomes: &[&Outcome]) -> Self {
         let all = || outcomes.iter().copied();
@@ -157,17 +157,17 @@ impl Side {
         }
     }
 
-    /// Collisions of both kinds.
+    /// Collisions on roads and in conflict areas together.
     #[must_use]
     pub fn collisions(&self) -> usize {
         self.collisions_on_roads + self.collisions_at_intersections
     }
 }
 
-/// The largest error under something wrong.
+/// The figures under one difference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WrongRow {
-    /// What is wrong.
+    /// The difference.
     pub what: String,
     /// The figures.
     #[serde(flatten)]

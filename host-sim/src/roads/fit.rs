@@ -1,5 +1,5 @@
-//! Whether the roads and intersections of a description fit together: it enters; what does not fit, of which of them, with cause
-//! and remedy, leaves. What fits, the units take as their map.
+//! The check that the roads and intersections of a description fit together: the description enters; the first misfit
+//! leaves, with its part, cause and remedy. The units accept a description without a misfit as their map.
 
 use holdover::coordination::map::LEGS;
 
@@ -7,11 +7,11 @@ use super::description::Corridor;
 use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, cross};
 use crate::sim::globe::Shift;
 
-/// Ways that do not cross lie at least so far apart, in metres: as wide as a bus is.
+/// Least distance between ways that do not cross, in metres: the width of a bus.
 const LEAST_APART_M: f64 = 2.5;
 
-/// Ways are compared at places so far apart, in metres. Two that meet at less than an angle at which they cross are within
-/// [`LEAST_APART_M`] of one another for more than that.
+/// Distance between the places at which ways are compared, in metres. Two ways that meet at too small an angle for a
+/// crossing are within [`LEAST_APART_M`] of one another for longer than this.
 const EVERY_M: f64 = 5.0;
 
 /// A part of a description, by its number.
@@ -26,11 +26,11 @@ pub enum Part {
 /// What does not fit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Misfit {
-    /// What is to be changed.
+    /// The part to change.
     pub part: Part,
-    /// Why it does not fit.
+    /// The cause.
     pub cause: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: String,
 }
 
@@ -40,8 +40,8 @@ impl Misfit {
     }
 }
 
-/// That every road has an intersection and room before and after, that every intersection has a road and not too many, and
-/// that neither conflict areas nor roads lie on one another.
+/// Checks a description. Every road needs an intersection, and room before and after it. Every intersection needs a
+/// road, and not too many. Neither conflict areas nor roads may overlap.
 ///
 /// # Errors
 /// The first thing that does not fit.
@@ -90,7 +90,7 @@ fn intersection(corridor: &Corridor, network: &Network, place: usize) -> Result<
     Ok(())
 }
 
-/// The intersections of a road lie one behind the other.
+/// Checks that the conflict areas on a road do not overlap.
 fn areas(corridor: &Corridor, road: usize, lane: &Lane) -> Result<(), Misfit> {
     for pair in lane.stops.windows(2) {
         let [first, second] = [&pair[0], &pair[1]].map(|stop| &corridor.intersections[stop.intersection]);
@@ -111,7 +111,7 @@ fn overlap(part: Part, [a, b]: [&String; 2], apart_m: f64, least_m: f64, along: 
     Misfit::new(part, cause, "move one of them, or give both a smaller `half_m`")
 }
 
-/// Vehicles of two roads do not drive on the same ground but where the roads cross.
+/// Checks that vehicles of two roads share ground only where the roads cross.
 fn apart(corridor: &Corridor, (road, lane): (usize, &Lane), (other, others): (usize, &Lane)) -> Result<(), Misfit> {
     let shared_m = |way_m: f64| {
         let (place, heading_deg) = lane.road.at(way_m);
@@ -135,7 +135,7 @@ mod tests {
 
     use crate::roads::read::corridor;
 
-    /// Ten lines: two roads that cross in the middle of the first, and the intersection there.
+    /// A map of ten lines: two roads that cross in the middle of the first, and the intersection there.
     const MAP: &str = "kind = \"corridor\"
 [[road]]
 name = \"north\"
@@ -152,12 +152,12 @@ at = [0.001, 0.0]
         corridor(Path::new("m.toml"), text, &Default::default()).unwrap_err().to_string()
     }
 
-    /// Why that road is refused in line 11 beside the others.
+    /// The error for a third road with these points, in line 11.
     fn refused_road(points: &str) -> String {
         refused(&format!("{MAP}[[road]]\nname = \"new\"\npoints = {points}\n"))
     }
 
-    /// Why that intersection is refused in line 11 beside the other.
+    /// The error for a second intersection at this point, in line 11.
     fn refused_intersection(at: &str) -> String {
         refused(&format!("{MAP}[[intersection]]\nname = \"B\"\nat = {at}\n"))
     }
@@ -165,7 +165,7 @@ at = [0.001, 0.0]
     #[test]
     fn a_map_that_fits_is_taken() {
         assert!(corridor(Path::new("m.toml"), MAP, &Default::default()).is_ok());
-        // The other direction of the street beside it, 3 m away, and an intersection 22 m on.
+        // The other direction of the street, 3 m away, and an intersection 22 m further on.
         let more = "[[road]]\nname = \"south\"\npoints = [[0.002, 0.0], [0.0, 0.0]]\nright_m = 3.0\n\
                     [[intersection]]\nname = \"B\"\nat = [0.0012, 0.0]\n";
         let text = format!("{MAP}{more}");
@@ -184,7 +184,7 @@ at = [0.001, 0.0]
         for (at, way) in [
             ("[0.001, 0.0]", "\"B\" and \"A\" overlap: they are 0.0 m apart"),
             ("[0.00105, 0.0]", "\"B\" and \"A\" overlap: they are 5.5 m apart"),
-            // Far enough from one another, but side by side.
+            // Far enough from one another along the road, but side by side.
             ("[0.001, 0.0001]", "\"A\" and \"B\" overlap: they are 0.0 m apart along the road \"north\""),
         ] {
             assert_eq!(refused_intersection(at), format!("m.toml:11: the conflict areas of {way}{end}"));
@@ -198,7 +198,7 @@ at = [0.001, 0.0]
             "[[0.0, 0.0], [0.002, 0.0]]",
             "[[0.002, 0.0], [0.0, 0.0]]",
             "[[0.0, 0.00002], [0.002, 0.00002]]",
-            // They cross at 6 degrees, which is no crossing.
+            // The ways meet at 6 degrees, which is not a crossing.
             "[[0.0, -0.0001], [0.002, 0.0001]]",
         ] {
             let error = refused_road(points);

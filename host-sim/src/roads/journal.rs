@@ -1,4 +1,5 @@
-//! The journal of a run, for its figures: who is where enters; trajectories, the ego's errors and the traffic on its bus leave.
+//! The journal of a run, for its charts: the sightings enter; trajectories, the ego's errors and the frames on its bus
+//! leave.
 
 use std::collections::BTreeMap;
 
@@ -9,12 +10,12 @@ use crate::input::impairment::Window;
 /// Time from one entry of a trajectory to the next.
 const EVERY_S: f64 = 0.25;
 
-/// The way of one vehicle.
+/// The trajectory of one vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track {
     /// Its road.
     pub road: usize,
-    /// Time and way along the road.
+    /// Time, and distance along the road.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -23,19 +24,19 @@ pub struct Track {
 pub struct Journal {
     /// The trip of the ego.
     pub ego: Option<usize>,
-    /// Everyone's way, by trip.
+    /// The trajectories of all vehicles, by trip.
     pub tracks: BTreeMap<usize, Track>,
-    /// When the ego's radio is silent.
+    /// The time in which the ego's radio is silent.
     pub dark: Option<Window>,
-    /// How wrong the ego's unit is about its target over time.
+    /// Error of the ego's target estimate over time.
     pub errors: Vec<(f64, f64)>,
-    /// The traffic on its bus.
+    /// The frames on the ego's bus.
     pub log: Vec<(f64, Frame)>,
     last_s: Option<f64>,
 }
 
 impl Journal {
-    /// Nothing has happened yet.
+    /// An empty journal.
     #[must_use]
     pub fn new(ego: Option<usize>) -> Self {
         Self { ego, ..Self::default() }

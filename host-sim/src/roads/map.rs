@@ -1,5 +1,5 @@
-//! The map that every unit in a corridor has: the network enters; for each road the core's itinerary, which lives as long as
-//! the program, leaves.
+//! The map of every unit in a corridor: the network enters; for each road the core's itinerary leaves. It lives as long
+//! as the program.
 
 use holdover::coordination::{Approach, Crossing, Intersection, Itinerary};
 
@@ -40,7 +40,7 @@ fn intersection(network: &Network, id: u8, junction: &Junction) -> &'static Inte
     Box::leak(Box::new(Intersection { id, half, approaches: Box::leak(approaches.into_boxed_slice()) }))
 }
 
-/// Intersections and their legs are few.
+/// An index of an intersection or of a leg; both are few.
 pub(super) fn number(index: usize) -> u8 {
     u8::try_from(index).unwrap_or(u8::MAX)
 }

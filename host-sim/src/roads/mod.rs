@@ -1,5 +1,5 @@
-//! Roads that cross without signals: a scenario file and a seed enter; vehicles of all kinds arrive at random, each with the
-//! unit's own code, agree on an order by radio, cross and leave; what happened to them leaves.
+//! Roads that cross without signals. A scenario file and a seed enter. Vehicles of all kinds arrive at random, each
+//! with the unit's own code. They agree on an order over V2X, cross, and leave. The figures of the run leave.
 //!
 //! ```text
 //! file -> read, fit (does it fit together) -> description -> network (roads, crossing points) -> trips -> traffic (the world)

@@ -1,19 +1,21 @@
-//! The roads of a corridor and where they cross: a description enters; for every road its intersections in the order of
-//! travel, with the way along the road to each crossing point, leave.
+//! The roads of a corridor and where they cross: a description enters; for every road its intersections leave, in the
+//! order of travel, with the distance along the road to each crossing point.
 
 use super::description::Corridor;
 use crate::sim::road::Road;
 
-/// A road is a leg of an intersection if it passes within so many metres of its middle.
+/// A road is a leg of an intersection if it passes within this distance of its centre, in metres.
 pub const PASSES_WITHIN_M: f64 = 12.0;
 
-/// Roads that cross at less than this, in degrees, share their pavement or are the two directions of one street.
+/// Two ways whose directions differ by less than this, in degrees, do not cross: they share their pavement, or are the
+/// two directions of one street.
 const LEAST_ANGLE_DEG: f64 = 20.0;
 
-/// Beyond the end of their way vehicles drive on for so many metres: when they vanish, nobody who is still on his way minds.
+/// Vehicles drive on for this distance beyond the end of their way, in metres. When they vanish there, no vehicle on
+/// its way depends on them.
 pub const RUN_OUT_M: f64 = 60.0;
 
-/// The roads reach so far beyond where vehicles appear and vanish, in metres.
+/// The roads extend this far beyond the places where vehicles appear and vanish, in metres.
 const BEYOND_M: f64 = 20.0 + RUN_OUT_M;
 
 /// An intersection on a road.
@@ -23,44 +25,44 @@ pub struct Stop {
     pub intersection: usize,
     /// The road's number among the intersection's legs.
     pub leg: usize,
-    /// The way along the road to the crossing point.
+    /// Distance along the road to the crossing point.
     pub at_m: f64,
 }
 
 /// A road with its intersections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lane {
-    /// Where it lies.
+    /// Its geometry.
     pub road: Road,
     /// Its intersections in the order of travel; at least one.
     pub stops: Vec<Stop>,
-    /// The way along it to where vehicles appear.
+    /// Distance along it to the place where vehicles appear.
     pub entry_m: f64,
-    /// The way along it to where they vanish.
+    /// Distance along it to the place where their way ends.
     pub exit_m: f64,
 }
 
 /// A leg of an intersection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// The road that it is of.
+    /// The road of this leg.
     pub road: usize,
-    /// The way along that to the crossing point.
+    /// Distance along that road to the crossing point.
     pub at_m: f64,
     /// Direction of travel at the crossing point, degrees clockwise from north.
     pub heading_deg: f64,
 }
 
-/// Where roads cross.
+/// An intersection with its legs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
-    /// The conflict area reaches so far to either side of the crossing point.
+    /// Half the length of the conflict area, along every road.
     pub half_m: f64,
     /// The roads through it, in the order of the description.
     pub legs: Vec<Leg>,
 }
 
-/// All of it.
+/// All roads and intersections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// The roads, in the order of the description.
@@ -69,14 +71,14 @@ pub struct Network {
     pub junctions: Vec<Junction>,
 }
 
-/// Whether two ways with those directions, in degrees, cross; otherwise they run beside one another, or on one another.
+/// Whether two ways with these directions, in degrees, cross. Otherwise they run side by side, or on one another.
 #[must_use]
 pub fn cross(a_deg: f64, b_deg: f64) -> bool {
     (LEAST_ANGLE_DEG..=180.0 - LEAST_ANGLE_DEG).contains(&(a_deg - b_deg).rem_euclid(180.0))
 }
 
 impl Junction {
-    /// Whether vehicles on those two legs can meet: their ways cross.
+    /// Whether vehicles on these two legs can meet, because their ways cross.
     #[must_use]
     pub fn conflict(&self, a: usize, b: usize) -> bool {
         a != b && cross(self.legs[a].heading_deg, self.legs[b].heading_deg)
@@ -84,7 +86,7 @@ impl Junction {
 }
 
 impl Network {
-    /// Of a description that was checked.
+    /// The network of a checked description.
     #[must_use]
     pub fn of(corridor: &Corridor) -> Self {
         let (appear_m, leave_m) = (corridor.traffic.appear_m, corridor.traffic.leave_m);

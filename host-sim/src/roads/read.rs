@@ -1,5 +1,6 @@
-//! A scenario file of roads that cross: TOML enters; a checked [`Corridor`] or an error with file, line, cause and remedy
-//! leaves. `scenarios/corridor.toml` states and explains every key; a file says its own roads, all else has a default.
+//! A scenario file of roads that cross: TOML enters; a checked [`Corridor`] leaves, or an error with file, line, cause
+//! and remedy. `scenarios/corridor.toml` states and explains every key. The roads and intersections have to be in the
+//! file; all other keys have a default.
 
 use std::path::Path;
 
@@ -46,12 +47,12 @@ const DEGREES: Number = Number { key: "points", unit: "degrees", limits: -180.0.
 const ERROR_LIMIT: Number = Number { key: "position_error_m", unit: "metres", limits: 0.0..=1000.0, default: 0.0 };
 const RATIO_LIMIT: Number = Number { key: "travel_time_ratio", unit: "a factor", limits: 1.0..=100.0, default: 1.0 };
 
-/// Whoever is just ahead needs one, and so does whoever comes next.
+/// One slot for the vehicle just ahead, and one for the vehicle that comes next.
 pub const LEAST_SLOTS: usize = 2;
 const ROADS: usize = 32;
 const INTERSECTIONS: usize = 16;
 
-/// The corridor in the text of that file, with what the command line says instead.
+/// The corridor of a scenario text, with the values that the command line overrides.
 ///
 /// # Errors
 /// Text that is not TOML, unknown keys, wrong types, impossible values.
@@ -174,7 +175,7 @@ fn wrong(mut section: Section) -> Result<Wrong, Error> {
     Ok(wrong)
 }
 
-/// A limit that is left out is not asked for.
+/// A limit that the file leaves out is not checked.
 fn limits(mut section: Section) -> Result<Limits, Error> {
     let error = section.number(&ERROR_LIMIT)?;
     let ratio = section.number(&RATIO_LIMIT)?;
@@ -241,8 +242,8 @@ fn missing(document: &Document, line: Option<u64>, key: &str) -> Error {
     document.error_at(line, format!("`{key}` is missing"), "add it; scenarios/corridor.toml shows how")
 }
 
-/// So many sections as there can be; what is said of too many is said of the first one too many, and of none where the file says
-/// what it is.
+/// The sections of one name, from 1 to `most`. An error of too many names the line of the first one too many. An error
+/// of none names the line of the file's kind.
 fn counted<'a>(
     document: &Document,
     what: &str,

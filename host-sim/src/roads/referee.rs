@@ -1,4 +1,5 @@
-//! The referee of a run: who is where enters, tick by tick; collisions, full stops, travel times and the smallest gaps leave.
+//! The referee of a run: the sightings of all vehicles enter, tick by tick; collisions, full stops, travel times and
+//! the smallest gaps leave.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,23 +8,23 @@ use super::trips::Trip;
 use super::watch::{Sighting, Watch};
 use crate::measure::metrics::{FULL_STOP_FROM_S, STANDING_BELOW_MPS};
 
-/// Where two vehicles can meet.
+/// The place of a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Place {
     /// On a road: a bumper gap below 0.
     Road(usize),
-    /// At an intersection: both in its conflict area on ways that cross.
+    /// At an intersection: both vehicles are in its conflict area, on crossing ways.
     Intersection(usize),
 }
 
-/// Two vehicles that have met; the smaller trip first.
+/// A collision of two vehicles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
-    /// When it began.
+    /// Time at which it began.
     pub at_s: f64,
     /// Where.
     pub place: Place,
-    /// Who.
+    /// The two trips; the smaller one first.
     pub trips: [usize; 2],
 }
 
@@ -41,19 +42,19 @@ pub struct Referee<'a> {
     trips: &'a [Trip],
     /// Collisions, in the order in which they began.
     pub collisions: Vec<Collision>,
-    /// When each full stop began, and whose it is.
+    /// Full stops: the time at which each began, and the trip.
     pub stops: Vec<(f64, usize)>,
-    /// From the arrival until it has left, by trip.
+    /// Time from the arrival until the vehicle has left, by trip.
     pub travel_times_s: Vec<Option<f64>>,
     /// Smallest bumper gap on a road.
     pub smallest_gap_m: Option<f64>,
-    /// Shortest time from when one has left a conflict area to when the next one enters it on a way that crosses.
+    /// Shortest time from when one vehicle leaves a conflict area to when the next one enters it on a crossing way.
     pub smallest_clearance_s: Option<f64>,
     /// Lowest speed of any vehicle.
     pub lowest_speed_mps: Option<f64>,
     /// Ticks of all vehicles, and those at which an envelope changed the command.
     pub ticks: [u64; 2],
-    /// Those who have left: whoever is still on his way may run into one.
+    /// Vehicles that have left. A vehicle that is still on its way may run into one of them.
     beyond: Vec<Sighting>,
     together: BTreeSet<(Place, [usize; 2])>,
     standing: BTreeMap<usize, (f64, bool)>,
@@ -62,7 +63,7 @@ pub struct Referee<'a> {
 }
 
 impl<'a> Referee<'a> {
-    /// Nothing has happened yet.
+    /// A referee that has seen no tick.
     #[must_use]
     pub fn new(network: &'a Network, trips: &'a [Trip]) -> Self {
         Self {
@@ -181,7 +182,7 @@ mod tests {
     use super::super::trips::trips;
     use super::*;
 
-    /// 2nd Street in both directions, which the third road crosses at the first intersection.
+    /// 2nd Street in both directions. The third road crosses it at the first intersection.
     const NORTHWEST: usize = 0;
     const SOUTHEAST: usize = 1;
     const HARRISON: usize = 2;
@@ -197,13 +198,13 @@ mod tests {
         Sighting { length_m: LENGTH_M, ..example::sighting(trip, road, way_m) }
     }
 
-    /// With its front so far beyond the crossing point of the first intersection.
+    /// A vehicle with its front this far beyond the crossing point of the first intersection.
     fn beyond(network: &Network, trip: usize, road: usize, front_m: f64) -> Sighting {
         let stop = network.lanes[road].stops.iter().find(|stop| stop.intersection == 0).unwrap();
         on_road(trip, road, stop.at_m + front_m)
     }
 
-    /// What a referee sees who is shown two vehicles, a tick a second.
+    /// The collisions of two vehicles, at one tick per second.
     fn collisions(ticks: &[[Sighting; 2]], network: &Network) -> Vec<Collision> {
         let mut referee = Referee::new(network, &[]);
         for (at_s, sightings) in (0..).zip(ticks) {
@@ -259,7 +260,7 @@ mod tests {
         let (before_m, in_m, out_m) = (-half_m - 0.1, -half_m + 0.1, half_m + LENGTH_M + 0.1);
         assert_eq!(collisions(&[both(in_m, before_m), both(out_m, in_m)], &network), []);
         let collision = Collision { at_s: 1.0, place: Place::Intersection(0), trips: [0, 1] };
-        // The rear of the first is still in the area, then it is not.
+        // At first the rear of the first vehicle is in the area, then it is not.
         let ticks = [both(0.0, before_m), both(out_m - 0.2, in_m), both(out_m - 0.15, 0.0), both(out_m, 0.0)];
         assert_eq!(collisions(&ticks, &network), [collision]);
     }
@@ -284,7 +285,7 @@ mod tests {
         assert_eq!(see(2.0, 0, NORTHWEST, 20.0), None);
         assert_eq!(see(2.5, 1, SOUTHEAST, 0.0), None);
         assert_eq!(see(3.0, 1, SOUTHEAST, 20.0), None);
-        // Since the second one has left.
+        // The clearance since the second vehicle has left.
         assert_eq!(see(4.5, 2, HARRISON, 0.0), Some(1.5));
         assert_eq!(see(5.0, 2, HARRISON, 20.0), Some(1.5));
         assert_eq!(see(7.0, 3, NORTHWEST, 0.0), Some(1.5));
@@ -292,7 +293,7 @@ mod tests {
         assert_eq!(see(8.75, 4, HARRISON, 0.0), Some(0.75));
     }
 
-    /// When the full stops began of a vehicle with those speeds, a tenth of a second apart.
+    /// The times at which the full stops begin, of a vehicle with these speeds, a tenth of a second apart.
     fn stops(speeds_mps: &[f64]) -> Vec<(f64, usize)> {
         let (_, network) = the_corridor();
         let mut referee = Referee::new(&network, &[]);
@@ -309,7 +310,7 @@ mod tests {
         assert_eq!(stops(&[&[fast], &[slow; 6][..]].concat()), [(0.1, 7)]);
         assert_eq!(stops(&[&[fast], &[slow; 5][..], &[fast]].concat()), []);
         assert_eq!(stops(&[fast; 20]), []);
-        // Once as long as it lasts, and once more after it has moved.
+        // One stop for as long as it lasts, and a second stop after the vehicle has moved.
         assert_eq!(stops(&[&[slow; 12][..], &[fast], &[slow; 6]].concat()), [(0.0, 7), (1.3, 7)]);
     }
 

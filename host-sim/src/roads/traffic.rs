@@ -1,8 +1,9 @@
-//! The world of a corridor: trips enter; vehicles appear, sense, hear, tick, speak, move and leave; every tick, who is where
-//! goes to those who watch.
+//! The world of a corridor: trips enter; vehicles appear, sense, hear, tick, send, move and leave; the sightings of
+//! every tick go to the observers.
 //!
-//! The order within a tick is that of [`Stages`]. A vehicle appears when its time has come and there is room for it to follow
-//! the one ahead; until then it waits out of sight, and that counts as travel time. Its unit has power before.
+//! The order within a tick is that of [`Stages`]. A vehicle appears when its time has come and there is room behind the
+//! vehicle ahead. Until then it waits out of sight, and that counts as travel time. Its unit is powered before it
+//! appears.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io;
@@ -43,7 +44,7 @@ use numbers::Numbers;
 /// A vehicle on the roads.
 struct Traveller {
     trip: usize,
-    /// When it has left, if it has.
+    /// Time at which the vehicle left, if it has.
     left_s: Option<f64>,
     vehicle: Box<Vehicle>,
     ground: Ground,
@@ -56,7 +57,7 @@ impl Traveller {
         self.vehicle.plant.position_m - self.ground.odometer_m
     }
 
-    /// What has been on its bus, if that is logged.
+    /// Appends the frames of its bus to the log, if its bus is logged.
     fn hand_in(&mut self, log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let Some(node) = &mut self.log else { return Ok(()) };
         while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
@@ -88,23 +89,23 @@ pub struct Traffic<'a> {
     travellers: BTreeMap<usize, Traveller>,
     numbers: Numbers,
     air: Air,
-    /// What has been broadcast of late: when, by whom, and from where.
+    /// Recent broadcasts: time, trip of the sender, its position, and the message.
     aired: VecDeque<(f64, usize, Point, Rc<V2xMessage>)>,
     remains: Remains,
     tally: Tally,
     logged: Option<usize>,
 }
 
-/// What is left of a run.
+/// The counts at the end of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Remains {
-    /// Vehicles that had not left when the run was given up.
+    /// Vehicles that had not left when the run was stopped.
     pub unserved: usize,
     /// Refusals of all units.
     pub refusals: u64,
-    /// Times that a unit gave way to one that did not heed it.
+    /// Number of times that a unit yielded to a vehicle that did not heed it.
     pub disagreements: u64,
-    /// Messages that found no slot.
+    /// Messages that found no slot in a modem.
     pub turned_away: u64,
 }
 
@@ -118,7 +119,7 @@ impl Remains {
 }
 
 impl<'a> Traffic<'a> {
-    /// Empty roads.
+    /// A world with empty roads.
     #[must_use]
     pub fn new(
         corridor: &'a Corridor,
@@ -151,15 +152,15 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Keeps the traffic on the bus of that trip's vehicle.
+    /// Logs the bus of the vehicle with this trip.
     pub fn log(&mut self, trip: Option<usize>) {
         self.logged = trip;
     }
 
-    /// Runs it until everyone has left, or for twice as long as it lasts and five minutes.
+    /// Runs the world until every vehicle has left. It stops at the latest after twice the duration and five minutes.
     ///
     /// # Errors
-    /// The buses', and a configuration that the units refuse, as an error of invalid input.
+    /// Errors of the buses. A configuration that the units refuse is an error of invalid input.
     pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
         while !self.is_over() && self.at_s() <= longest_s {
@@ -174,7 +175,7 @@ impl<'a> Traffic<'a> {
         Ok(Remains { unserved, ..self.remains })
     }
 
-    /// Runs it until then, and keeps no log.
+    /// Runs the world until `to_s`, without a log.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
@@ -185,7 +186,7 @@ impl<'a> Traffic<'a> {
         Ok(())
     }
 
-    /// What there was to do up to now.
+    /// The work up to now.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.tally
@@ -212,7 +213,7 @@ impl<'a> Traffic<'a> {
         self.dismiss(at_s, watches, log)
     }
 
-    /// Those who watch see who is where.
+    /// Shows the sightings of all vehicles to the observers.
     fn show(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
         let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
             self.travellers.values().partition(|traveller| traveller.has_left());
@@ -225,7 +226,7 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Messages go to everyone within the radio's range.
+    /// Sends the messages to all vehicles within radio range.
     fn broadcast(&mut self, at_s: f64, messages: Vec<(usize, V2xMessage)>) {
         if messages.is_empty() {
             return;
@@ -312,7 +313,7 @@ impl Stages for Traffic<'_> {
     }
 }
 
-/// Whom a vehicle's unit follows.
+/// The station that a vehicle's unit follows.
 fn followed(vehicle: &Vehicle) -> Option<StationHash> {
     let target = vehicle.unit.coordination().choice().target?;
     vehicle.unit.peers().get(target.into())?.station()
@@ -326,7 +327,7 @@ mod tests {
     use crate::roads::experiment::Experiment;
     use crate::roads::network::RUN_OUT_M;
 
-    /// The largest way of a vehicle on its way, and of one that has left.
+    /// The largest distance along the road, of a vehicle on its way and of a vehicle that has left.
     #[derive(Default)]
     struct Farthest {
         on_way_m: f64,

@@ -1,5 +1,5 @@
-//! Who comes when: a description and a seed enter; every vehicle of a run, with what is drawn of it, leaves. All runs under
-//! one seed, with whatever link and whatever is wrong, have the same trips.
+//! The trips of a run: a description and a seed enter; every vehicle leaves, with its random properties. All runs of
+//! one seed have the same trips, whatever their links and differences.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -12,22 +12,22 @@ use crate::streams::{Purpose, stream, unit};
 /// One vehicle's way through the corridor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trip {
-    /// The road that it comes by.
+    /// The road of the vehicle.
     pub road: usize,
-    /// When it arrives where the road begins for it.
+    /// Time at which it arrives at the start of its way.
     pub at_s: f64,
     /// Speed at which it arrives.
     pub speed_mps: f64,
-    /// What it is.
+    /// Kind of vehicle.
     pub kind: Kind,
-    /// When it falls silent, counted from when it appears on the road: it may have to wait for room.
+    /// Time from when it appears on the road until it falls silent. It may have to wait for room before it appears.
     pub dark_after_s: f64,
-    /// What its odometer shows at the beginning of the road.
+    /// Its odometer at the beginning of the road.
     pub odometer_m: f64,
 }
 
 impl Trip {
-    /// When its radio is silent if it appears at that time.
+    /// The time in which its radio is silent, if it appears at `appears_s`.
     #[must_use]
     pub fn dark(&self, appears_s: f64, radio: &Radio) -> Window {
         let from_s = appears_s + self.dark_after_s;
@@ -35,7 +35,8 @@ impl Trip {
     }
 }
 
-/// A vehicle that appears has been on its way, and on the air, before; so its silence begins when it has been so for a while.
+/// A vehicle that appears has been on the road and on the air before. So its silence begins at the earliest after this
+/// time, in seconds.
 pub const HEARD_S: f64 = 2.0;
 
 /// The trips, in the order of their arrival.
@@ -47,7 +48,7 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
         let mut generator = stream(seed, Purpose::Arrivals(u32::try_from(road).unwrap_or(u32::MAX)));
         let mut at_s = next_s(corridor, plan.vehicles_per_min, 0.0, &mut generator);
         while at_s < corridor.duration_s {
-            // Everything is drawn for every vehicle, so that nothing depends on what another one turned out to be.
+            // Every number is drawn for every vehicle, so that no draw depends on the result of another.
             let [pace, sort, dark, odometer] = [(); 4].map(|()| unit(&mut generator));
             let span = corridor.traffic.entry_speed_mps;
             trips.push(Trip {
@@ -65,7 +66,8 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
     trips
 }
 
-/// The next arrival, never without any. They are without memory, but for the least headway; the mean rate is the one asked for.
+/// The next arrival; infinite if there are none. Arrivals have no memory, except for the least headway. The mean rate
+/// is the given one.
 fn next_s(corridor: &Corridor, vehicles_per_min: f64, last_s: f64, generator: &mut ChaCha8Rng) -> f64 {
     if vehicles_per_min <= 0.0 {
         return f64::INFINITY;

@@ -1,32 +1,32 @@
-//! Watching a run: what those who watch it are shown of every vehicle at every tick.
+//! Observing a run: what the observers see of every vehicle at every tick.
 
 use holdover::wire::StationHash;
 
 use crate::sim::world::TargetBelief;
 
-/// A vehicle at a tick, as those who watch see it.
+/// A vehicle at a tick, as the observers see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
     /// Its trip.
     pub trip: usize,
-    /// What it is called on the air.
+    /// Its station on the air.
     pub station: StationHash,
     /// Its road.
     pub road: usize,
-    /// The way of its front bumper along its road.
+    /// Distance of its front bumper along its road.
     pub way_m: f64,
-    /// Bumper to bumper.
+    /// Length, bumper to bumper.
     pub length_m: f64,
     /// Its speed.
     pub speed_mps: f64,
-    /// What its odometer shows where the road begins.
+    /// Its odometer where the road begins.
     pub odometer_m: f64,
-    /// The intersection that its unit takes for the next one: its virtual lane is that one's. Between two reviews it may be
-    /// one that the vehicle has just left.
+    /// The intersection that its unit takes for the next one, and whose virtual lane it uses. Between two reviews this
+    /// may be an intersection that the vehicle has just left.
     pub next: Option<usize>,
-    /// Whom its unit follows.
+    /// The station that its unit follows.
     pub followed: Option<StationHash>,
-    /// Where its unit believes that one is, on its own odometer's axis.
+    /// Its unit's estimate of the target, on the axis of its own odometer.
     pub belief: Option<TargetBelief>,
     /// Whether its envelope changed the command.
     pub limited: bool,
@@ -34,12 +34,12 @@ pub struct Sighting {
     pub dark: bool,
 }
 
-/// Someone who watches a run.
+/// An observer of a run.
 pub trait Watch {
-    /// Before a tick: those who have left and drive on beyond the end of their way.
+    /// Called before a tick, with the vehicles that have left and drive on beyond the end of their way.
     fn beyond(&mut self, _sightings: &[Sighting]) {}
-    /// A tick, with everyone on his way in the order of their trips.
+    /// Called at a tick, with all vehicles that are on their way, in the order of their trips.
     fn tick(&mut self, at_s: f64, sightings: &[Sighting]);
-    /// A vehicle has left.
+    /// Called when a vehicle has left.
     fn left(&mut self, at_s: f64, trip: usize);
 }

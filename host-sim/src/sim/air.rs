@@ -1,5 +1,5 @@
-//! What is between the antennas: a broadcast enters with who is to hear it; its copies leave at their receivers in the order
-//! of arrival.
+//! The radio channel between the vehicles. A broadcast enters, with the vehicles that are to hear it. Its copies leave
+//! at the receivers in the order of arrival.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -15,7 +15,7 @@ struct Flight {
     arrives_us: i64,
     number: u64,
     to: usize,
-    /// All copies of a broadcast are one.
+    /// All copies of a broadcast share this value.
     message: Rc<V2xMessage>,
 }
 
@@ -39,15 +39,15 @@ impl Ord for Flight {
 /// A message that has arrived.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arrived {
-    /// When, in seconds of the run.
+    /// Time of arrival, in seconds of the run.
     pub at_s: f64,
-    /// At whom.
+    /// Index of the receiving vehicle.
     pub to: usize,
-    /// What it says.
+    /// The message.
     pub message: Rc<V2xMessage>,
 }
 
-/// The channel and all that is on its way in it.
+/// The channel and all messages that are on their way in it.
 pub struct Air {
     channel: Channel,
     flights: BinaryHeap<Reverse<Flight>>,
@@ -55,25 +55,25 @@ pub struct Air {
 }
 
 impl Air {
-    /// Nothing has been sent yet.
+    /// An empty channel: nothing has been sent yet.
     #[must_use]
     pub fn new(model: &ChannelModel, seed: u64) -> Self {
         Self { channel: Channel::new(model, seed), flights: BinaryHeap::new(), sent: 0 }
     }
 
-    /// Sends a message from one vehicle to those.
+    /// Sends a message from the vehicle `from` to the vehicles `to`.
     pub fn broadcast(&mut self, at_s: f64, from: usize, to: impl IntoIterator<Item = usize>, message: &Rc<V2xMessage>) {
         for to in to {
             for arrives_s in self.channel.send(Link { from, to }, at_s) {
                 self.sent += 1;
-                // Nothing is heard at the instant it is said, so times alone tell what a tick could know.
+                // No message arrives at the instant at which it is sent. So times alone tell what a tick could know.
                 let arrives_us = micros(arrives_s).max(micros(at_s) + 1);
                 self.flights.push(Reverse(Flight { arrives_us, number: self.sent, to, message: Rc::clone(message) }));
             }
         }
     }
 
-    /// The next message that has arrived by then.
+    /// The next message that has arrived by `at_s`.
     pub fn arrived(&mut self, at_s: f64) -> Option<Arrived> {
         let now_us = micros(at_s);
         self.flights.peek().filter(|Reverse(flight)| flight.arrives_us <= now_us)?;
@@ -87,7 +87,7 @@ impl Air {
         self.channel.forget(vehicle);
     }
 
-    /// The channel with all that happened on it.
+    /// The channel, with the record of all that happened on it.
     #[must_use]
     pub fn into_channel(self) -> Channel {
         self.channel

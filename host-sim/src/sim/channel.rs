@@ -1,18 +1,20 @@
 //! The V2X channel: a message enters, its copies leave with delay, loss, duplication and reordering, seeded.
 //!
-//! Every link (one sender, one receiver) has random numbers of its own, so what happens on one does not depend on what
-//! is sent over another. Per message, always in this order and whatever becomes of it: loss, delay, duplication, delay
-//! of the duplicate. So a run with other outages or another loss has the same delays.
+//! Every link (one sender, one receiver) has random numbers of its own, so what happens on one link does not depend on
+//! what is sent over another. Four numbers are drawn per message, always in this order and whatever becomes of the
+//! message: loss, delay, duplication, delay of the duplicate. So a run with other outages or another loss rate has the
+//! same delays.
 //!
-//! - *Delay* is a normal distribution truncated at 0 by drawing again (so its mean is a little above `delay_mean_s`:
-//!   43.3 ms for the paper's 40 and 25.9).
-//! - *Loss* is independent per message. A message *sent* inside an outage `[from_s, to_s)` is lost; one that is already
-//!   on its way when the outage begins arrives.
+//! - *Delay* is a normal distribution truncated at 0 by drawing again. So its mean is a little above `delay_mean_s`:
+//!   43.3 ms for the paper's 40 ms and 25.9 ms.
+//! - *Loss* is independent per message. A message *sent* inside an outage `[from_s, to_s)` is lost. A message that is
+//!   already on its way when the outage begins arrives.
 //! - *Duplication* sends a second copy with a delay of its own.
-//! - *Reordering* is what delays do.
-//! - A *recording* replaces all of that ([`ChannelTrace::delay_at`](crate::input::recording::ChannelTrace::delay_at) states how it is read).
-//! - The modem drops what is older than [`OLDEST_S`] on arrival: stamps repeat after 13.1 s, so a message a whole
-//!   period old would be taken for a new one.
+//! - *Reordering* follows from the delays.
+//! - A *recording* replaces all of that. [`ChannelTrace::delay_at`](crate::input::recording::ChannelTrace::delay_at)
+//!   states how a recording is read.
+//! - The receiving modem drops a message that is older than [`OLDEST_S`] on arrival. Stamps repeat after 13.1 s, so a
+//!   message that is a whole period old would be taken for a new one.
 
 use crate::input::impairment::{ChannelModel, Impairment, Link, Window};
 use crate::streams::{Purpose, stream, unit};
@@ -26,7 +28,7 @@ pub const OLDEST_S: f64 = 10.0;
 /// Arrival times of one message's copies, in seconds; none if it was lost.
 pub type Arrivals = heapless::Vec<f64, 2>;
 
-/// What became of the messages of a link; `sent = delivered + lost + expired`.
+/// The counts of a link, by what became of its messages; `sent = delivered + lost + expired`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Messages sent.
@@ -46,12 +48,13 @@ pub struct Counts {
 pub struct LinkRecord {
     /// The counts.
     pub counts: Counts,
-    /// Each message's time of sending and delay of its first copy, in the order of sending; `None`: it never arrived.
+    /// Per message, in the order of sending: its time of sending, and the delay of its first copy. `None`: no copy
+    /// arrived.
     pub messages: Vec<(f64, Option<f64>)>,
 }
 
 impl LinkRecord {
-    /// The times longer than `longer_than_s` in which nothing arrived, between `from_s` and `to_s`.
+    /// The gaps longer than `longer_than_s` between `from_s` and `to_s` in which no message arrived.
     #[must_use]
     pub fn silences(&self, longer_than_s: f64, from_s: f64, to_s: f64) -> Vec<Window> {
         let mut arrivals: Vec<f64> = self.messages.iter().filter_map(|&(at, delay)| Some(at + delay?)).collect();
@@ -82,7 +85,8 @@ impl Channel {
         Self { model: model.clone(), seed, links: BTreeMap::new() }
     }
 
-    /// Sends a message over a link at a time in seconds since the start of the run, and says when its copies arrive.
+    /// Sends a message over a link, at a time in seconds since the start of the run, and returns when its copies
+    /// arrive.
     pub fn send(&mut self, link: Link, at_s: f64) -> Arrivals {
         let seed = self.seed;
         let (generator, record) = self.links.entry(link).or_insert_with(|| {
@@ -99,20 +103,20 @@ impl Channel {
         self.links.retain(|link, _| link.from != vehicle && link.to != vehicle);
     }
 
-    /// What happened on a link; `None` if nothing was ever sent over it.
+    /// The record of a link; `None` if nothing was ever sent over it.
     #[must_use]
     pub fn link(&self, link: Link) -> Option<&LinkRecord> {
         self.links.get(&link).map(|(_, record)| record)
     }
 
-    /// Every link that was used and what happened on it, by sender and receiver.
+    /// Every link that was used, with its record, in the order of sender and receiver.
     pub fn links(&self) -> impl Iterator<Item = (Link, &LinkRecord)> {
         self.links.iter().map(|(&link, (_, record))| (link, record))
     }
 }
 
 impl Impairment {
-    /// The delays of a message's first and second copy.
+    /// The delays of the first and of the second copy of a message.
     fn delays(&self, at_s: f64, generator: &mut ChaCha8Rng) -> [Option<f64>; 2] {
         match self {
             Self::Recorded(trace) => [trace.delay_at(at_s), None],
@@ -146,7 +150,8 @@ impl LinkRecord {
     }
 }
 
-/// At least half of all draws are kept, because the mean is not negative.
+/// A draw from the normal distribution, repeated until it is not negative. At least half of all draws are kept, because
+/// the mean is not negative.
 fn truncated_normal(mean: f64, std: f64, generator: &mut ChaCha8Rng) -> f64 {
     let Ok(normal) = Normal::new(mean, std) else { return mean.max(0.0) };
     loop {

@@ -1,19 +1,20 @@
-//! Directions on the globe: points in degrees enter, metres to the north and to the east leave, and back. What is as near as
-//! the pieces of a road is taken as flat, with the worth of a degree at the middle.
+//! Directions on the globe: points in degrees enter, metres to the north and to the east leave, and back.
+//!
+//! Points as near as the parts of one road lie in a plane. The length of a degree is taken at their middle.
 
 use crate::sim::ground::{Point, step_m};
 
-/// Metres to the north and to the east.
+/// A displacement, in metres to the north and to the east.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
-    /// To the north.
+    /// Metres to the north.
     pub north_m: f64,
-    /// To the east.
+    /// Metres to the east.
     pub east_m: f64,
 }
 
 impl Shift {
-    /// The way from one point to another.
+    /// The displacement from one point to another.
     #[must_use]
     pub fn between(from: Point, to: Point) -> Self {
         let (north_m, east_m) = step_m(0.5 * (from.latitude + to.latitude));
@@ -23,7 +24,7 @@ impl Shift {
         }
     }
 
-    /// The point that far from one.
+    /// The point that this displacement leads to from `point`.
     #[must_use]
     pub fn from(self, point: Point) -> Point {
         let latitude = point.latitude + self.north_m / step_m(point.latitude).0 * 1e-7;
@@ -37,19 +38,19 @@ impl Shift {
         self.north_m.hypot(self.east_m)
     }
 
-    /// So many times as far.
+    /// The displacement, multiplied by a factor.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         Self { north_m: self.north_m * factor, east_m: self.east_m * factor }
     }
 
-    /// How far it goes in the direction of another one.
+    /// The component along another displacement, in metres.
     #[must_use]
     pub fn along(self, other: Self) -> f64 {
         (self.north_m * other.north_m + self.east_m * other.east_m) / other.length_m()
     }
 
-    /// Turned to the right by a quarter.
+    /// The displacement, turned to the right by 90°.
     #[must_use]
     pub fn right(self) -> Self {
         Self { north_m: -self.east_m, east_m: self.north_m }

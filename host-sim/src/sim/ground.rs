@@ -1,8 +1,8 @@
-//! Paths over ground: points on the globe enter, the prepared segments that the core projects positions with leave; a way
-//! along such a path enters, the position on the globe leaves.
+//! Paths over ground: points on the globe enter; the prepared segments that the core projects positions with leave. The
+//! other way round, a distance along such a path enters, and the position on the globe leaves.
 //!
-//! On the ellipsoid of WGS 84, whose two radii of curvature at a segment's middle latitude give what a step of 1e-7° is
-//! worth there.
+//! The globe is the ellipsoid of WGS 84. Its two radii of curvature at a segment's middle latitude give the length of a
+//! step of 1e-7°.
 
 use holdover::coordination::{Path, Scale, Segment};
 use holdover::units::Position;
@@ -10,7 +10,7 @@ use holdover::units::Position;
 /// Semi-major axis in metres, and the square of the eccentricity.
 const WGS84: (f64, f64) = (6_378_137.0, 6.694_379_990_141_3e-3);
 
-/// Segments are no longer than this, in metres.
+/// The longest segment, in metres.
 const LONGEST_M: f64 = 500.0;
 
 /// A position on the globe, in degrees north and east.
@@ -34,7 +34,7 @@ impl Point {
     }
 }
 
-/// Metres that a step of 1e-7° is worth to the north and to the east.
+/// Length of a step of 1e-7° in metres, to the north and to the east.
 #[must_use]
 pub fn step_m(latitude_deg: f64) -> (f64, f64) {
     let (axis, e2) = WGS84;
@@ -44,7 +44,7 @@ pub fn step_m(latitude_deg: f64) -> (f64, f64) {
     (axis * (1.0 - e2) / w.powi(3) * step, axis / w * cosine * step)
 }
 
-/// The segments through these points, in this order. Legs are cut into pieces of at most 500 m.
+/// The segments through these points, in this order. A segment is at most 500 m long; longer pieces are divided.
 #[must_use]
 pub fn segments(points: &[Point]) -> Vec<Segment> {
     let mut segments = Vec::new();
@@ -88,7 +88,7 @@ fn segment(from: Point, to: Point, begins_m: f64) -> (Segment, f64) {
     (segment, length)
 }
 
-/// A path for the whole life of the program, which is what the core wants of a map.
+/// A path that lives as long as the program, because the core takes its map as `'static`.
 #[must_use]
 pub fn path(points: &[Point]) -> &'static Path {
     Box::leak(Box::new(Path { segments: Box::leak(segments(points).into_boxed_slice()) }))
@@ -100,14 +100,15 @@ pub fn path_length_m(path: &Path) -> f64 {
     path.segments.last().map_or(0.0, |last| metres(last.begins) + metres(Position::ZERO.ahead(last.length)))
 }
 
-/// The position on the globe, and the heading in degrees, so far along a path; beyond its ends straight on.
+/// The position on the globe, and the heading in degrees, at a distance along a path. Beyond its ends the path goes
+/// straight on.
 #[must_use]
 pub fn point_at(path: &Path, along_m: f64) -> Option<(Point, f64)> {
     let is_there = |segment: &&Segment| metres(segment.begins) <= along_m;
     let segment = path.segments.iter().rfind(is_there).or_else(|| path.segments.first())?;
     let way = along_m - metres(segment.begins);
     let unit = |scale: i32| f64::from(scale) / f64::from(1 << 18) / f64::from(1 << 18);
-    // The two rows of scales are a rotation of what a step is worth, which its determinant undoes.
+    // The two rows of scales are the lengths of a step, rotated. Their determinant undoes that.
     let (a, b) = (unit(segment.along.north), unit(segment.along.east));
     let (c, d) = (unit(segment.across.north), unit(segment.across.east));
     let determinant = a * d - b * c;

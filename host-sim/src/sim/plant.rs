@@ -1,12 +1,12 @@
 //! The vehicle's body: the commanded engine force or brake torque enters, the true motion leaves, in float64.
 //!
-//! Eq. 1 in full, `m a = F - R T_br - c_v (v + w)|v + w| - c_f v - d_m - m g sin(grade)`, with the head wind `w`. Engine and
-//! brakes each follow what they are told, as far as they can, with the actuators' lag: `Ḟ = (F_cmd - F)/T`, solved exactly
-//! while the command holds. What resists the motion, and what the engine's power allows, is taken at the middle of pieces of a millisecond, which leaves an
-//! error of the third order: micrometres over a minute.
+//! Eq. 1 in full, `m a = F - R T_br - c_v (v + w)|v + w| - c_f v - d_m - m g sin(grade)`, with the head wind `w`.
+//! Engine and brakes each follow their command within their limits and with the actuators' lag: `Ḟ = (F_cmd - F)/T`,
+//! solved exactly while the command holds. The resistance and the limit of the engine's power are evaluated at the
+//! middle of steps of a millisecond. That leaves an error of the third order: micrometres over a minute.
 //!
-//! A vehicle never rolls back. At rest its brakes are let off to what holds it, as an automatic hold does, so that a
-//! start waits for no pressure to fall that nothing needs.
+//! A vehicle never rolls back. At standstill its brakes are released to the torque that holds it, as an automatic hold
+//! does. So a start does not wait for a brake pressure to fall that was not needed.
 
 mod machine;
 
@@ -14,17 +14,18 @@ pub use machine::Machine;
 
 use holdover::wire::command::Effort;
 
-/// The longest piece: a vehicle comes to a stand between two instants, and this puts it within half a millisecond.
+/// The longest step. A vehicle comes to a stand between two instants, and this step finds that instant within half a
+/// millisecond.
 const PIECE_S: f64 = 1e-3;
 
 /// The true motion of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plant {
-    /// Front bumper along the lane.
+    /// Front bumper, along the lane.
     pub position_m: f64,
-    /// Never negative.
+    /// Speed; never negative.
     pub speed_mps: f64,
-    /// Acceleration reached.
+    /// Acceleration that the actuators have reached.
     pub acceleration_mps2: f64,
     machine: Machine,
     engine_n: f64,
@@ -32,7 +33,7 @@ pub struct Plant {
 }
 
 impl Plant {
-    /// A vehicle that keeps its speed: engine and brakes do what that takes, as far as they can.
+    /// A vehicle at constant speed: engine and brakes give the force that this takes, within their limits.
     #[must_use]
     pub fn cruising(machine: Machine, position_m: f64, speed_mps: f64) -> Self {
         let needed_n = if speed_mps > 0.0 { machine.resistance_n(speed_mps) } else { 0.0 };
@@ -41,7 +42,7 @@ impl Plant {
         Self { position_m, speed_mps, acceleration_mps2: 0.0, machine, engine_n, brake_nm }
     }
 
-    /// Moves on by `time_s` under a command that holds.
+    /// Moves the vehicle on by `time_s` under a constant command.
     pub fn drive(&mut self, effort: Effort, time_s: f64) {
         let pieces = (time_s / PIECE_S).ceil().max(1.0);
         let slip = Slip::over(time_s / pieces, self.machine.lag_s);
@@ -64,7 +65,7 @@ impl Plant {
         if speed_mps >= 0.0 {
             self.position_m += self.speed_mps * h + 0.5 * wanted * h * h + behind * slip.way_s2;
         } else {
-            // Comes to a stand within this piece; what way it still makes is its mean speed over the part.
+            // The vehicle stops within this step. The distance that it still covers is its mean speed over that part.
             let part_s = h * self.speed_mps / (self.speed_mps - speed_mps);
             self.position_m += 0.5 * self.speed_mps * part_s;
         }
@@ -74,7 +75,7 @@ impl Plant {
         self.accelerate();
     }
 
-    /// Eq. 1 as it stands now, and the hold at rest.
+    /// Applies eq. 1 in the present state, and the hold at standstill.
     fn accelerate(&mut self) {
         let Machine { mass_kg, ratio_per_m, .. } = self.machine;
         let net_n = self.engine_n - ratio_per_m * self.brake_nm - self.machine.resistance_n(self.speed_mps);
@@ -86,12 +87,12 @@ impl Plant {
     }
 }
 
-/// What a first-order lag makes of a step that holds over a piece of time.
+/// The response of a first-order lag to a command step that holds over a time.
 struct Slip {
     time_s: f64,
-    /// Share of the step that is still to come at the end.
+    /// Fraction of the command step that is still to come at the end.
     kept: f64,
-    /// Its integral over the piece, and the integral of that.
+    /// Integral of that fraction over the time, and the integral of that integral.
     gained_s: f64,
     way_s2: f64,
 }

@@ -1,4 +1,4 @@
-//! Physical quantities as the simulation has them, in float64, enter; the core's fixed-point formats leave.
+//! Physical quantities: the simulation's float64 enters, the core's fixed-point formats leave.
 
 use holdover::time::Duration;
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Position, Seconds, Speed};

@@ -1,5 +1,5 @@
-//! A road: the points of its line enter; the path that the units' maps hold, and the place of a vehicle on the globe by its
-//! way along it, leave.
+//! A road: the points of its line enter; the path in the units' maps leaves, and the position on the globe of a vehicle
+//! at a distance along it.
 
 use holdover::coordination::Path;
 use holdover::time::Stamp;
@@ -8,25 +8,25 @@ use holdover::wire::geo::GeoPosition;
 use super::globe::Shift;
 use crate::sim::ground::{Point, path, path_length_m, point_at};
 
-/// One lane of traffic in one direction. Its path lives as long as the program, which is what the core wants of a map.
+/// One lane of traffic in one direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Road {
-    /// The path, prepared for the core.
+    /// The path, prepared for the core. It lives as long as the program, because the core takes its map as `'static`.
     pub path: &'static Path,
 }
 
-/// Where on the globe a vehicle drives.
+/// The road of a vehicle, and its start on that road.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
     /// Its road.
     pub road: Road,
-    /// What its odometer shows where the road begins.
+    /// The vehicle's odometer where the road begins.
     pub odometer_m: f64,
 }
 
 impl Road {
-    /// A lane that lies `right_m` to the right of a line through those points, which are at least two and all different;
-    /// it begins `before_m` before the first and ends `beyond_m` beyond the last.
+    /// A lane that lies `right_m` to the right of a line through `points`. There are at least two points, all
+    /// different. The lane begins `before_m` before the first point and ends `beyond_m` beyond the last.
     #[must_use]
     pub fn new(line: &[Point], right_m: f64, before_m: f64, beyond_m: f64) -> Self {
         let mut corners = offset(line, right_m);
@@ -39,19 +39,19 @@ impl Road {
         Self { path: path(&corners) }
     }
 
-    /// From end to end.
+    /// Length from end to end.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         path_length_m(self.path)
     }
 
-    /// The place after that way, and the direction of travel there, clockwise from north.
+    /// The position at a distance along the road, and the direction of travel there, clockwise from north.
     #[must_use]
     pub fn at(&self, way_m: f64) -> (Point, f64) {
         point_at(self.path, way_m).unwrap_or((Point { latitude: 0.0, longitude: 0.0 }, 0.0))
     }
 
-    /// The way along the road to where it passes nearest to a point, and how far from it that is.
+    /// The distance along the road at which it passes nearest to a point, and the distance between the two there.
     #[must_use]
     pub fn nearest(&self, point: Point) -> (f64, f64) {
         let ways = self.path.segments.iter().map(|segment| {
@@ -66,7 +66,7 @@ impl Road {
         ways.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0.0, f64::INFINITY))
     }
 
-    /// The place after that way, as a positioning system says it.
+    /// The position at a distance along the road, as a positioning system reports it.
     #[must_use]
     pub fn said(&self, way_m: f64, tag: u8, stamp: Stamp) -> GeoPosition {
         let (point, heading_deg) = self.at(way_m);
@@ -76,7 +76,7 @@ impl Road {
     }
 }
 
-/// The line moved to the right, its corners along the bisectors.
+/// The line, moved to the right. Each corner moves along the bisector.
 fn offset(line: &[Point], right_m: f64) -> Vec<Point> {
     let unit = |from: Point, to: Point| {
         let way = Shift::between(from, to);
@@ -87,7 +87,8 @@ fn offset(line: &[Point], right_m: f64) -> Vec<Point> {
         let after = line.get(index + 1).map(|after| unit(line[index], *after));
         let (Some(before), Some(after)) = (before.or(after), after.or(before)) else { return line[index] };
         let sum = Shift { north_m: before.north_m + after.north_m, east_m: before.east_m + after.east_m };
-        // Along the bisector it is farther, so that the lane keeps its distance from the line; a hairpin is cut short.
+        // The distance along the bisector is longer, so that the lane keeps its distance from the line. A hairpin is
+        // cut short.
         let cosine_2 = (0.25 * sum.length_m() * sum.length_m()).max(0.25);
         sum.right().times(0.5 * right_m / cosine_2).from(line[index])
     };
@@ -116,7 +117,7 @@ mod tests {
     #[test]
     fn a_lane_keeps_its_distance_around_a_corner() {
         let road = Road::new(&[point(0.0, 0.0), point(100.0, 0.0), point(100.0, 100.0)], 3.0, 0.0, 0.0);
-        // To the right of both pieces: the corner is cut.
+        // The lane lies to the right of both pieces, so it cuts the corner.
         assert!((road.length_m() - 194.0).abs() < 0.05, "{}", road.length_m());
         let (_, aside_m) = road.nearest(point(100.0, 50.0));
         assert!((aside_m - 3.0).abs() < 0.05, "{aside_m}");

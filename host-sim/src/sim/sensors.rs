@@ -1,5 +1,5 @@
-//! A vehicle's sensors: its true motion and that of the vehicle ahead enter, what they say leaves, with the accuracies that
-//! they publish and errors within them.
+//! A vehicle's sensors: its true motion and that of the vehicle ahead enter; the measurements leave, with their
+//! published accuracies and errors within these.
 
 use holdover::time::Duration;
 use holdover::units::{Distance, Speed};
@@ -13,13 +13,13 @@ use crate::streams::{Purpose, stream, unit};
 /// Cycle of the range sensor, in seconds.
 pub const RANGE_EVERY_S: f64 = 0.02;
 
-/// Farther away than this it sees nobody, in metres: a long-range radar.
+/// Range of the sensor, in metres: a long-range radar.
 const SEES_UP_TO_M: f64 = 200.0;
 
 /// A vehicle as a sensor behind it sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {
-    /// Its rear bumper.
+    /// Position of its rear bumper.
     pub rear_m: f64,
     /// Its speed.
     pub speed_mps: f64,
@@ -28,15 +28,15 @@ pub struct Ahead {
 /// The sensors of one vehicle.
 #[derive(Clone, Debug)]
 pub struct Sensors {
-    /// 95 % accuracy of its own position.
+    /// Published accuracy (95 %) of the own position.
     pub position_accuracy: Distance,
-    /// 95 % accuracy of its own speed.
+    /// Published accuracy (95 %) of the own speed.
     pub speed_accuracy: Speed,
     range: Option<(RangeSensor, ChaCha8Rng)>,
 }
 
 impl Sensors {
-    /// Those that a scenario gives the vehicle with that index.
+    /// The sensors that a scenario gives to the vehicle with this index.
     #[must_use]
     pub fn new(described: &Vehicle, seed: u64, index: usize) -> Self {
         let generator = || stream(seed, Purpose::RangeSensor(index as u32));
@@ -47,7 +47,7 @@ impl Sensors {
         }
     }
 
-    /// Those of a vehicle that knows its own motion so well, and sees nobody.
+    /// The sensors of a vehicle that measures its own motion with these accuracies and has no range sensor.
     #[must_use]
     pub fn blind(accuracy: Accuracy) -> Self {
         Self {
@@ -57,10 +57,11 @@ impl Sensors {
         }
     }
 
-    /// What the range sensor sees from a front bumper at that speed; `None` without one, and if nobody is within its range.
+    /// The measurement of the range sensor, at a front bumper and a speed. `None` without a sensor, and if no vehicle
+    /// is in its range.
     pub fn look(&mut self, front_m: f64, speed_mps: f64, ahead: Ahead) -> Option<RangeSample> {
         let (sensor, generator) = self.range.as_mut()?;
-        // Drawn whether or not anybody is there, so that nothing depends on how often somebody is.
+        // Drawn whether or not a vehicle is there, so that later draws do not depend on how often there is one.
         let mut within = |accuracy: f64| (2.0 * unit(generator) - 1.0) * accuracy;
         let (off_m, off_mps) = (within(sensor.distance_m), within(sensor.speed_mps));
         let gap_m = ahead.rear_m - front_m;
@@ -74,7 +75,7 @@ impl Sensors {
     }
 }
 
-/// To the core's format, to nearest, of either sign.
+/// The value in the core's format, rounded to nearest, of either sign.
 fn difference(mps: f64) -> Speed {
     if mps < 0.0 { Speed::ZERO.minus(speed(-mps)) } else { speed(mps) }
 }

@@ -1,23 +1,23 @@
-//! Who is who: the index of a vehicle enters; the station that it says it is, and what its driver wants, leave.
+//! Station identities: the index of a vehicle enters, its station and its driver's request leave.
 
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Predecessor, StationHash};
 
 use super::quantities::{seconds, speed};
 
-/// The station of the vehicle with that index. Stations repeat after 255 vehicles, when the first of them is long gone.
+/// The station of the vehicle with this index. Stations repeat after 255 vehicles, when the first of them is long gone.
 #[must_use]
 pub const fn station(index: usize) -> StationHash {
     StationHash((index % 255) as u8 + 1)
 }
 
-/// The vehicle of a station, in a run of up to 255 vehicles.
+/// The vehicle with this station, in a run of up to 255 vehicles.
 #[must_use]
 pub const fn index_of(station: StationHash) -> Option<usize> {
     (station.0 as usize).checked_sub(1)
 }
 
-/// What the driver of a follower, or of a leader, wants.
+/// The request of the driver of a follower, or of a leader.
 #[must_use]
 pub fn request(ahead: Option<usize>, engaged: bool, target_speed_mps: f64, time_gap_s: f64) -> DriverRequest {
     DriverRequest {

@@ -2,16 +2,16 @@
 
 use holdover::time::GnssTime;
 
-/// GNSS time at the start of every run, in microseconds: some moment, with all digits in use.
+/// GNSS time at the start of every run, in microseconds: an arbitrary moment, with all digits in use.
 pub const EPOCH_US: u64 = 1_465_000_123_456_700;
 
-/// GNSS time at a time of the run.
+/// GNSS time at this time of the run.
 #[must_use]
 pub fn gnss(at_s: f64) -> GnssTime {
     GnssTime::from_micros(EPOCH_US.saturating_add_signed(micros(at_s)))
 }
 
-/// Microseconds, to nearest.
+/// The time in microseconds, rounded to nearest.
 #[must_use]
 pub fn micros(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64

@@ -1,6 +1,7 @@
-//! One vehicle: its body, its onboard unit, its own bus between the two, and its modem. What its sensors and its modem put
-//! on the bus enters the unit; what the unit commands moves the body. The unit's seat on the bus can be given to another
-//! one outside ([`Vehicle::give_seat`]).
+//! One vehicle: its body, its unit, its modem, and its own bus between them. What sensors and modem put on the bus
+//! enters the unit; what the unit commands moves the body.
+//!
+//! A unit outside of the simulation can take the unit's place on the bus ([`Vehicle::give_seat`]).
 
 use std::io;
 
@@ -33,41 +34,41 @@ mod warm_up;
 pub use alias::Alias;
 pub use unit::Unit;
 
-/// Samples that they hold of each peer.
+/// Samples that a simulated unit holds of each peer.
 pub const SAMPLES: usize = 8;
-/// Steps of their horizons.
+/// Steps of the horizons of a simulated unit.
 pub const STEPS: usize = 1082;
 
 /// Cycle of the time base, in seconds.
 const SYNC_EVERY_S: f64 = 0.5;
 /// Cycle of the position on the globe, in seconds.
 const LOCATE_EVERY_S: f64 = 0.1;
-/// What a unit outside said of its target is held for so long: the message's timeout.
+/// Time for which the target estimate of a unit outside holds, in seconds: the timeout of that message.
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
 /// Cycle of the driver's request, in seconds.
 const REQUEST_EVERY_S: f64 = 0.1;
 
 /// A vehicle of a run.
 pub struct Vehicle {
-    /// Its place in the string; 0 leads.
+    /// Its place in the string; 0 is the leader.
     pub index: usize,
     /// Its true motion.
     pub plant: Plant,
-    /// Bumper to bumper.
+    /// Length, bumper to bumper.
     pub length_m: f64,
     /// Its unit.
     pub unit: Unit,
-    /// Whether its unit drives it.
+    /// Whether the driver has engaged the unit.
     pub engaged: bool,
-    /// What its unit commanded last.
+    /// Acceleration that its unit commanded last.
     pub command_mps2: f64,
-    /// The engine force or brake torque that its unit commanded for that.
+    /// Engine force or brake torque that its unit commanded for that acceleration.
     pub effort: Effort,
-    /// Whether its unit's envelope changed that.
+    /// Whether the unit's envelope changed that command.
     pub limited: bool,
-    /// In which mode that was.
+    /// Mode of the unit at that command.
     pub mode: ModeCode,
-    /// What its unit said last of its target.
+    /// The target estimate that its unit sent last.
     pub estimate: Option<TargetEstimate>,
     request: DriverRequest,
     clock_offset_us: u64,
@@ -78,12 +79,12 @@ pub struct Vehicle {
     listener: Receiver<PEERS>,
     transmitter: Transmitter,
     bus: MemoryBus,
-    /// The unit's place on the bus; `None`: a unit outside has it, which commands through these actuators.
+    /// The unit's place on the bus. `None`: a unit outside has that place and commands through `actuators`.
     ecu: Option<MemoryNode>,
     actuators: Actuators,
-    /// When the unit last said something of its target.
+    /// Time of the unit's last target estimate.
     estimate_s: f64,
-    /// How its bus calls the stations.
+    /// Names of the stations on its bus.
     alias: Alias,
     harness: MemoryNode,
     tag: u8,
@@ -91,10 +92,10 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// A vehicle at rest in its seat: nothing on its bus yet. Its unit's own clock started `clock_offset_us` before the run.
+    /// A vehicle at its start, with an empty bus. The clock of its unit started `clock_offset_us` before the run.
     ///
     /// # Errors
-    /// What the unit finds wrong with its configuration.
+    /// An error of the unit's configuration.
     pub fn new(
         index: usize,
         config: &Config,
@@ -139,57 +140,59 @@ impl Vehicle {
         })
     }
 
-    /// Sets out on a way through intersections, whose numbers stand in `course`: from now on it knows where on the globe it is.
+    /// Sets out on a way through intersections, whose numbers are in `course`. From now on the vehicle knows its
+    /// position on the globe.
     ///
     /// # Errors
-    /// What the unit finds wrong with the map.
+    /// An error of the map that the unit found.
     pub fn set_out(&mut self, ground: Ground, itinerary: &'static Itinerary, course: Course) -> Result<(), MapError> {
         self.ground = Some(ground);
         self.relay.set_out(course);
         self.unit.set_out(itinerary)
     }
 
-    /// Lets its modem use no more than so many of the unit's slots, if nothing has been heard yet.
+    /// Limits its modem to `slots` of the unit's slots. It has to be called before the first message is heard.
     pub fn limit_slots(&mut self, slots: usize) {
         self.relay.limit(slots);
     }
 
-    /// Lets the driver want another speed from now on.
+    /// Changes the target speed in the driver's request.
     pub fn want(&mut self, target_speed_mps: f64) {
         self.request.target_speed = speed(target_speed_mps);
     }
 
-    /// A node that listens to all that is on the bus from now on; the bus has the time of the unit's own clock.
+    /// A node that listens to all frames on the bus from now on. The bus has the time of the unit's own clock.
     #[must_use]
     pub fn listen(&self) -> MemoryNode {
         self.bus.node()
     }
 
-    /// Takes its unit off the bus and hands out the place, for a unit outside. On this bus stations are called by `alias`.
+    /// Takes the unit off the bus and returns its place, for a unit outside. On this bus the stations are called by
+    /// `alias`.
     pub fn give_seat(&mut self, alias: Alias) -> MemoryNode {
         self.alias = alias;
         self.relay.limit(ECU_PEERS);
         self.ecu.take().unwrap_or_else(|| self.bus.node())
     }
 
-    /// How its bus calls the stations.
+    /// Names of the stations on its bus.
     #[must_use]
     pub fn alias(&self) -> Alias {
         self.alias
     }
 
-    /// When its unit said so of its target, at a time of the run.
+    /// Instant of its unit's last target estimate, as a time of the run.
     #[must_use]
     pub fn estimate_s(&self) -> f64 {
         self.estimate_s
     }
 
-    /// Lets its driver engage the unit, if it is to drive at all, or not yet.
+    /// Sets whether the driver engages the unit, if the unit drives this vehicle at all.
     pub fn engage(&mut self, engages: bool) {
         self.engaged = engages && self.request.engaged;
     }
 
-    /// Messages that its modem had no slot for.
+    /// Number of messages that its modem had no slot for.
     #[must_use]
     pub fn turned_away(&self) -> u64 {
         self.relay.turned_away()
@@ -207,17 +210,17 @@ impl Vehicle {
         at.since(Instant::from_micros(self.clock_offset_us)).as_micros() as f64 * 1e-6
     }
 
-    /// How the one behind sees it.
+    /// The vehicle as a sensor behind it sees it.
     #[must_use]
     pub fn seen_from_behind(&self) -> Ahead {
         Ahead { rear_m: self.plant.position_m - self.length_m, speed_mps: self.plant.speed_mps }
     }
 
-    /// What the vehicle puts on its unit's bus in a period: its motion, and what it sees `ahead`, what the driver wants and
-    /// the time base when they are due.
+    /// Puts on the unit's bus what the vehicle sends in a period: its motion, and when they are due the view of the
+    /// vehicle `ahead`, the driver's request and the time base.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
         self.sense(at_s)?;
         if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
@@ -244,7 +247,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// The time base's two messages.
+    /// Sends the two messages of the time base.
     fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
         self.synced = (self.synced + 1) % 16;
         let time = gnss(at_s).as_micros();
@@ -254,7 +257,7 @@ impl Vehicle {
         self.put(at_s, &Message::FollowUp(follow_up))
     }
 
-    /// The vehicle's own motion, as its sensors see it now.
+    /// Sends the vehicle's own motion, as its sensors measure it now.
     fn sense(&mut self, at_s: f64) -> io::Result<()> {
         self.tag = (self.tag + 1) % 4;
         let motion = Motion {
@@ -271,17 +274,17 @@ impl Vehicle {
         self.put(at_s, &Message::Ego(Said::Motion(motion)))
     }
 
-    /// What the driver wants.
+    /// Sends the driver's request.
     fn request(&mut self, at_s: f64) -> io::Result<()> {
         let predecessor = self.alias.of_predecessor(self.request.predecessor);
         let request = DriverRequest { engaged: self.engaged, predecessor, ..self.request };
         self.put(at_s, &Message::DriverRequest(request))
     }
 
-    /// A message from the channel.
+    /// Receives a message from the channel.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
         let mut frames = Vec::new();
         self.relay.hear(at_s, &self.alias.of_message(message), &mut frames);
@@ -289,15 +292,15 @@ impl Vehicle {
         frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
     }
 
-    /// One period of the unit: receive, tick, transmit. What its modem broadcasts then, if anything.
+    /// One period of the unit: receive, tick, transmit. Returns what its modem broadcasts then, if anything.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
         let now = self.instant(at_s);
         if let Some(ecu) = &mut self.ecu {
             while let Some((at, frame)) = ecu.receive(now)? {
-                let _ = self.unit.receive(at, &frame); // a refusal is the unit's to count
+                let _ = self.unit.receive(at, &frame); // the unit counts refusals
             }
             for frame in self.unit.tick(now).frames {
                 ecu.send(now, (&frame).into())?;
@@ -310,7 +313,7 @@ impl Vehicle {
         Ok(self.transmitter.broadcast().map(|message| self.alias.of_message(&message)))
     }
 
-    /// Takes in what the unit has said up to now.
+    /// Takes in what the unit has sent up to now.
     fn take_in(&mut self, at_s: f64) -> io::Result<()> {
         let now = self.instant(at_s);
         while let Some((at, frame)) = self.harness.receive(now)? {
@@ -338,10 +341,11 @@ impl Vehicle {
         Ok(())
     }
 
-    /// The body moves on from the time of a tick to the next one. A command from outside is in force from when it came.
+    /// Moves the vehicle on from the time of a tick to the next one. A command from outside is in force from its
+    /// arrival on.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
         if self.ecu.is_some() {
             self.plant.drive(self.effort, period_s);
@@ -355,7 +359,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Drives it by another acceleration than its unit's command, as far as its body can.
+    /// Commands another acceleration than the unit does, as far as the vehicle is capable of it.
     pub fn override_with(&mut self, wanted_mps2: f64) {
         self.command_mps2 = wanted_mps2;
         self.effort = self.effort_for(wanted_mps2);
@@ -379,7 +383,7 @@ impl Vehicle {
     }
 }
 
-/// Whether something of that cycle is due in the tick at `at_s`.
+/// Whether a message with this cycle is due in the tick at `at_s`.
 fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
     let phase = (at_s + 1e-9).rem_euclid(cycle_s);
     phase < period_s - 1e-9

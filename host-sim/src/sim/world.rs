@@ -1,5 +1,5 @@
-//! The world of a run: a scenario enters; every tick the vehicles sense, hear, tick, speak and move; a trace of every tick
-//! leaves.
+//! The world of a run: a scenario enters; in every tick the vehicles sense, hear, tick, send and move; a trace of every
+//! tick leaves.
 //!
 //! The order within a tick is that of [`Stages`].
 
@@ -28,7 +28,8 @@ use crate::sim::air::{Air, Arrived};
 pub use config::{HORIZON_S, config, horizon, machine};
 pub use tick::{Bounds, TargetBelief, Tick};
 
-/// How long the units tick before the run, at least, in seconds: a time base needs two synchronisations to be trusted.
+/// Least time for which the units tick before the run, in seconds. A unit trusts its time base after two
+/// synchronisations.
 pub const WARM_UP_S: f64 = 1.0;
 
 /// The trace of a run.
@@ -37,21 +38,22 @@ pub struct Trace {
     pub times_s: Vec<f64>,
     /// For each vehicle, its ticks.
     pub vehicles: Vec<Vec<Tick>>,
-    /// For each tick, where the literal paper believes that the measured vehicle is; empty if nobody asks it.
+    /// For each tick, where the literal paper's method estimates the measured vehicle to be; empty if it is not
+    /// evaluated.
     pub paper: Vec<Option<f64>>,
-    /// The vehicle whose position is estimated, and by whom.
+    /// The vehicle whose position is estimated, and the vehicle that estimates it.
     pub measured: Measured,
     /// Refusals of all units together, by cause.
     pub refusals: Vec<(Cause, u64)>,
     /// The channel with all that happened on it.
     pub channel: Channel,
-    /// The bus of one vehicle, if it was asked for: times of the run and frames.
+    /// The bus of the logged vehicle, if there is one: times of the run, and frames.
     pub log: Vec<(f64, Frame)>,
-    /// Messages that found no slot in a modem.
+    /// Number of messages that found no slot in a modem.
     pub turned_away: u64,
 }
 
-/// Whose position is estimated by whom.
+/// The vehicle whose position is estimated, and the vehicle that estimates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
     /// The vehicle whose position is estimated.
@@ -61,7 +63,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// The ego as its follower estimates it; if nobody follows the ego, the one ahead as the ego estimates it.
+    /// The ego, as its follower estimates it. If no vehicle follows the ego: the vehicle ahead, as the ego estimates
+    /// it.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let ego = scenario.ego;
@@ -78,18 +81,18 @@ pub struct World<'a> {
     scenario: &'a Scenario,
     vehicles: Vec<Vehicle>,
     air: Air,
-    /// Listens on the bus that is logged.
+    /// The logged vehicle, and a node that listens on its bus.
     log: Option<(usize, MemoryNode)>,
     measured: Measured,
-    /// Where the bodies start.
+    /// Where the vehicles start.
     starts_m: Vec<f64>,
 }
 
 impl<'a> World<'a> {
-    /// The world of a scenario under a seed; the bus of `logged` is kept.
+    /// The world of a scenario with a seed. The bus of the vehicle `logged` is recorded.
     ///
     /// # Errors
-    /// What a unit finds wrong with the configuration that the scenario gives it.
+    /// An error that a unit finds in the configuration from the scenario.
     pub fn new(scenario: &'a Scenario, seed: u64, logged: Option<usize>) -> Result<Self, ConfigError> {
         let mut vehicles = Vec::new();
         for (index, state) in scenario.initial_states(seed).iter().enumerate() {
@@ -119,18 +122,18 @@ impl<'a> World<'a> {
         })
     }
 
-    /// Runs the world to its end. From time to time `progress` is told the share that is done.
+    /// Runs the world to its end. `progress` is called from time to time with the fraction that is done.
     ///
     /// # Errors
-    /// The buses'.
+    /// Errors of the buses.
     pub fn run(self, progress: impl FnMut(f64)) -> io::Result<Trace> {
         self.run_beside(|_, _, _| Ok(()), progress)
     }
 
-    /// Runs the world to its end and shows every tick to `beside`, before the bodies move on.
+    /// Runs the world to its end. `beside` sees every tick before the vehicles move on.
     ///
     /// # Errors
-    /// The buses', and those of `beside`.
+    /// Errors of the buses, and those of `beside`.
     pub fn run_beside(
         mut self,
         mut beside: impl FnMut(&Self, f64, &mut Trace) -> io::Result<()>,
@@ -158,8 +161,8 @@ impl<'a> World<'a> {
         self.finish(trace)
     }
 
-    /// Gives the place of a vehicle's unit on its bus to a unit outside, which calls stations by the alias. What the unit
-    /// outside says up to a time has to be on the bus before the world goes on from that time.
+    /// Gives the unit's place on a vehicle's bus to a unit outside, which calls the stations by `alias`. All that the
+    /// unit outside sends up to a time has to be on the bus before the world goes on from that time.
     pub fn give_seat(&mut self, vehicle: usize, alias: Alias) -> MemoryNode {
         self.vehicles[vehicle].give_seat(alias)
     }
@@ -170,20 +173,20 @@ impl<'a> World<'a> {
         &self.vehicles
     }
 
-    /// Whose position is estimated by whom.
+    /// The vehicle whose position is estimated, and the vehicle that estimates it.
     #[must_use]
     pub fn measured(&self) -> Measured {
         self.measured
     }
 
-    /// Ticks of the run.
+    /// Number of ticks of the run.
     #[must_use]
     pub fn ticks(&self) -> usize {
         (self.scenario.duration_s / self.scenario.period_s).round() as usize
     }
 
-    /// Ticks of a time before the run that is at least so long, in seconds, and ends when the own messages, which go out
-    /// from the first tick on, are due at time 0.
+    /// Number of ticks of a time before the run, at least this long in seconds. It ends so that the own messages, which
+    /// are sent from the first tick on, are due at time 0.
     #[must_use]
     pub fn warm_up_ticks(&self, at_least_s: f64) -> u32 {
         warm_up_ticks(at_least_s, self.scenario.message_rate_hz, self.scenario.period_s)
@@ -205,12 +208,12 @@ impl<'a> World<'a> {
         }
     }
 
-    /// A tick before the run. As every real unit knows it, the units have power and tick, their time base and their sensors
-    /// speak, the drivers drive at constant speed and have not engaged them yet, and nobody is within reach. `at_s` is
-    /// negative; [`answer`](Self::answer) follows.
+    /// A tick before the run. As in every real vehicle, the unit is powered and ticks, and its time base and sensors
+    /// send. The drivers drive at constant speed, no driver has engaged the unit yet, and no other vehicle is within
+    /// radio range. `at_s` is negative; [`answer`](Self::answer) has to follow.
     ///
     /// # Errors
-    /// The buses'.
+    /// Errors of the buses.
     pub fn approach(&mut self, at_s: f64) -> io::Result<()> {
         self.place_recorded_leader(0.0);
         for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
@@ -220,10 +223,10 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// The units answer before the run.
+    /// The units tick and answer before the run.
     ///
     /// # Errors
-    /// The buses'.
+    /// Errors of the buses.
     pub fn answer(&mut self, at_s: f64) -> io::Result<()> {
         self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s).map(|_| ()))
     }
@@ -236,7 +239,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Writes a tick down; after [`act`](Stages::act).
+    /// Adds a tick to the trace; called after [`act`](Stages::act).
     pub fn note(&self, at_s: f64, trace: &mut Trace) {
         trace.times_s.push(at_s);
         for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
@@ -244,10 +247,10 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The run is over: the trace is completed.
+    /// Ends the run and completes the trace.
     ///
     /// # Errors
-    /// The buses'.
+    /// Errors of the buses.
     pub fn finish(mut self, mut trace: Trace) -> io::Result<Trace> {
         trace.refusals = Cause::ALL
             .iter()
@@ -263,7 +266,7 @@ impl<'a> World<'a> {
         Ok(trace)
     }
 
-    /// Everything that has arrived by now, in the order of arrival.
+    /// Delivers all messages that have arrived by now, in the order of arrival.
     fn deliver(&mut self, at_s: f64) -> io::Result<()> {
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             self.vehicles[to].hear(at_s, &message)?;
@@ -271,7 +274,7 @@ impl<'a> World<'a> {
         Ok(())
     }
 
-    /// A leader on a recording is where the recording says.
+    /// Puts a leader that replays a recording at its recorded place.
     fn place_recorded_leader(&mut self, at_s: f64) {
         let Some(motion) = &self.scenario.leader.motion else { return };
         let state = motion.at(motion.start_s() + at_s);
@@ -317,14 +320,14 @@ impl Stages for World<'_> {
     }
 }
 
-/// The ticks of a warm-up: whole cycles of the messages.
+/// Number of ticks of a warm-up, in whole cycles of the messages.
 #[must_use]
 pub fn warm_up_ticks(at_least_s: f64, message_rate_hz: f64, period_s: f64) -> u32 {
     let messages = (at_least_s * message_rate_hz).ceil();
     (messages / message_rate_hz / period_s - 1e-9).ceil() as u32
 }
 
-/// Every unit's clock started at some other moment: up to 1000 s before the run, by seed.
+/// The time from the start of a unit's clock to the run, in microseconds: 10 s to 1010 s, by seed and vehicle.
 #[must_use]
 pub fn clock_offset(seed: u64, index: usize) -> u64 {
     let share = unit(&mut stream(seed, Purpose::ClockOffset(index as u32)));

@@ -1,4 +1,4 @@
-//! A body on the road: a demanded acceleration enters, its motion leaves. All in float64.
+//! A vehicle's body on the road: a demanded acceleration enters, its motion leaves. All values are float64.
 
 /// A vehicle whose acceleration follows its demand with a lag: `ȧ = (u - a)/T`. It never drives backwards.
 #[derive(Clone, Copy, Debug)]
@@ -9,9 +9,9 @@ pub struct Body {
     pub speed: f64,
     /// m/s².
     pub acceleration: f64,
-    /// T, s; 0 is at once.
+    /// T, s; 0 for no lag.
     pub lag: f64,
-    /// Hardest braking that it, or its road, is capable of, m/s².
+    /// Hardest braking that the vehicle, or its road, is capable of, m/s².
     pub braking: f64,
     /// Hardest acceleration, m/s².
     pub pulling: f64,
@@ -20,7 +20,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// Moves on for a time under a demand that holds.
+    /// Moves on for a time under a constant demand.
     pub fn drive(&mut self, demand: f64, time: f64) {
         let demand = demand.clamp(-self.braking, self.pulling);
         let kept = if self.lag > 0.0 { (-time / self.lag).exp() } else { 0.0 };
@@ -31,7 +31,7 @@ impl Body {
             self.rest(demand, behind, time);
             self.acceleration = (demand + behind * kept).max(0.0);
         } else if speed > self.top && speed > self.speed {
-            // At its top speed the engine has nothing left: it arrives there and stays.
+            // At its top speed the engine has no reserve: the vehicle reaches that speed and keeps it.
             let rising = time * ((self.top - self.speed) / (speed - self.speed)).clamp(0.0, 1.0);
             self.position +=
                 0.5 * (self.speed + self.top.max(self.speed)) * rising + self.top.max(self.speed) * (time - rising);
@@ -42,7 +42,7 @@ impl Body {
         }
     }
 
-    /// Comes to rest within the time: the instant is found by halving.
+    /// Stops within the time. The instant is found by bisection.
     fn rest(&mut self, demand: f64, behind: f64, time: f64) {
         let gained = |t: f64| if self.lag > 0.0 { self.lag * (1.0 - (-t / self.lag).exp()) } else { 0.0 };
         let (mut low, mut high) = (0.0, time);
@@ -56,7 +56,7 @@ impl Body {
         self.speed = 0.0;
     }
 
-    /// The same that much later.
+    /// The body after a further time.
     pub fn after(&self, demand: f64, time: f64) -> Self {
         let mut later = *self;
         later.drive(demand, time);
@@ -64,10 +64,12 @@ impl Body {
     }
 }
 
-/// A gap behind a vehicle that brakes with `ahead_brakes` at its hardest, from which a vehicle with this lag that is able to
-/// brake with `braking` stops in time, also if it takes `blind` seconds to hear of it. Not the smallest such gap.
+/// A gap behind a vehicle that brakes with `ahead_brakes` at its hardest. From this gap a vehicle with this lag, which
+/// is able to brake with `braking`, stops in time, even if it learns of it only after `blind` seconds. It is not the
+/// smallest such gap.
 pub fn safe_gap(speed: f64, ahead: f64, ahead_brakes: f64, braking: f64, lag: f64, blind: f64) -> f64 {
-    // Where the one ahead brakes less hard than the ego, the two are nearest on the way, so its braking counts as the ego's own.
+    // If the vehicle ahead brakes less hard than the ego, the two are nearest before they stop. So its braking counts
+    // as the ego's own.
     let reaction = lag + 0.02 + braking / (2.0 * 25.0) + 0.3 + blind;
     let stops = speed * reaction + speed * speed / (2.0 * braking);
     let surely = (ahead - ahead_brakes * blind).max(0.0);

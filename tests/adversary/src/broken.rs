@@ -1,11 +1,12 @@
-//! The assumptions of use that a drive may break, one at a time: a kept scenario enters, the same with one broken leaves.
+//! The assumptions of use that a drive may break, one at a time: a scenario that keeps all of them enters, the same
+//! with one broken leaves.
 
 use serde::{Deserialize, Serialize};
 
 use crate::random::Random;
 use crate::scenario::{Event, Family, Scenario, What};
 
-/// What is broken.
+/// The assumption that is broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Assumption {
@@ -29,7 +30,7 @@ pub enum Assumption {
 }
 
 impl Assumption {
-    /// All of them.
+    /// All assumptions.
     pub const ALL: [Self; 17] = [
         Self::PeerBraking,
         Self::PeerAccuracy,
@@ -50,7 +51,7 @@ impl Assumption {
         Self::OldMessages,
     ];
 
-    /// What is not so, in a row of the table.
+    /// The violation, as text for a row of the table.
     pub const fn says(self) -> &'static str {
         match self {
             Self::PeerBraking => "a peer brakes 20 to 100 % harder than it publishes",
@@ -73,7 +74,7 @@ impl Assumption {
         }
     }
 
-    /// Makes a kept scenario one that breaks this.
+    /// Changes a scenario that keeps all assumptions so that it breaks this one.
     pub fn apply(self, scenario: &mut Scenario, random: &mut Random) {
         scenario.broken = Some(self);
         let again = |scenario: &mut Scenario, every: f64, what: &mut dyn FnMut() -> What| {
@@ -137,7 +138,7 @@ impl Assumption {
 }
 
 impl Assumption {
-    /// A family in which it matters, of those that are wanted if there is one.
+    /// A family in which this assumption matters: one of the `wanted` families, if any of them fits.
     pub fn family(self, wanted: &[Family], turn: u64) -> Family {
         let fits: &[Family] = match self {
             Self::RangeAccuracy => &[Family::Stranger, Family::CutIn],

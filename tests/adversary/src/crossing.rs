@@ -1,6 +1,6 @@
-//! A drive over an intersection: two straight streets on a flat globe, one to the north and one to the east, that cross 400 m
-//! from where each begins. Every vehicle has a unit of its own and hears the others over the radio, if at all; whoever goes
-//! straight on where another one is has collided.
+//! A drive over an intersection: two straight streets on a flat globe, one to the north and one to the east, which
+//! cross 400 m from where each begins. Every vehicle has its own unit and hears the others over the radio, unless it is
+//! deaf. A vehicle that drives straight on while another vehicle is in its place has collided.
 
 use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
 use holdover::units::{Distance, Position};
@@ -13,15 +13,15 @@ use crate::verdict::{Fault, Outcome};
 use crate::wire::{BOOK, Can};
 use crate::world::STEP;
 
-/// One that comes to the intersection.
+/// A vehicle that comes to the intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comer {
     /// 0: to the north, 1: to the east.
     pub street: u8,
-    /// Front bumper, m from where the street begins, and speed, m/s.
+    /// Distance of its front bumper from the beginning of the street, m, and speed, m/s.
     pub at: f64,
     pub speed: f64,
-    /// It hears nobody from then until then, s.
+    /// It hears no vehicle from then until then, s.
     pub deaf_from: f64,
     pub deaf_until: f64,
     /// It is not synchronised from then until then, s.
@@ -29,20 +29,20 @@ pub struct Comer {
     pub timeless_from: f64,
     #[serde(default)]
     pub timeless_until: f64,
-    /// Its driver wants to stand then, for so long, s.
+    /// Its driver wants to stand at that time, s, and for how long, s.
     pub rests_at: f64,
     pub rests: f64,
 }
 
 /// 0.01 m to a step of 1e-7°, in 36 fraction bits.
 const CENTIMETRE: i32 = 687_194_767;
-/// Where the streets cross, and half of the conflict area, m.
+/// Place of the crossing, and half the length of the conflict area, m.
 const CROSSES: f64 = 400.0;
 const HALF: f64 = 4.0;
 const LENGTH: f64 = 4.8;
-/// Where the streets end, and the map: who drives on there is heard still, and in no order any more, m.
+/// End of the streets and of the map, m. A vehicle that drives on there is still heard, and is no longer in any order.
 const ENDS: f64 = 500.0;
-/// When everybody hears, knows the time and wants to drive, all get past within this, s.
+/// If every vehicle hears, is synchronised and wants to drive, all of them get past within this time, s.
 const SERVED: f64 = 90.0;
 
 const fn streets() -> [[Segment; 1]; 2] {
@@ -84,9 +84,9 @@ static WAYS: [Itinerary; 2] = [
     Itinerary { path: &EAST, crossings: &[Crossing { intersection: &CORNER, leg: 1, at: AT }] },
 ];
 
-/// Draws who comes.
+/// Draws the vehicles.
 pub fn draw(scenario: &mut Scenario, random: &mut Random) {
-    // Some of them deaf for minutes.
+    // Some vehicles are deaf for minutes.
     let long = random.chance(0.1);
     scenario.length = if long { random.between(150.0, 300.0) } else { random.between(60.0, 90.0) };
     scenario.range.fitted = false;
@@ -118,13 +118,13 @@ pub fn draw(scenario: &mut Scenario, random: &mut Random) {
     }
 }
 
-/// A vehicle that comes, and what it hears.
+/// A vehicle, and the frames that it hears.
 struct Driver {
     comer: Comer,
     vehicle: Vehicle,
-    /// Where its own axis begins.
+    /// Origin of its own axis.
     axis: f64,
-    /// Frames on their way to it: when, from whom, what.
+    /// Frames on their way to it: time of arrival, sender, place in the block of a slot, data.
     air: Vec<(f64, usize, usize, [u8; 8])>,
     losing: Vec<u32>,
 }
@@ -154,7 +154,7 @@ pub fn run(scenario: &Scenario) -> Outcome {
     outcome
 }
 
-/// In the end everybody has got past the crossing, if all has been well for long enough.
+/// Checks that in the end every vehicle has got past the crossing, if all was well for long enough.
 fn serve(scenario: &Scenario, drivers: &[Driver], outcome: &mut Outcome) {
     let well = |comer: &Comer| {
         let rested = if comer.rests_at < scenario.length { comer.rests_at + comer.rests } else { 0.0 };
@@ -190,7 +190,7 @@ fn driver(scenario: &Scenario, comer: Comer, number: usize) -> Driver {
 }
 
 impl Driver {
-    /// Front bumper along its street.
+    /// Distance of the front bumper along its street.
     fn front(&self) -> f64 {
         self.vehicle.body.position - self.axis
     }
@@ -229,7 +229,7 @@ impl Driver {
         self.vehicle.tick(now + STEP);
     }
 
-    /// What arrives: the same bits in a slot of this vehicle's own modem.
+    /// Delivers what arrives: the same bits in a slot of this vehicle's own modem.
     fn hear(&mut self, until: f64, number: usize) {
         self.air.sort_by(|a, b| a.0.total_cmp(&b.0));
         let arrived = self.air.iter().take_while(|frame| frame.0 <= until).count();
@@ -245,7 +245,8 @@ impl Driver {
     }
 }
 
-/// What the units said goes to all others: a tick's frames are one message, that is lost or late as a whole.
+/// Sends what the units said to all other vehicles. The frames of a tick are one message, which is lost or late as a
+/// whole.
 fn spread(scenario: &Scenario, now: f64, drivers: &mut [Driver], random: &mut Random) {
     for from in 0..drivers.len() {
         let said = core::mem::take(&mut drivers[from].vehicle.own);
@@ -268,7 +269,7 @@ fn spread(scenario: &Scenario, now: f64, drivers: &mut [Driver], random: &mut Ra
                 driver.losing[from] -= 1;
                 continue;
             }
-            // Everybody is heard at least once.
+            // Every vehicle is heard at least once.
             if now > 3.0 && random.chance(radio.loss / radio.burst.max(1.0)) {
                 driver.losing[from] = random.exponential(radio.burst - 0.5).round().max(0.0) as u32;
                 continue;
@@ -283,7 +284,7 @@ fn spread(scenario: &Scenario, now: f64, drivers: &mut [Driver], random: &mut Ra
     }
 }
 
-/// Whether two are where only one can be.
+/// Whether two vehicles are in a place that has room for one only.
 fn collide(now: f64, drivers: &[Driver], outcome: &mut Outcome) -> bool {
     for (number, one) in drivers.iter().enumerate() {
         for (other_number, other) in drivers.iter().enumerate().skip(number + 1) {

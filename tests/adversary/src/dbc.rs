@@ -1,8 +1,9 @@
-//! The text of a DBC file enters; its messages with data ids and signals leave. As much of the format as `holdover.dbc` uses.
+//! A reader of DBC files: text enters; messages with data ids and signals leave. It reads as much of the format as
+//! `holdover.dbc` uses.
 
 use std::collections::HashMap;
 
-/// A signal of Intel byte order: so many bits from a bit of the frame's 64 on.
+/// A signal of Intel byte order: its first bit in the frame's 64 bits, and its number of bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signal {
     start: u32,
@@ -14,7 +15,8 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// Puts the nearest value that is inside the signal's limits into the frame; of what is no number, all ones.
+    /// Writes the nearest value within the signal's limits into the frame. A value that is not a number becomes all
+    /// ones.
     pub fn put(&self, word: &mut u64, value: f64) {
         if value.is_nan() {
             return self.put_raw(word, -1);
@@ -22,7 +24,7 @@ impl Signal {
         self.put_raw(word, ((value / self.factor).round() as i64).clamp(self.least, self.most));
     }
 
-    /// Puts a raw number in, modulo what the bits hold.
+    /// Writes a raw number, modulo the range of the bits.
     pub fn put_raw(&self, word: &mut u64, raw: i64) {
         let mask = self.mask();
         *word = *word & !(mask << self.start) | ((raw as u64 & mask) << self.start);
@@ -61,7 +63,7 @@ pub struct Message {
 }
 
 impl Message {
-    /// The signal of that name. A catalogue without it is not one that this crate is for.
+    /// The signal with this name. It panics if there is none: this crate works only with a catalogue that has it.
     pub fn signal(&self, name: &str) -> Signal {
         *self.signals.get(name).unwrap_or_else(|| panic!("holdover.dbc has no signal {name} in {:#x}", self.id))
     }
@@ -87,7 +89,7 @@ impl Dbc {
                     current = Some(name);
                 }
                 ["SG_", name, rest @ ..] => {
-                    // A multiplexer's mark may stand between the name and the colon.
+                    // A multiplexer's mark may be between the name and the colon.
                     let place = rest.iter().position(|word| *word == ":").expect("a colon") + 1;
                     let message = current.as_ref().and_then(|name| messages.get_mut(name)).expect("a message");
                     message.signals.insert((*name).to_string(), signal(rest[place], rest[place + 1], rest[place + 2]));
@@ -105,12 +107,12 @@ impl Dbc {
         Self(messages)
     }
 
-    /// All of them, in no order.
+    /// All messages, in no particular order.
     pub fn messages(&self) -> impl Iterator<Item = &Message> {
         self.0.values()
     }
 
-    /// The message of that name.
+    /// The message with this name.
     pub fn message(&self, name: &str) -> &Message {
         self.0.get(name).unwrap_or_else(|| panic!("holdover.dbc has no message {name}"))
     }

@@ -1,14 +1,14 @@
-//! What is drawn: a family and a seed enter, a scenario that keeps every assumption of use leaves.
+//! Drawing of scenarios: a family and a seed enter; a scenario that keeps every assumption of use leaves.
 
 use crate::body::safe_gap;
 use crate::manoeuvre;
 use crate::random::Random;
 use crate::scenario::{Bus, Ego, Error, Event, Family, Peer, Radio, Range, Scenario, Sensor, What};
 
-/// What a published accuracy may be on the bus, m and m/s.
+/// Possible published accuracies of position, m, and (below) of speed, m/s.
 const POSITIONS: [f64; 6] = [0.0, 0.05, 0.2, 0.5, 1.0, 3.0];
 const SPEEDS: [f64; 5] = [0.0, 0.02, 0.1, 0.3, 1.0];
-/// Of what is uncertain by the clock, half a millisecond, what is left for a sender's own offset, µs.
+/// Largest clock offset of a sender, µs: what the clock's uncertainty of half a millisecond leaves for it.
 const CLOCK: f64 = 300.0;
 
 /// Draws a scenario.
@@ -99,7 +99,7 @@ fn base(family: Family, seed: u64, random: &mut Random) -> Scenario {
     }
 }
 
-/// A peer so far ahead that the ego is safe behind it, and not nearer than the driver wants.
+/// A peer so far ahead that the ego is safe behind it, and at least at the driver's time gap.
 fn peer(scenario: &Scenario, random: &mut Random, braking: f64, speed: f64, blind: f64) -> Peer {
     let (ego, sensor) = (&scenario.ego, sensor(random));
     let lag = ego.lag * ego.lag_factor;
@@ -160,7 +160,7 @@ fn lorry(scenario: &mut Scenario, random: &mut Random) {
     lorry.pulling = random.between(0.5, 2.0);
     lorry.ahead += lorry.length;
     scenario.ego.gap = random.one_of(&[1.0, 1.0, 1.6]);
-    // It brakes to a stand when the ego has come near, and perhaps has just fallen silent.
+    // The peer brakes to a stand when the ego has come near, and has perhaps just fallen silent.
     let closing = scenario.ego.speed - speed;
     let after = if closing > 2.0 { (lorry.ahead - lorry.length) / closing } else { random.between(5.0, 15.0) };
     let at = match random.below(2) {
@@ -195,7 +195,7 @@ fn stranger(scenario: &mut Scenario, random: &mut Random) {
     }
     for _ in 0..random.below(6) {
         let at = random.between(scenario.ego.engages, scenario.length);
-        // Six of them make no 10 s, after which a standing one is forgotten.
+        // Six such silences stay below 10 s, after which a stationary vehicle is forgotten.
         let longest = if speed > 0.0 { 0.9 } else { 1.6 };
         scenario.event.push(Event { at, what: What::Blind { seconds: random.between(0.1, longest) } });
     }
@@ -258,7 +258,7 @@ fn restart(scenario: &mut Scenario, random: &mut Random) {
     let hardest = braking(random);
     let speed = random.between(0.0, scenario.ego.speed);
     let mut ahead = peer(scenario, random, hardest, speed, 4.0);
-    // It may do what it likes from the beginning: what is not known of it is taken for the worst.
+    // The peer may drive in any way from the beginning: the unit assumes the worst of what it does not know.
     ahead.ahead += safe_gap(scenario.ego.speed, 0.0, 12.0, 8.0, 0.6, 4.0);
     ahead.demand = random.one_of(&[0.0, -99.0, 1.0]);
     scenario.peer.push(ahead);
@@ -281,7 +281,7 @@ fn slots(scenario: &mut Scenario, random: &mut Random) {
         let (peer, slot) = (random.below(4), random.below(8) as u8);
         let gone = 2.1 + random.exponential(2.0);
         if random.chance(0.3) {
-            // Another name, and with it another slot; the driver names the new one when that has been heard.
+            // Another station, and with it another slot. The driver names the new station when the unit has heard it.
             scenario.event.push(Event { at, what: What::Mute { peer, seconds: gone } });
             scenario.event.push(Event { at, what: What::Station { peer, station } });
             scenario.event.push(Event { at, what: What::Slot { peer, slot } });
@@ -299,7 +299,7 @@ fn slots(scenario: &mut Scenario, random: &mut Random) {
 fn garbage(scenario: &mut Scenario, random: &mut Random) {
     following(scenario, random);
     for _ in 0..random.below(6) {
-        // Before the first honest motion nothing is certain that a false one could contradict.
+        // Before the first honest motion there is no bound that a false motion could contradict.
         let at = random.between(2.0, scenario.length);
         let count = 1 + random.below(50) as u32;
         let what = match random.below(3) {

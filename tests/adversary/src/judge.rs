@@ -1,4 +1,4 @@
-//! The checks: the world and what the unit says of it enter, what must not be is found.
+//! The checks: the world and what the unit says of it enter; the faults leave.
 
 use crate::peer::Motion;
 use crate::vehicle::Verdict;
@@ -6,19 +6,19 @@ use crate::verdict::Fault;
 use crate::wire::wrapped;
 use crate::world::World;
 
-/// The bus's rounding of what the unit says of its target's position, m, and speed, m/s.
+/// Rounding on the bus of the target's position, m, and (below) of its speed, m/s, in the unit's estimate.
 const TOLERANCE: f64 = 0.0006;
 const SPEED_TOLERANCE: f64 = 0.0011;
-/// Honest samples are not refused for longer than this, s.
+/// Longest time for which honest samples may be refused, s.
 pub const REFUSED: f64 = 1.0;
-/// Farther away it may be refused, m.
+/// Beyond this distance a motion may be refused, m.
 const REACH: f64 = 1_400.0;
 /// How much faster than wanted it may get, as a factor and m/s: what is wanted is a cap.
 pub const HURRY: (f64, f64) = (1.0, 1.0);
 /// How long a request of before counts, s.
 const WISHED: f64 = 15.0;
 
-/// After every tick.
+/// The checks after every tick.
 pub fn judge(world: &mut World, now: f64) {
     world.outcome.ticks += 1;
     collision(world, now);
@@ -46,7 +46,7 @@ fn bound(world: &mut World, now: f64) {
     let Some(other) = world.others.iter().find(|other| other.station == world.followed && other.station != 0) else {
         return;
     };
-    // A range sensor tells of the named vehicle only while that is on the lane.
+    // A range sensor measures the named vehicle only while that is on the lane.
     if world.scenario.range.fitted && !other.on_lane {
         return;
     }
@@ -90,14 +90,14 @@ fn hurry(world: &mut World, now: f64) {
     }
 }
 
-/// Takes note of what became of a motion that a station really sent.
+/// Records what became of a motion that a station really sent.
 pub fn note_motion(world: &mut World, at: f64, number: usize, motion: &Motion, verdicts: [Verdict; 2]) {
     let front = world.ego.body.position;
     let other = &mut world.others[number];
     let is_far = (other.body.position - front).abs() > REACH;
     let is_newest = motion.stamp > other.newest;
     other.newest = other.newest.max(motion.stamp);
-    // What is incomplete, or was overtaken, or is very old, or from too far away, may be refused.
+    // A motion may be refused if it is incomplete, overtaken, very old, or from too far away.
     if is_far || verdicts.contains(&Verdict::Lost) || !is_newest || at - motion.at > 1.9 {
         return;
     }
@@ -113,7 +113,7 @@ pub fn note_motion(world: &mut World, at: f64, number: usize, motion: &Motion, v
     }
 }
 
-/// When the drive is over.
+/// The checks at the end of the drive.
 pub fn end(world: &mut World, at: f64) {
     let Some(since) = world.well else { return };
     if world.outcome.of(Fault::Collision).is_some() || at - since < 24.0 {
@@ -121,7 +121,7 @@ pub fn end(world: &mut World, at: f64) {
     }
     let (speed, mode) = (world.ego.body.speed, world.ego.said.mode);
     let gap = world.nearest().map_or(f64::NAN, |nearest| nearest.rear() - world.ego.body.position);
-    // Whom the driver names is there to be followed if it is the vehicle ahead, and not out of reach.
+    // The station that the driver names can be followed if it is the vehicle ahead and within reach.
     let is_there = world.nearest().is_some_and(|nearest| nearest.station == world.followed) && gap < 1_400.0;
     if speed < 2.0 || is_there && mode != 1 {
         let told = world.ego.said.told.map_or(f64::NAN, |told| told.behind);

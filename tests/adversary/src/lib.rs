@@ -1,6 +1,7 @@
-//! Random drives through a world of its own. It knows holdover by its CAN frames alone: everything here is float64, the frames
-//! are packed by `holdover.dbc`, and no helper of the core is used. Its README says what is assumed, checked and counted.
-#![allow(missing_docs)] // a program's parts: of a field whose name and unit say all, nothing else is said
+//! Random drives through a world of its own. It knows holdover by its CAN frames alone: all values here are float64,
+//! the frames are packed by `holdover.dbc`, and no function of the core is used. The README states what is assumed,
+//! checked and counted.
+#![allow(missing_docs)] // parts of a program: a field whose name and unit say everything needs no doc
 
 pub mod body;
 pub mod broken;

@@ -1,4 +1,4 @@
-//! The command: random drives by a seed, or one that was kept.
+//! The command: random drives by a seed, or a drive from a file.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

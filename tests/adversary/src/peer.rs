@@ -1,4 +1,4 @@
-//! Another vehicle, driven by events: its body and limits, what it says, and what of that is still on its way.
+//! Another vehicle, driven by events: its body and limits, its messages, and those of them that are still on their way.
 
 use crate::body::Body;
 use crate::random::Random;
@@ -6,7 +6,7 @@ use crate::scenario::{Peer, Radio, Sensor};
 use crate::vehicle::{measured, published};
 use crate::wire::{BOOK, Can, Counters, stamp, wrapped};
 
-/// Harder limits are published for so long before they are used, s.
+/// Time for which harder limits are published before they are used, s.
 const ANNOUNCED: f64 = 10.0;
 
 /// Published limits, m/s².
@@ -19,51 +19,51 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// As the bus can say them: whoever keeps to what it publishes keeps to these.
+    /// The limits as the bus can represent them. A vehicle that keeps its published limits keeps these.
     pub fn new(braking: f64, pulling: f64) -> Self {
         let steps = |value: f64| (value * 50.0).round() / 50.0;
         Self { braking: steps(braking), pulling: steps(pulling) }
     }
 }
 
-/// What is in the air.
+/// A message on its way.
 #[derive(Clone, Copy, Debug)]
 pub enum Message {
     /// Tag, and values as measured.
     Motion(Motion),
-    /// What it publishes of itself.
+    /// The driving parameters.
     DrivingParameters {
-        /// Of the message.
+        /// Tag of the message.
         tag: u8,
-        /// How hard it brakes and pulls.
+        /// Hardest braking and acceleration.
         limits: Limits,
-        /// Bumper to bumper, m.
+        /// Length, bumper to bumper, m.
         length: f64,
     },
 }
 
-/// A motion in the air.
+/// A motion on its way.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Of the message.
+    /// Tag of the message.
     pub tag: u8,
-    /// Whose it is.
+    /// Its station.
     pub station: u8,
-    /// When it was measured, s of true time.
+    /// Time of measurement, s of true time.
     pub at: f64,
-    /// As the sender has it, µs.
+    /// Time of measurement by the sender's clock, µs.
     pub stamp: i64,
     /// As measured.
     pub position: f64,
     pub speed: f64,
     pub acceleration: f64,
     pub demand: f64,
-    /// What is published of the accuracies.
+    /// The sensor with its published accuracies.
     pub sensor: Sensor,
 }
 
 impl Motion {
-    /// As two frames in a slot.
+    /// The two frames in a slot.
     pub fn frames(&self, slot: u8, counters: &mut Counters) -> [Can; 2] {
         let layout = &BOOK.peers[usize::from(slot)].0;
         let tag = f64::from(self.tag);
@@ -74,7 +74,7 @@ impl Motion {
     }
 }
 
-/// As three frames in a slot.
+/// The three frames in a slot.
 pub fn parameter_frames(slot: u8, counters: &mut Counters, tag: u8, limits: &Limits, length: f64) -> [Can; 3] {
     let layout = &BOOK.peers[usize::from(slot)].1;
     let tag = f64::from(tag);
@@ -87,34 +87,34 @@ pub fn parameter_frames(slot: u8, counters: &mut Counters, tag: u8, limits: &Lim
 
 /// The vehicle.
 pub struct Other {
-    /// As the scenario has it.
+    /// The scenario's peer.
     pub set_up: Peer,
-    /// Where it is, and where it was a step before, and when that was.
+    /// Its motion, its motion a step before, and the time of that.
     pub body: Body,
     before: Body,
     since: f64,
-    /// What it is to do, m/s².
+    /// Its demand, m/s².
     pub demand: f64,
-    /// Station and slot as they are now.
+    /// Its present station and slot.
     pub station: u8,
     pub slot: u8,
     /// Whether it is on the ego's lane.
     pub on_lane: bool,
-    /// Limits and length that it publishes.
+    /// The limits and the length that it publishes.
     pub limits: Limits,
     pub length: f64,
-    /// Limits that the unit took last.
+    /// The limits that the unit accepted, with the times.
     pub known: Vec<(f64, Limits)>,
-    /// Whether the unit has taken a motion of that station, and what it publishes.
+    /// Whether the unit has accepted a motion of this station, and its driving parameters.
     pub is_heard: bool,
     pub has_told: bool,
-    /// It is silent until then.
+    /// It is silent until this time.
     pub mute_until: f64,
-    /// When it was put on the bus last; and, in which slot it was to be before.
+    /// Time of its last frames on the bus.
     pub delivered: f64,
-    /// What is on its way, with the time of arrival.
+    /// Messages on their way, with their times of arrival.
     pub air: Vec<(f64, Message)>,
-    /// Stamp of the newest motion that was delivered, and since when honest ones are refused, how many.
+    /// Stamp of the newest delivered motion; and since when honest motions are refused, and how many.
     pub newest: i64,
     pub refused: Option<(f64, u32)>,
     tag: u8,
@@ -127,7 +127,7 @@ pub struct Other {
 }
 
 impl Other {
-    /// As the scenario has it, behind the ego's front bumper at `front`.
+    /// The scenario's peer. The ego's front bumper is at `front`.
     pub fn new(set_up: &Peer, front: f64, seed: u64, number: usize) -> Self {
         let mut random = Random::new(seed, 2000 + number as u64);
         let limits = Limits::new(set_up.braking, set_up.pulling);
@@ -169,13 +169,13 @@ impl Other {
         }
     }
 
-    /// Takes another identity: nobody knows it by that yet.
+    /// Takes another station, which the unit does not know yet.
     pub fn rename(&mut self, station: u8) {
         self.station = station;
         (self.is_heard, self.has_told) = (false, !self.set_up.intends);
     }
 
-    /// Whether the unit knows it by its name: where it is, and how long.
+    /// Whether the unit knows the station's motion and length.
     pub fn is_known(&self) -> bool {
         self.is_heard && self.has_told
     }
@@ -185,21 +185,21 @@ impl Other {
         self.body.position - self.set_up.length
     }
 
-    /// Moves on from an instant.
+    /// Moves on from an instant for a time.
     pub fn drive(&mut self, since: f64, time: f64) {
         (self.before, self.since) = (self.body, since);
         self.body.drive(self.demand, time);
     }
 
-    /// What it is allowed to do: not more than it publishes, nor than the unit was told, nor than anything says that is still on
-    /// its way to the unit. `times` its braking where that assumption is broken.
+    /// Sets its limits: at most those that it publishes, those that the unit has accepted, and those in messages that
+    /// are still on their way to the unit. `times` is the factor on its braking if that assumption is broken.
     pub fn limit(&mut self, times: f64) {
         let mut least = self.limits;
         let in_air = self.air.iter().filter_map(|(_, message)| match message {
             Message::DrivingParameters { limits, .. } => Some(*limits),
             Message::Motion(_) => None,
         });
-        // Harder ones it uses only when they have been known for a while: the last that are older count still.
+        // Harder limits are used only when they have been known for a while. Of the older ones, the last still counts.
         let now = self.since;
         if let Some(old) = self.known.iter().rposition(|(since, _)| now - since > ANNOUNCED) {
             self.known.drain(..old);
@@ -211,7 +211,7 @@ impl Other {
         (self.body.braking, self.body.pulling) = (least.braking * times, least.pulling);
     }
 
-    /// Says what is due until then.
+    /// Sends the messages that are due until then.
     pub fn speak(&mut self, until: f64, epoch: i64, radio: &Radio, times: f64, is_well: bool) {
         while self.next_motion <= until && self.station != 0 {
             let at = self.next_motion;
@@ -243,7 +243,7 @@ impl Other {
                 continue;
             }
             if let Some(arrives) = self.carry(at, radio, is_well) {
-                // ParameterParts have no stamp: the modem hands them on in the order in which they were sent.
+                // Driving parameters have no stamp. The modem passes them on in the order of sending.
                 self.last_parameters = self.last_parameters.max(arrives) + 1e-4;
                 let parameters =
                     Message::DrivingParameters { tag: self.parameters_tag, limits: self.limits, length: self.length };
@@ -252,7 +252,7 @@ impl Other {
         }
     }
 
-    /// When a message that is sent now arrives, if it does.
+    /// Time of arrival of a message that is sent now; `None` if it is lost.
     fn carry(&mut self, at: f64, radio: &Radio, is_well: bool) -> Option<f64> {
         if at < self.mute_until {
             return None;
@@ -276,7 +276,7 @@ impl Other {
         Some(at + (radio.delay + late).min(radio.delay + radio.tail.max(radio.jitter * 6.0)))
     }
 
-    /// What arrives until then, in order.
+    /// The next message that arrives until then, in order.
     pub fn arriving(&mut self, until: f64) -> Option<(f64, Message)> {
         let next = (0..self.air.len()).min_by(|a, b| self.air[*a].0.total_cmp(&self.air[*b].0))?;
         (self.air[next].0 <= until).then(|| self.air.swap_remove(next))

@@ -1,11 +1,11 @@
-//! Chance: a seed enters, numbers leave; the same on every machine. SplitMix64 (Steele, Lea, Flood 2014).
+//! Random numbers: a seed enters, numbers leave, the same on every machine. SplitMix64 (Steele, Lea, Flood 2014).
 
 /// A stream of numbers.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// A stream of its own for every pair of seed and name.
+    /// A separate stream for every pair of seed and name.
     pub fn new(seed: u64, stream: u64) -> Self {
         Self(mix(seed ^ mix(stream.wrapping_add(0x5851_F42D_4C95_7F2D))))
     }
@@ -31,17 +31,17 @@ impl Random {
         self.between(-1.0, 1.0)
     }
 
-    /// True that often.
+    /// True with this probability.
     pub fn chance(&mut self, share: f64) -> bool {
         self.unit() < share
     }
 
-    /// A whole number below the end.
+    /// A whole number from 0 to below `end`.
     pub fn below(&mut self, end: usize) -> usize {
         (self.bits() % end as u64) as usize
     }
 
-    /// One of them.
+    /// One of the choices.
     pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len())]
     }
@@ -52,7 +52,7 @@ impl Random {
     }
 }
 
-/// A number that looks like none of its neighbours'.
+/// A number that does not resemble those of neighbouring seeds.
 pub fn mix(seed: u64) -> u64 {
     let z = (seed ^ (seed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

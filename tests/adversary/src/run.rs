@@ -1,4 +1,4 @@
-//! Many drives: a seed and a number enter, what was found leaves, the same whatever the number of threads.
+//! Many drives: a seed and a number enter; the findings leave. They do not depend on the number of threads.
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,30 +12,30 @@ use crate::scenario::{Family, Scenario};
 use crate::verdict::{Fault, Outcome};
 use crate::world;
 
-/// What is to be run.
+/// The drives to run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The number of the first, and how many, kept and broken.
+    /// Number of the first drive, and how many drives.
     pub first: u64,
     pub drives: u64,
-    /// Of everything.
+    /// Seed of all drives.
     pub seed: u64,
-    /// Only these families.
+    /// The families to draw from.
     pub families: Vec<Family>,
-    /// Whether the other half breaks assumptions; or else all keep them.
+    /// Whether every second drive breaks an assumption; otherwise all drives keep all assumptions.
     pub breaks: bool,
-    /// Whether the envelope is on.
+    /// Whether the envelope is engaged.
     pub envelope: bool,
 }
 
-/// A drive in which a kept assumption did not help.
+/// A drive that keeps all assumptions, and in which a fault was found nevertheless.
 #[derive(Clone, Debug)]
 pub struct Violation {
-    /// Its number.
+    /// Number of the drive.
     pub drive: u64,
-    /// The drive.
+    /// The scenario.
     pub scenario: Scenario,
-    /// What was found.
+    /// The outcome.
     pub outcome: Outcome,
 }
 
@@ -51,21 +51,21 @@ pub struct Row {
     pub stuck: u64,
 }
 
-/// All that was found.
+/// The findings of all drives.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
-    /// Kept drives per family.
+    /// Number of drives that keep all assumptions, by family.
     pub kept: BTreeMap<usize, u64>,
-    /// In the order of the drives.
+    /// Violations in the order of the drives.
     pub violations: Vec<Violation>,
-    /// Per broken assumption.
+    /// Counts by broken assumption.
     pub broken: BTreeMap<Assumption, Row>,
-    /// Ticks, and those whose bound was checked, of kept drives.
+    /// Ticks, and those whose bound was checked, of drives that keep all assumptions.
     pub ticks: u64,
     pub checked: u64,
 }
 
-/// The drive of that number.
+/// The scenario of the drive with this number.
 pub fn scenario(plan: &Plan, drive: u64) -> Scenario {
     let seed = mix(plan.seed ^ mix(drive)) >> 1;
     let is_broken = plan.breaks && drive % 2 == 1;
@@ -84,7 +84,7 @@ pub fn scenario(plan: &Plan, drive: u64) -> Scenario {
     scenario
 }
 
-/// Runs them; `tell` is called with the number of drives that are done.
+/// Runs the drives. `tell` is called with the number of drives that are done.
 pub fn run(plan: &Plan, tell: &(impl Fn(u64) + Sync)) -> Report {
     let done = AtomicU64::new(0);
     let outcomes: Vec<_> = (plan.first..plan.first + plan.drives)
@@ -111,7 +111,7 @@ pub fn run(plan: &Plan, tell: &(impl Fn(u64) + Sync)) -> Report {
     report
 }
 
-#[inline(never)] // a drive's stack is not to be that of every split
+#[inline(never)] // a drive's stack must not be part of every split's
 fn one(plan: &Plan, drive: u64) -> (Family, Option<Assumption>, Outcome) {
     let scenario = scenario(plan, drive);
     (scenario.family, scenario.broken, world::run(&scenario))
@@ -156,7 +156,7 @@ impl Report {
         text
     }
 
-    /// What was found where assumptions are kept, in Markdown, per family and kind.
+    /// The findings where all assumptions are kept, in Markdown, by family and kind of fault.
     pub fn summary(&self) -> String {
         let mut text = format!("| family | drives | {} |\n|---|---|", Fault::ALL.map(Fault::name).join(" | "));
         text += &"---|".repeat(Fault::ALL.len());

@@ -1,11 +1,11 @@
-//! A drive as data: everything that decides what happens in it. A scenario is drawn by `family.rs`, run by `world.rs`, made
-//! smaller by `shrink.rs`, and kept as a TOML file.
+//! A drive as data: all that decides what happens in it. A scenario is drawn by `family.rs`, run by `world.rs`, shrunk
+//! by `shrink.rs`, and stored as a TOML file.
 
 use serde::{Deserialize, Serialize};
 
 use crate::broken::Assumption;
 
-/// What kind of drive it is.
+/// The kind of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Family {
@@ -22,7 +22,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// All of them.
+    /// All families.
     pub const ALL: [Self; 10] = [
         Self::Following,
         Self::Closing,
@@ -36,7 +36,7 @@ impl Family {
         Self::Crossing,
     ];
 
-    /// As on the command line.
+    /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Following => "following",
@@ -59,9 +59,9 @@ impl Family {
 pub enum Error {
     None,
     Uniform,
-    /// At one edge or the other, anew each time.
+    /// At one end of the range or the other, drawn each time.
     Edges,
-    /// Always at the same edge.
+    /// Always at the same end of the range.
     High,
     Low,
 }
@@ -69,41 +69,41 @@ pub enum Error {
 /// A sensor of position and speed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensor {
-    /// Published accuracies, m and m/s; none are published if negative.
+    /// Published accuracies, m and m/s; not published if negative.
     pub position: f64,
     pub speed: f64,
-    /// How it errs in position.
+    /// Error of the position.
     pub error: Error,
-    /// How it errs in speed.
+    /// Error of the speed.
     pub speed_error: Error,
 }
 
 /// The vehicle with the unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ego {
-    /// Where its front bumper is at time 0, m, and how fast it is, m/s.
+    /// Front bumper at time 0, m, and speed, m/s.
     pub position: f64,
     pub speed: f64,
-    /// The speed that the driver wants, m/s, and the time gap, s.
+    /// The driver's target speed, m/s, and time gap, s.
     pub wanted: f64,
     pub gap: f64,
-    /// Configured lag, s, and the true one's ratio to it.
+    /// Configured lag, s, and the ratio of the true lag to it.
     pub lag: f64,
     pub lag_factor: f64,
-    /// What its road allows, m/s².
+    /// Hardest braking that its road allows, m/s².
     pub road: f64,
     /// Its own sensors.
     pub sensor: Sensor,
-    /// What the reported acceleration is off by, m/s².
+    /// Error of the reported acceleration, m/s².
     pub acceleration_off: f64,
-    /// When the driver engages the unit, s.
+    /// Time at which the driver engages the unit, s.
     pub engages: f64,
-    /// The unit's clock when the drive begins, µs, and its drift, ppm.
+    /// The unit's clock at the beginning of the drive, µs, and its drift, ppm.
     pub clock: u64,
     pub drift: f64,
-    /// When the unit is started, s.
+    /// Time at which the unit is started, s.
     pub starts: f64,
-    /// Whether the envelope is on.
+    /// Whether the envelope is engaged.
     pub envelope: bool,
     /// Whether the unit has 400 steps.
     pub long: bool,
@@ -112,13 +112,13 @@ pub struct Ego {
 /// The link between stations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Radio {
-    /// Least delay and mean of what is added, s.
+    /// Least delay, and mean of the random delay that is added, s.
     pub delay: f64,
     pub jitter: f64,
-    /// Share of messages that take up to `tail` seconds, so that they are overtaken.
+    /// Fraction of messages that take up to `tail` seconds, so that later ones overtake them.
     pub tails: f64,
     pub tail: f64,
-    /// Fraction that is lost, and mean number that is lost in a row.
+    /// Fraction of messages that are lost, and mean number of losses in a row.
     pub loss: f64,
     pub burst: f64,
 }
@@ -126,115 +126,119 @@ pub struct Radio {
 /// The vehicle's own bus.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bus {
-    /// Share of single frames that are lost, and that come twice.
+    /// Fractions of single frames that are lost, and that come twice.
     pub loss: f64,
     pub twice: f64,
-    /// Largest error of the time at which a synchronisation is received, µs.
+    /// Largest error of the time of reception of a synchronisation, µs.
     pub jitter: f64,
 }
 
 /// Another vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peer {
-    /// Its hash; 0 has no V2X.
+    /// Its hash; 0 for a vehicle without V2X.
     pub station: u8,
     /// The slot that the modem gives it.
     pub slot: u8,
-    /// Bumper to bumper, m, true and published.
+    /// Length, bumper to bumper, m: true and published.
     pub length: f64,
     /// Published hardest braking and acceleration, m/s².
     pub braking: f64,
     pub pulling: f64,
-    /// Front bumper ahead of the ego's at time 0, m, and speed, m/s.
+    /// Distance of its front bumper ahead of the ego's at time 0, m, and speed, m/s.
     pub ahead: f64,
     pub speed: f64,
     /// Whether it is on the ego's lane.
     pub on_lane: bool,
-    /// Whether it publishes its limits.
+    /// Whether it publishes its driving parameters.
     pub intends: bool,
     /// Its sensors.
     pub sensor: Sensor,
-    /// What its clock is ahead of GNSS time, µs.
+    /// Offset of its clock to GNSS time, µs; positive if ahead.
     pub clock: f64,
-    /// When in a period it speaks, s; 0 to 0.1.
+    /// Time of its messages within a period, s; 0 to 0.1.
     pub phase: f64,
-    /// Acceleration at first, m/s².
+    /// Acceleration at the beginning, m/s².
     pub demand: f64,
 }
 
 /// The range sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Range {
-    /// Whether there is one.
+    /// Whether the ego has one.
     pub fitted: bool,
-    /// How far it sees, m.
+    /// Its range, m.
     pub sees: f64,
-    /// Its accuracies and how it errs.
+    /// Its accuracies and errors.
     pub sensor: Sensor,
-    /// Age of what it says, s.
+    /// Age of its measurements, s.
     pub age: f64,
-    /// Share of views that it misses.
+    /// Fraction of measurements that it misses.
     pub misses: f64,
 }
 
-/// What happens at an instant. `peer` is the number of a peer in its list.
+/// An event. `peer` is the index of a peer in the scenario's list.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", tag = "what")]
 pub enum What {
-    /// Demands an acceleration; beyond its published limits it takes the limit. -99 is "as hard as it may".
+    /// The peer demands an acceleration. A demand beyond its published limits becomes the limit. -99 stands for the
+    /// hardest braking that is allowed.
     Drive { peer: usize, demand: f64 },
-    /// Publishes other limits, and drives by them as soon as it may.
+    /// The peer publishes other limits, and drives by them as soon as it may.
     Limits { peer: usize, braking: f64, pulling: f64 },
-    /// Publishes another length, not less than the true one.
+    /// The peer publishes another length, not less than the true one.
     Length { peer: usize, published: f64 },
-    /// Says nothing for so long.
+    /// The peer is silent for this time.
     Mute { peer: usize, seconds: f64 },
-    /// The ego's modem hears nobody.
+    /// The ego's modem receives nothing.
     Deaf { seconds: f64 },
     /// No time synchronisation.
     NoTime { seconds: f64 },
-    /// The `MotionA` (or `B`) of its next message is lost on the bus, and then it is not heard for so many messages.
+    /// The `MotionA` (or `B`) of the peer's next message is lost on the bus. Then the peer is not received for this
+    /// many messages.
     Torn { peer: usize, half: u8, messages: u32 },
-    /// Its next message is held back until one with the same tag comes, and the `MotionA` (or `B`) of it is lost on the bus.
+    /// The peer's next message is held back until one with the same tag comes. The `MotionA` (or `B`) of that message
+    /// is lost on the bus.
     Overtaken { peer: usize, half: u8 },
-    /// The modem puts it in another slot.
+    /// The modem puts the peer into another slot.
     Slot { peer: usize, slot: u8 },
-    /// It takes another identity.
+    /// The peer takes another station.
     Station { peer: usize, station: u8 },
-    /// The driver names whom to follow; 0: nobody.
+    /// The driver names the station to follow; 0: none.
     Follow { station: u8 },
-    /// The driver wants another speed.
+    /// The driver requests another speed.
     Wanted { speed: f64 },
-    /// It comes onto the ego's lane as soon as there is room.
+    /// The peer comes onto the ego's lane as soon as there is room.
     CutIn { peer: usize },
-    /// It leaves the ego's lane.
+    /// The peer leaves the ego's lane.
     Leave { peer: usize },
     /// The range sensor sees nothing.
     Blind { seconds: f64 },
-    /// The modem says its next message again so many times; if it is to be off, one that its station never sent, off by so much.
+    /// The modem repeats the peer's next message this many times. If `off` is not 0, it repeats a message that the
+    /// station never sent, wrong by this much.
     Copies { peer: usize, count: u32, off: f64 },
-    /// So many frames of garbage: bad lengths, bad checksums.
+    /// This many frames of garbage: wrong lengths, wrong checksums.
     Garbage { count: u32 },
-    /// So many messages that its station never sent, off by so many metres, with good checksums.
+    /// This many messages that the station never sent, wrong by this many metres, with valid checksums.
     Forged { peer: usize, count: u32, off: f64 },
-    /// A motion of another station appears in its slot so many times.
+    /// A motion of another station appears in the peer's slot this many times.
     Intruder { peer: usize, station: u8, count: u32 },
-    /// A synchronisation comes so much later than it says (or earlier, if negative), s.
+    /// A synchronisation comes later than it says by this time, s (earlier, if negative).
     SyncOff { seconds: f64 },
-    /// So many ticks do not happen.
+    /// The unit misses this many ticks.
     Missed { ticks: u32 },
     /// No `EgoMotion`.
     NoEgo { seconds: f64 },
-    /// Everything is well from here on.
+    /// From now on no fault is injected.
     Well,
 }
 
-/// An event.
+/// An event and its time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// When, s.
+    /// Time, s.
     pub at: f64,
-    /// What.
+    /// The event.
     #[serde(flatten)]
     pub what: What,
 }
@@ -244,26 +248,27 @@ pub struct Event {
 pub struct Scenario {
     /// Its kind.
     pub family: Family,
-    /// What it breaks, and by how much, in the assumption's own measure.
+    /// The broken assumption, and by how much it is broken, in that assumption's own measure.
     pub broken: Option<Assumption>,
     #[serde(default)]
     pub amount: f64,
-    /// How far ahead of itself the checker takes the truth to be, m: a fault of its own, to show that it is found.
+    /// An error of the checker itself, to show that it is found: how far ahead of its true place it takes a vehicle to
+    /// be, m.
     #[serde(default)]
     pub shifted: f64,
-    /// Of everything that is drawn while it runs.
+    /// Seed of everything that is drawn during the run.
     pub seed: u64,
-    /// How long it lasts, s.
+    /// Length, s.
     pub length: f64,
     /// GNSS time at its beginning, µs.
     pub epoch: i64,
-    /// Whom the driver tells the unit to follow at first; 0: nobody.
+    /// The station that the driver names at first; 0: none.
     pub follow: u8,
     pub ego: Ego,
     pub radio: Radio,
     pub bus: Bus,
     pub range: Range,
-    /// At an intersection: where each of the other vehicles comes from.
+    /// At an intersection: the approaches of the other vehicles.
     #[serde(default)]
     pub crossing: Vec<crate::crossing::Comer>,
     #[serde(default)]
@@ -273,15 +278,15 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// As a file.
+    /// The scenario as a file.
     pub fn to_text(&self) -> String {
         toml::to_string(self).expect("a scenario is a table")
     }
 
-    /// From a file.
+    /// Reads the scenario from a file.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The reason why it cannot be read.
     pub fn from_text(text: &str) -> Result<Self, String> {
         toml::from_str(text).map_err(|error| error.to_string())
     }

@@ -1,13 +1,13 @@
-//! A drive in which something was found enters; a smaller one in which the same is found leaves.
+//! Shrinking: a drive with a fault enters, a smaller drive with the same fault leaves.
 
 use crate::scenario::{Error, Scenario};
 use crate::verdict::Fault;
 use crate::world;
 
-/// So many runs are spent on one.
+/// Largest number of runs for one drive.
 const RUNS: usize = 400;
 
-/// Makes it smaller for as long as that is still found.
+/// Makes the scenario smaller while the fault is still found.
 pub fn shrink(scenario: &Scenario, fault: Fault) -> Scenario {
     let mut best = scenario.clone();
     let mut runs = 0;
@@ -31,7 +31,7 @@ pub fn shrink(scenario: &Scenario, fault: Fault) -> Scenario {
             s.event.retain(|event| event.at < length);
         });
     }
-    // Runs of events first, then one by one.
+    // Groups of events are removed first, then single events.
     let mut size = best.event.len().div_ceil(2);
     while size > 0 {
         let mut from = 0;
@@ -64,7 +64,7 @@ pub fn shrink(scenario: &Scenario, fault: Fault) -> Scenario {
     best
 }
 
-/// What makes it simpler, one by one.
+/// The simplifications, which are applied one by one.
 const SIMPLER: &[&dyn Fn(&mut Scenario)] = &[
     &|s| (s.radio.loss, s.radio.burst) = (0.0, 1.0),
     &|s| (s.radio.tails, s.radio.tail) = (0.0, 0.0),
@@ -73,7 +73,7 @@ const SIMPLER: &[&dyn Fn(&mut Scenario)] = &[
     &|s| s.bus.loss = 0.0,
     &|s| s.bus.twice = 0.0,
     &|s| s.bus.jitter = 0.0,
-    // Who has no V2X is to be seen.
+    // A vehicle without V2X has to be visible to the range sensor.
     &|s| s.range.fitted &= s.peer.iter().any(|p| p.station == 0),
     &|s| s.range.misses = 0.0,
     &|s| s.ego.drift = 0.0,

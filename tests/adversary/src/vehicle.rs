@@ -1,5 +1,6 @@
-//! A vehicle with a unit: its sensors, its driver's desk and its modem put frames on its bus, the bus loses or doubles some,
-//! the unit takes them and answers, and what it answers is read from its frames. The unit is known by its doors alone.
+//! A vehicle with a unit. Its sensors, its driver and its modem put frames on its bus, and the bus loses or doubles
+//! some. The unit receives them and answers, and the answers are read from its frames. The unit is used through
+//! `receive` and `tick` alone.
 
 use embedded_can::Frame;
 use holdover::config::Envelope;
@@ -14,7 +15,7 @@ use crate::random::Random;
 use crate::scenario::{Bus, Ego, Error, Sensor};
 use crate::wire::{BOOK, Can, Counters, stamp, wrapped};
 
-/// The doors of a unit, whatever its capacities.
+/// The functions of a unit, whatever its capacities.
 trait Doors: Send {
     fn start(&mut self, config: &Config);
     fn set_out(&mut self, way: &'static Itinerary);
@@ -41,7 +42,7 @@ impl<const STEPS: usize> Doors for OnboardUnit<8, 8, STEPS> {
     }
 }
 
-#[inline(never)] // the unit passes over the stack on its way to the heap, and is not to stay there
+#[inline(never)] // the unit passes over the stack on its way to the heap, and must not stay there
 fn doors<const STEPS: usize>() -> Box<dyn Doors> {
     Box::new(OnboardUnit::<8, 8, STEPS>::idle())
 }
@@ -53,16 +54,17 @@ pub enum Verdict {
     Lost,
     /// The unit refused it, or the message that it completes.
     Refused,
-    /// Nothing is known yet.
+    /// The message is not complete yet.
     Waits,
-    /// The unit took the message that it completes.
+    /// The unit accepted the message that it completes.
     Taken,
 }
 
-/// Where the unit says that its target is: its estimate, and how far behind and ahead, slower and faster, it may be.
+/// The unit's target estimate, and its bound: how far behind and ahead, and how much slower and faster, the target may
+/// be.
 #[derive(Clone, Copy, Debug)]
 pub struct Told {
-    /// m; a position of the bus, which wraps.
+    /// m; a position on the bus, which wraps.
     pub position: f64,
     pub behind: f64,
     pub ahead: f64,
@@ -72,7 +74,7 @@ pub struct Told {
     pub faster: f64,
 }
 
-/// What the unit said last.
+/// The last output of the unit.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Said {
     /// m/s².
@@ -81,17 +83,17 @@ pub struct Said {
     pub mode: u8,
     /// The target, with its bound.
     pub told: Option<Told>,
-    /// By how much the estimate is outside of the unit's own bound, m.
+    /// Distance by which the estimate is outside of the unit's own bound, m.
     pub estimate_outside: f64,
 }
 
 /// The vehicle.
 pub struct Vehicle {
-    /// Where it is.
+    /// Its motion.
     pub body: Body,
-    /// What its unit said last.
+    /// The last output of its unit.
     pub said: Said,
-    /// What the unit said for others to hear, in its last answer.
+    /// The `Own*` frames in its unit's last answer.
     pub own: Vec<holdover::wire::Frame>,
     /// Whether the unit runs.
     pub runs: bool,
@@ -111,13 +113,13 @@ pub struct Vehicle {
     station: u8,
 }
 
-/// A number of the core's fixed point words.
+/// A number in the core's fixed-point format.
 fn milli(value: f64) -> i32 {
     (value * 1000.0).round() as i32
 }
 
 impl Vehicle {
-    /// A vehicle as the scenario has it; the unit is not started.
+    /// The vehicle of a scenario. The unit is not started.
     pub fn new(ego: &Ego, bus: &Bus, epoch: i64, seed: u64, station: u8) -> Self {
         let mut config = Config::car(StationHash(station));
         config.lag = FineSeconds::from_millis(milli(ego.lag));
@@ -156,7 +158,7 @@ impl Vehicle {
         }
     }
 
-    /// Starts the unit, on its way if it has one.
+    /// Starts the unit, with its way if it has one.
     pub fn start(&mut self, way: Option<&'static Itinerary>) {
         self.doors.start(&self.config);
         if let Some(way) = way {
@@ -176,12 +178,12 @@ impl Vehicle {
         Instant::from_micros(self.set_up.clock.saturating_add_signed(micros.round() as i64))
     }
 
-    /// Nothing is received later than the tick before which it is handed in.
+    /// No frame is received later than the tick before which it is passed on.
     pub fn ticks_at(&mut self, at: f64) {
         self.next_tick = at;
     }
 
-    /// Puts a frame on the bus: most of them reach the unit.
+    /// Puts a frame on the bus. Most frames reach the unit.
     pub fn put(&mut self, at: f64, frame: &Can) -> Verdict {
         if !self.runs || self.bus.loss > 0.0 && self.random.chance(self.bus.loss) {
             return Verdict::Lost;
@@ -194,12 +196,12 @@ impl Vehicle {
         verdict
     }
 
-    /// The bus is sound from now on.
+    /// From now on the bus loses and doubles no frames.
     pub fn heal(&mut self) {
         (self.bus.loss, self.bus.twice) = (0.0, 0.0);
     }
 
-    /// One time synchronisation, received so much later than it says.
+    /// Sends one time synchronisation, which is received `late` later than it says.
     pub fn synchronise(&mut self, at: f64, late: f64) {
         self.sequence = (self.sequence + 1) % 16;
         let sequence = f64::from(self.sequence);
@@ -211,7 +213,8 @@ impl Vehicle {
         self.put(at + jitter + late + 0.0004, &follow_up);
     }
 
-    /// The ego's own motion as its sensors have it now, in error by so many times what they say.
+    /// Sends the ego's own motion as its sensors measure it now. `times` is the error relative to the published
+    /// accuracy.
     pub fn sense(&mut self, at: f64, body: &Body, times: f64) {
         self.tag = (self.tag + 1) % 4;
         let sensor = self.set_up.sensor;
@@ -228,7 +231,7 @@ impl Vehicle {
         self.put(at + 0.0009, &b);
     }
 
-    /// The driver's request; whether the unit took it.
+    /// Sends the driver's request. Returns whether the unit accepted it.
     pub fn request(&mut self, at: f64, engaged: bool, follow: Option<u8>, wanted: f64, gap: f64) -> bool {
         let kind = match follow {
             None => 0.0,
@@ -240,14 +243,14 @@ impl Vehicle {
         self.put(at, &frame) == Verdict::Taken
     }
 
-    /// A view of the range sensor: distance, difference of speeds, and age.
+    /// Sends a measurement of the range sensor: distance, difference of speeds, and age.
     pub fn view(&mut self, at: f64, sensor: &Sensor, distance: f64, difference: f64, age: f64) {
         let values = [distance, difference, sensor.position, sensor.speed, BOOK.range.signals[4].up(age)];
         let frame = BOOK.range.seal(&mut self.sensors, &values);
         self.put(at, &frame);
     }
 
-    /// Where it is on the globe, in 1e-7°, with a heading in degrees, of the motion that was sensed last.
+    /// Sends the position on the globe, in 1e-7°, with a heading in degrees, of the motion that was measured last.
     pub fn place(&mut self, at: f64, latitude: i64, longitude: i64, heading: f64, sensed: f64) {
         let tag = f64::from(self.tag);
         let stamped = stamp(self.gnss(sensed));
@@ -312,7 +315,7 @@ fn told(a: u64, b: u64) -> Option<Told> {
     })
 }
 
-/// What a sensor says of a body.
+/// The measurement of a body by a sensor.
 pub fn measured(sensor: &Sensor, body: &Body, times: f64, random: &mut Random) -> (f64, f64) {
     let off = error(sensor.error, random) * largest(sensor.position, 5.0, random) * times;
     let faster = error(sensor.speed_error, random) * largest(sensor.speed, 1.5, random) * times;
@@ -329,7 +332,7 @@ pub fn largest(published: f64, otherwise: f64, random: &mut Random) -> f64 {
     }
 }
 
-/// As it stands in a message: where nothing is published, no number.
+/// The accuracies in a message; not a number where none is published.
 pub fn published(sensor: &Sensor) -> (f64, f64) {
     let code = |value: f64| if value < 0.0 { f64::NAN } else { value };
     (code(sensor.position), code(sensor.speed))

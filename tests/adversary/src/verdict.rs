@@ -1,6 +1,6 @@
-//! What is checked of a drive, and what was found.
+//! The verdict on a drive: its checks and its findings.
 
-/// What must not be.
+/// A fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Fault {
     Collision,
@@ -12,11 +12,11 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All of them.
+    /// All faults.
     pub const ALL: [Self; 6] =
         [Self::Collision, Self::Bound, Self::Estimate, Self::Refused, Self::Deadlock, Self::Hurry];
 
-    /// In a line of output.
+    /// Its name in the output.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Collision => "collision",
@@ -29,25 +29,25 @@ impl Fault {
     }
 }
 
-/// The first time that something was found.
+/// The first occurrence of a fault.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// What.
+    /// The fault.
     pub fault: Fault,
-    /// When, s.
+    /// Time, s.
     pub at: f64,
-    /// How much: m/s at impact, m outside, s refused.
+    /// Size: m/s at impact, m outside, s refused.
     pub amount: f64,
-    /// In words.
+    /// Description in words.
     pub text: String,
 }
 
-/// What a drive came to.
+/// The outcome of a drive.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// At most one of each kind, in the order in which they were found.
+    /// At most one finding of each fault, in the order of their times.
     pub findings: Vec<Finding>,
-    /// Ticks, and of them with the truth outside.
+    /// Ticks, and those with the true motion outside the bound.
     pub ticks: u64,
     pub outside: u64,
     /// Ticks whose bound was checked.
@@ -55,12 +55,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The finding of that kind.
+    /// The finding of a fault.
     pub fn of(&self, fault: Fault) -> Option<&Finding> {
         self.findings.iter().find(|finding| finding.fault == fault)
     }
 
-    /// Takes note of what was found; the first of each kind is kept, with the largest amount.
+    /// Records a finding. The first one of each fault is kept, with the largest size.
     pub fn find(&mut self, fault: Fault, at: f64, amount: f64, text: impl FnOnce() -> String) {
         match self.findings.iter_mut().find(|finding| finding.fault == fault) {
             Some(finding) => finding.amount = finding.amount.max(amount),

@@ -1,6 +1,6 @@
-//! What stands in frames: values enter and protected frames leave, for every message that this world speaks; frames of the
-//! unit enter and values leave. Layouts and data ids are those of `holdover.dbc`; the protection is AUTOSAR E2E Profile 1,
-//! variant 1A, written anew.
+//! Packing of frames: values enter and protected frames leave, for every message that this world sends; frames of the
+//! unit enter and values leave. Layouts and data ids are those of `holdover.dbc`. The protection is AUTOSAR E2E Profile
+//! 1, variant 1A, implemented independently of the core.
 
 use std::sync::LazyLock;
 
@@ -8,17 +8,17 @@ use embedded_can::{Frame, Id, StandardId};
 
 use crate::dbc::{Dbc, Message, Signal};
 
-/// The slots of the file.
+/// Number of slots in `holdover.dbc`.
 pub const SLOTS: usize = 8;
 
-/// A frame as it is on the bus; garbage may have any length up to 8.
+/// A frame on the bus. Garbage may have any length up to 8.
 #[derive(Clone, Copy, Debug)]
 pub struct Can {
-    /// 11 bits.
+    /// Identifier of 11 bits.
     pub id: u16,
     /// Its data.
     pub data: [u8; 8],
-    /// How many of them there are.
+    /// Number of data bytes.
     pub length: u8,
 }
 
@@ -59,7 +59,7 @@ fn crc(data_id: u16, data: &[u8; 8]) -> u8 {
     start.iter().chain(&data[1..]).fold(0, |crc, byte| table[usize::from(crc ^ byte)])
 }
 
-/// A message with its signals in the order in which they were asked for.
+/// A message, with its signals in the order in which they were requested.
 #[derive(Clone, Debug)]
 pub struct Layout<const N: usize> {
     /// Its identifier.
@@ -104,12 +104,12 @@ impl<const N: usize> Layout<N> {
 #[derive(Clone, Debug)]
 pub struct Counters(Vec<u8>);
 
-/// First identifier of the block, and how many there are.
+/// First identifier of the block; and the number of identifiers.
 const BASE: u16 = 1152;
 const BLOCK: usize = 192;
 
 impl Counters {
-    /// All start at this.
+    /// Counters that all start at this value.
     pub fn new(start: u8) -> Self {
         Self(vec![start % 15; BLOCK])
     }
@@ -130,7 +130,7 @@ pub struct Motion {
     pub b: Layout<6>,
 }
 
-/// `DrivingParameters` of a sender: Tag, Part, and what stands in each part.
+/// `DrivingParameters` of a sender: Tag, Part, and the signals of each part.
 #[derive(Clone, Debug)]
 pub struct DrivingParameters {
     /// Length, Standstill, PredecessorKind, PredecessorStation, TargetSpeed.
@@ -154,7 +154,7 @@ pub struct Book {
     pub request: Layout<5>,
     /// Distance, SpeedDifference, DistanceAccuracy, SpeedAccuracy, Age.
     pub range: Layout<5>,
-    /// The vehicle's own.
+    /// Motion of the ego.
     pub ego: Motion,
     /// Tag, Part, Latitude, Stamp.
     pub place: Layout<4>,
@@ -166,18 +166,19 @@ pub struct Book {
     pub estimate_b: Layout<4>,
     /// Cause, Count, Mode.
     pub health: Layout<3>,
-    /// In each slot.
+    /// Messages of each slot.
     pub peers: Vec<(Motion, DrivingParameters)>,
-    /// What the unit says for others, by its place in the block of a slot, and the same in each slot.
+    /// The unit's own messages for other vehicles, by their place in the block of a slot; and the same messages in each
+    /// slot.
     pub own: Vec<(Layout<0>, Vec<Layout<0>>)>,
     all: Vec<Layout<0>>,
 }
 
-/// The book of `holdover.dbc`.
+/// The messages of `holdover.dbc`.
 pub static BOOK: LazyLock<Book> = LazyLock::new(|| Book::new(&Dbc::parse(include_str!("../../../holdover.dbc"))));
 
 impl Book {
-    /// Whether a frame that was made by chance has a checksum that fits.
+    /// Whether a random frame has a valid checksum.
     pub fn is_intact(&self, frame: &Can) -> bool {
         self.all.iter().any(|layout| layout.open(frame).is_some())
     }

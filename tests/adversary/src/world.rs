@@ -1,5 +1,6 @@
-//! A drive on one lane: a scenario enters, what was found leaves. Ten milliseconds at a time: what is due happens, bodies move,
-//! stations speak, modem and sensors put frames on the bus, the unit ticks, and what it said is judged.
+//! A drive on one lane: a scenario enters, the findings leave. In each step of ten milliseconds the events that are due
+//! happen, bodies move, stations send, modem and sensors put frames on the bus, the unit ticks, and its output is
+//! judged.
 
 mod happen;
 
@@ -13,9 +14,9 @@ use crate::vehicle::{Vehicle, Verdict, error, largest};
 use crate::verdict::{Fault, Outcome};
 use crate::wire::SLOTS;
 
-/// Seconds of one step.
+/// Length of a step, s.
 pub const STEP: f64 = 0.01;
-/// After so long the modem gives a slot to another station, and a station another slot, s.
+/// Time after which the modem gives a slot to another station, and a station another slot, s.
 const SLOT_REUSE: f64 = 2.05;
 
 /// Runs a drive.
@@ -35,34 +36,35 @@ pub fn run(scenario: &Scenario) -> Outcome {
     world.outcome
 }
 
-/// What is on its way from the range sensor: when it arrives, distance, difference of speeds, age.
+/// A measurement of the range sensor on its way: time of arrival, distance, difference of speeds, age.
 type View = (f64, f64, f64, f64);
 
 /// The world.
 pub struct World<'a> {
-    /// What happens in it.
+    /// The scenario.
     pub scenario: &'a Scenario,
     /// The vehicle with the unit.
     pub ego: Vehicle,
-    /// The others.
+    /// The other vehicles.
     pub others: Vec<Other>,
-    /// Station that the unit was told to follow, as far as it took that.
+    /// The station that the unit was told to follow, as far as it accepted that.
     pub followed: u8,
-    /// Speeds that the driver has wanted: the highest that still counts, and until when.
+    /// The driver's target speed; and the highest speed before the last change, with the time of that change.
     pub wanted: f64,
     pub(crate) wanted_before: (f64, f64),
-    /// What was found.
+    /// The findings.
     pub outcome: Outcome,
-    /// Whether everything is well, and since when.
+    /// Time since which no fault is injected; `None` while faults may be injected.
     pub well: Option<f64>,
     engaged: bool,
-    /// Whom the driver would name, and names: who has been heard of by that name, and how long it is.
+    /// The station that the driver wants to follow, and the station that the driver names. A station is named once the
+    /// unit knows its motion and its length.
     follow: u8,
     names: u8,
     next_event: usize,
     cutting_in: Vec<usize>,
     slot_requests: Vec<(usize, u8)>,
-    /// When the modem used a slot last, and for whom.
+    /// Time at which the modem last used each slot, and the station.
     slot_used: [(f64, u8); SLOTS],
     deaf_until: f64,
     timeless_until: f64,
@@ -117,7 +119,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The factor by which something is off where that assumption is broken.
+    /// The factor of an error if the assumption is broken; 1 otherwise.
     fn times(&self, assumption: Assumption) -> f64 {
         if self.scenario.broken == Some(assumption) { self.scenario.amount } else { 1.0 }
     }
@@ -165,12 +167,12 @@ impl<'a> World<'a> {
         judge::judge(self, end);
     }
 
-    /// What the driver does while the unit is in standby.
+    /// The driver's demand while the unit is in standby.
     fn driver(&self) -> f64 {
         if self.is_near() { -8.0 } else { (self.scenario.ego.speed - self.ego.body.speed).clamp(-1.0, 0.5) }
     }
 
-    /// Whether somebody on the lane is so near that it is not known to be safe, whoever it is.
+    /// Whether any vehicle on the lane is so near that following it may not be safe.
     fn is_near(&self) -> bool {
         let (body, lag) = (&self.ego.body, self.scenario.ego.lag * self.scenario.ego.lag_factor);
         self.others.iter().filter(|other| other.on_lane).any(|other| {
@@ -180,7 +182,7 @@ impl<'a> World<'a> {
         })
     }
 
-    /// What the vehicle itself says in a step, and its driver.
+    /// Puts the frames of the vehicle itself and of its driver on the bus in a step.
     fn put_own(&mut self, now: f64, before: &crate::body::Body, demand: f64) {
         let tick = (now / STEP).round() as u64;
         if tick.is_multiple_of(50) && now >= self.timeless_until {
@@ -196,7 +198,7 @@ impl<'a> World<'a> {
             self.ego.sense(now + sensed, &body, times);
         }
         if tick % 10 == 3 {
-            // The driver takes care until the unit is engaged, and engages it where that is safe.
+            // The driver drives carefully until the unit is engaged, and engages it where that is safe.
             let is_known = self.is_known(self.follow);
             self.engaged |= now >= self.scenario.ego.engages && is_known && !self.is_near();
             if is_known {
@@ -211,12 +213,12 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Whether the unit knows a station, if that is one.
+    /// Whether the unit knows a station; false for no station.
     fn is_known(&self, station: u8) -> bool {
         station == 0 || self.others.iter().any(|other| other.station == station && other.is_known())
     }
 
-    /// The nearest rear bumper on the lane ahead.
+    /// The vehicle with the nearest rear bumper ahead on the lane.
     pub fn nearest(&self) -> Option<&Other> {
         let front = self.ego.body.position;
         let ahead = self.others.iter().filter(|other| other.on_lane && other.body.position > front);
@@ -258,7 +260,7 @@ impl<'a> World<'a> {
             Message::Motion(motion) => motion.station,
             Message::DrivingParameters { .. } => self.others[number].station,
         };
-        // The modem gives a slot to another station when that has been free for so long.
+        // The modem gives a slot to another station when the slot has been free for long enough.
         let (used, by) = self.slot_used[usize::from(slot)];
         if by != station && at - used < SLOT_REUSE {
             return;
@@ -284,7 +286,7 @@ impl<'a> World<'a> {
     fn deliver_motion(&mut self, at: f64, number: usize, slot: u8, motion: Motion) {
         let age = at - motion.at;
         if age > 12.0 && self.scenario.broken != Some(Assumption::OldMessages) {
-            return; // the modem drops it
+            return; // the modem drops the frame
         }
         if self.is_overtaken(at, number, slot, &motion) {
             return;
@@ -320,7 +322,7 @@ impl<'a> World<'a> {
             let braking = if other.station == 0 { 12.0 } else { other.limits.braking };
             let speed = ego.speed + ego.acceleration.max(0.0) * 0.5;
             let room = safe_gap(speed, other.body.speed, braking, 8.0, lag, 0.4) + 3.0;
-            // Not into somebody else, and not a vehicle that would be out of sight.
+            // A vehicle does not cut into another one, and it must not be out of sight.
             let gap = other.rear() - ego.position;
             let ahead = self.nearest().map_or(f64::MAX, |nearest| nearest.rear() - other.body.position);
             let is_seen = other.station != 0 && other.is_known()
@@ -336,7 +338,7 @@ impl<'a> World<'a> {
         }
     }
 
-    /// Nobody drives through another one: who is about to be hit from behind gets out of the way.
+    /// No vehicle drives through another one: a vehicle that is about to be hit from behind leaves the lane.
     fn make_way(&mut self) {
         for number in 0..self.others.len() {
             let (position, on_lane) = (self.others[number].body.position, self.others[number].on_lane);
@@ -347,7 +349,8 @@ impl<'a> World<'a> {
         }
     }
 
-    /// The modem keeps its rules: a station that has been silent in its slot for two seconds, and a slot that has been free as long.
+    /// Changes slots by the modem's rules: the station has been silent in its slot for two seconds, and the new slot
+    /// has been free for as long.
     fn change_slots(&mut self, now: f64) {
         for place in (0..self.slot_requests.len()).rev() {
             let (number, slot) = self.slot_requests[place];

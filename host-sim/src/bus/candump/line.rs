@@ -1,4 +1,4 @@
-//! One line of a candump log: text enters, what it says or why it says nothing leaves.
+//! One line of a candump log: text enters, its content leaves, or the error.
 
 use super::{Content, Entry, Interface};
 use crate::bus::Frame;
@@ -12,7 +12,7 @@ const ERROR_FLAG: u32 = 0x2000_0000;
 /// The most bytes of an FD frame.
 const FD_BYTES: usize = 64;
 
-/// What the line says; `None` if it is blank.
+/// The content of a line; `None` if it is blank.
 pub fn parse(line: &str) -> Result<Option<Entry>, Error> {
     let mut words = line.split_ascii_whitespace();
     let Some(mut word) = words.next() else { return Ok(None) };
@@ -40,12 +40,12 @@ pub fn parse(line: &str) -> Result<Option<Entry>, Error> {
 
 const NOT_A_LOG: &str = "give a log as `candump -l` writes it";
 
-/// The end of a log that was being written when the machine stopped.
+/// The error of the last line of a log that was being written when the machine stopped.
 fn cut_off() -> Error {
     Error::new("the line is not complete", "delete it")
 }
 
-/// `seconds.fraction`, cut off after microseconds.
+/// The time of `seconds.fraction`, cut off after microseconds.
 fn instant(stamp: &str) -> Result<Instant, Error> {
     let micros = || {
         let (seconds, fraction) = stamp.split_once('.')?;
@@ -74,7 +74,7 @@ fn logged(id: &str, data: &str) -> Result<Content, Error> {
     if let Some(dlc) = data.strip_prefix('R') {
         return remote(id, if dlc.is_empty() { "0" } else { dlc });
     }
-    // `_9` to `_F` behind eight bytes is a raw length code, which means eight too.
+    // `_9` to `_F` after eight bytes is a raw length code, which also means eight.
     let data = data.split_once('_').map_or(data, |(data, _)| data);
     let mut bytes = heapless::Vec::<u8, 8>::new();
     if !data.len().is_multiple_of(2) {

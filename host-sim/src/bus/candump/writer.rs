@@ -1,4 +1,4 @@
-//! Writes candump logs: frames with their times enter, lines as of `candump -l` leave.
+//! Writes candump logs: frames with their times enter, lines in the form of `candump -l` leave.
 
 use super::Interface;
 use crate::bus::Frame;
@@ -17,8 +17,8 @@ pub struct LogWriter<W> {
 }
 
 impl<W: Write> LogWriter<W> {
-    /// Writes to `out`, best a buffered one; `None` if that cannot be the name of an interface: 1 to 15 characters
-    /// without blanks.
+    /// A log that is written to `out`, which should be buffered. `None` if `interface` is not a possible name of an
+    /// interface: 1 to 15 characters without blanks.
     #[must_use]
     pub fn new(out: W, interface: &str) -> Option<Self> {
         if interface.is_empty() || interface.contains(|c: char| c.is_whitespace() || c.is_control()) {
@@ -30,7 +30,7 @@ impl<W: Write> LogWriter<W> {
     /// Writes one frame.
     ///
     /// # Errors
-    /// The writer's.
+    /// Errors of the writer.
     pub fn write(&mut self, at: Instant, frame: &Frame) -> io::Result<()> {
         self.line.clear();
         self.format(at, frame).map_err(io::Error::other)?;
@@ -40,7 +40,7 @@ impl<W: Write> LogWriter<W> {
     /// Writes one error frame.
     ///
     /// # Errors
-    /// The writer's.
+    /// Errors of the writer.
     pub fn write_error(&mut self, at: Instant, error: &BusError) -> io::Result<()> {
         const ERROR_FLAG: u32 = 0x2000_0000;
         self.line.clear();
@@ -51,10 +51,10 @@ impl<W: Write> LogWriter<W> {
         self.out.write_all(self.line.as_bytes())
     }
 
-    /// Hands over what it still holds.
+    /// Writes what is still buffered.
     ///
     /// # Errors
-    /// The writer's.
+    /// Errors of the writer.
     pub fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
@@ -62,7 +62,7 @@ impl<W: Write> LogWriter<W> {
     /// Ends the log.
     ///
     /// # Errors
-    /// What the writer still holds cannot be written.
+    /// The buffered rest cannot be written.
     pub fn finish(mut self) -> io::Result<W> {
         self.out.flush()?;
         Ok(self.out)

@@ -1,5 +1,6 @@
-//! More traffic, and fewer slots: a corridor, numbers of vehicles a minute and of slots enter; a run of each, with the envelope and
-//! without it, by the scenario's link and by a perfect one, and whether all of them were safe and served everybody, leave.
+//! Denser traffic, and fewer slots: a corridor, numbers of vehicles a minute and numbers of slots enter. The figures of
+//! runs with each leave, with and without the envelope, over the scenario's links and over perfect links; and whether
+//! all runs were safe and every vehicle was served.
 
 use std::fmt::Write;
 
@@ -20,9 +21,9 @@ pub struct Row {
     pub vehicles_per_min: f64,
     /// Slots of every unit.
     pub slots: usize,
-    /// Whether nothing is delayed, lost or silent.
+    /// Whether the links have no delay, loss or silence.
     pub perfect_link: bool,
-    /// Whether every unit has its last gate engaged.
+    /// Whether the envelope of every unit is engaged.
     pub envelope: bool,
     /// The figures.
     #[serde(flatten)]
@@ -30,7 +31,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// What it is called.
+    /// Its name.
     fn name(&self) -> String {
         name(self.vehicles_per_min, self.slots, self.perfect_link, self.envelope)
     }
@@ -56,7 +57,7 @@ impl Case<'_> {
     }
 }
 
-/// Runs every seed under all of them; `done` is told after each run which it was.
+/// Runs every seed under every case. `done` is called after each run, with the case.
 ///
 /// # Errors
 /// A scenario that the units refuse.
@@ -98,7 +99,7 @@ pub fn run(
     Ok(cases.iter().zip(outcomes.chunks(seeds.len().max(1))).map(row).collect())
 }
 
-/// Why they fail: whoever was not safe, or not served.
+/// The reasons why the rows fail: collisions, other unsafe figures, and vehicles that were not served.
 #[must_use]
 pub fn failures(rows: &[Row]) -> Vec<String> {
     rows.iter().flat_map(|row| verdict::safety(&format!(" ({})", row.name()), &row.side)).collect()

@@ -1,4 +1,4 @@
-//! `run` on a corridor: checked options enter; a table or JSON on stdout, a report and a picture leave; and the verdict.
+//! `run` on a corridor: checked options enter; a table or JSON on stdout, a report, a picture and the verdict leave.
 
 pub mod cost;
 pub mod demand;
@@ -25,22 +25,22 @@ use crate::roads::journal::Journal;
 use crate::verdict::Verdict;
 use options::CorridorOptions;
 
-/// Runs besides those of the seeds: the table of what is wrong.
+/// Number of runs besides those of the seeds: the table of differences.
 const WRONGS: usize = 6;
 
-/// Silences of each motion in the report and the picture, as many as `motions` makes.
+/// Number of silences of each motion in the report and the picture: the default of `motions`.
 const SILENCES: u32 = 50;
 
-/// Wall-clock figures; everything else is the same for the same seed.
+/// Wall-clock figures. All other figures are the same for the same seed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Timing {
-    /// How long the runs of all seeds took.
+    /// Duration of the runs of all seeds.
     pub wall_s: f64,
     /// Simulated vehicle seconds per second, of all threads together.
     pub vehicle_seconds_per_s: f64,
-    /// What a tick of the ego's unit costs at each prediction step.
+    /// Computing time of a tick of the ego's unit at each prediction step.
     pub cost: Vec<cost::Cost>,
-    /// How fast so many vehicles at once are simulated; empty if it is not asked for.
+    /// Speed of the simulation with given numbers of vehicles at once; empty if it was not measured.
     pub scale: Vec<scale::Load>,
 }
 
@@ -51,26 +51,26 @@ pub struct Results {
     pub scenario: String,
     /// The first seed.
     pub seed: u64,
-    /// How many.
+    /// Number of seeds.
     pub seeds: usize,
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]
     pub sides: Sides,
-    /// Whether what follows is with the envelope; the sides are without and with it in any case.
+    /// Whether the following figures are with the envelope. The sides are without and with it in any case.
     pub excerpts_with_envelope: bool,
-    /// How the errors grow with what is wrong.
+    /// The errors under each difference between a vehicle and what its unit assumes.
     pub wrong: Vec<WrongRow>,
-    /// How the errors grow with the prediction step; empty without a report and a picture.
+    /// The errors at each prediction step; empty without a report and a picture.
     pub steps: Vec<StepRow>,
-    /// What a target does in a silence, and who knows it; empty without a report and a picture.
+    /// The errors in a silence over five motions of a target; empty without a report and a picture.
     pub motions: Vec<Row>,
-    /// Why it failed; empty if it passed.
+    /// The reasons why it failed; empty if it passed.
     pub failures: Vec<String>,
     /// Wall-clock figures.
     pub timing: Timing,
 }
 
-/// Runs the corridor of the options and writes all that they ask for.
+/// Runs the corridor and writes what the options ask for.
 ///
 /// # Errors
 /// A scenario that the units refuse, and places that cannot be written.
@@ -137,7 +137,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     Ok(Verdict::of(&results.failures))
 }
 
-/// Tries more traffic, and nothing else.
+/// Runs denser traffic, and nothing else.
 fn run_demand(options: &CorridorOptions, experiment: &Experiment) -> Result<Verdict, Error> {
     let runs = 4 * options.demand.len() * options.slots.len() * options.seeds.len();
     let progress = LongRuns::new(runs);

@@ -13,37 +13,37 @@ use crate::roads::read;
 use crate::seeds;
 use crate::sim::modem::PEERS;
 
-/// More vehicles at once would take gigabytes.
+/// The most vehicles at once. More would need gigabytes.
 const MOST_VEHICLES: usize = 10_000;
 
-/// A corridor and what becomes of its results.
+/// A corridor, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorridorOptions {
-    /// The corridor, with what the command line says instead of its file.
+    /// The corridor, with the values of the command line.
     pub corridor: Corridor,
-    /// What the report calls it.
+    /// Its name in the report.
     pub name: String,
-    /// The command line that does this again.
+    /// The command line that repeats this run.
     pub command: String,
     /// The seeds, from the first on.
     pub seeds: Vec<u64>,
     /// Where its results go.
     pub destination: Destination,
-    /// How fast so many vehicles at once are simulated is to be measured.
+    /// Numbers of vehicles at once for which the speed of the simulation is measured.
     pub vehicles: Vec<usize>,
-    /// So much traffic is to be tried instead of the scenario's; usually empty.
+    /// Traffic in vehicles a minute that is run instead of the scenario's; usually empty.
     pub demand: Vec<f64>,
-    /// With so many slots.
+    /// Numbers of slots for that traffic.
     pub slots: Vec<usize>,
-    /// Where to draw the one-page picture.
+    /// File for the one-page picture.
     pub picture: Option<PathBuf>,
 }
 
 impl CorridorOptions {
-    /// Reads the corridor in the text of that file, which the user called `named`.
+    /// Reads the corridor in the text of a file, which the user called `named`.
     ///
     /// # Errors
-    /// Whatever makes it unusable, options that are not for corridors, and places for output that cannot be written.
+    /// An unusable scenario, options that are not for corridors, and output that cannot be written.
     pub fn read(named: &Path, file: &Path, text: &str, settings: RunSettings) -> Result<Self, Error> {
         let foreign = [
             ("--leader-motion", settings.leader_motion.is_some()),
@@ -108,7 +108,7 @@ impl CorridorOptions {
     }
 }
 
-/// How many slots: those of the command line, which then are the corridor's, or else the corridor's.
+/// Numbers of slots: those of the command line, which then apply to the corridor; or else the corridor's.
 fn slots(said: Option<Vec<usize>>, corridor: &mut Corridor, may_be_several: bool) -> Result<Vec<usize>, Error> {
     let slots = said.unwrap_or_else(|| vec![corridor.slots]);
     if let Some(beyond) = slots.iter().find(|slots| !(read::LEAST_SLOTS..=PEERS).contains(*slots)) {

@@ -64,7 +64,7 @@ pub fn render(
     page.finish()
 }
 
-/// How fast the simulator is.
+/// The section on the speed of the simulation.
 fn speed(page: &mut Page, loads: &[Load]) {
     let Some(plot) = scale(loads) else { return };
     page.section("How fast this is simulated");

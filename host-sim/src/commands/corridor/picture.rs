@@ -1,4 +1,4 @@
-//! The one-page picture of a corridor: results and journals enter, one SVG that stands by itself leaves.
+//! The one-page picture of a corridor: results and journals enter, one self-contained SVG leaves.
 
 use std::fmt::Write;
 
@@ -12,10 +12,10 @@ use crate::roads::figures::StepRow;
 use crate::roads::journal::Journal;
 
 const STYLE: &str = include_str!("../../report/style.css");
-/// Between two figures, in pixels.
+/// Distance between two figures, in pixels.
 const BETWEEN: f64 = 12.0;
 const TITLE: f64 = 30.0;
-/// A line of the note below the figures.
+/// Height of a line of the note below the figures, in pixels.
 const LINE: f64 = 18.0;
 
 const NOTE: [&str; 4] = [
@@ -25,10 +25,10 @@ const NOTE: [&str; 4] = [
     "machine: the report has it, and this picture is the same for the same seed.",
 ];
 
-/// A figure and what stands above it.
+/// A figure, and the title above it.
 type Panel = (String, Box<dyn Figure>);
 
-/// The picture: what depends on the machine is left out, so that the same seed is the same bytes.
+/// The picture. It has nothing that depends on the machine, so the same seed gives the same bytes.
 #[must_use]
 pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journal)]) -> String {
     let mut body = String::new();
@@ -61,7 +61,7 @@ pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journ
     )
 }
 
-/// The paper's figures of the corridor but for the cost, and ours beside others.
+/// The paper's figures of the corridor except the computing time, and the comparison with other methods.
 fn panels(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journal)]) -> Vec<Panel> {
     let timeless = Results { timing: Timing::default(), ..results.clone() };
     let plots = plots(experiment, &timeless, steps).into_iter();
@@ -71,7 +71,7 @@ fn panels(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journal
     panels
 }
 
-/// The height that a figure says it has.
+/// The height that an SVG states.
 fn height(drawn: &str) -> f64 {
     let view = drawn.split_once("viewBox=\"").and_then(|(_, rest)| rest.split_once('"'));
     view.and_then(|(view, _)| view.split_whitespace().nth(3)?.parse().ok()).unwrap_or(300.0)

@@ -8,14 +8,14 @@ use crate::roads::experiment::Experiment;
 use crate::roads::figures::StepRow;
 use crate::roads::journal::Journal;
 
-/// The trajectories are shown from so long before the ego crosses to so long after, in seconds.
+/// Time of the trajectories before and after the ego's crossing, in seconds.
 const AROUND_S: (f64, f64) = (20.0, 25.0);
 
-/// A figure: its title, what one sees in it, and the chart.
+/// A figure: its title, its caption, and the chart.
 pub struct Plot {
     /// The title.
     pub title: String,
-    /// What one sees.
+    /// The caption.
     pub caption: String,
     /// The chart.
     pub chart: Chart,
@@ -25,7 +25,7 @@ fn plot(title: &str, caption: String, chart: Chart) -> Plot {
     Plot { title: title.into(), chart: Chart { description: caption.clone(), ..chart }, caption }
 }
 
-/// All of them that have something to show.
+/// All figures that have data.
 #[must_use]
 pub fn plots(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journal)]) -> Vec<Plot> {
     let finest = steps.first().map(|(_, journal)| journal);
@@ -124,7 +124,7 @@ fn largest_errors(steps: &[(StepRow, Journal)]) -> Plot {
     plot(title, caption, Chart { layers, ..Chart::new(title, axes.0, axes.1) })
 }
 
-/// It depends on the machine.
+/// The speed of the simulation, which depends on the machine.
 pub fn scale(loads: &[Load]) -> Option<Plot> {
     if loads.is_empty() {
         return None;
@@ -141,7 +141,7 @@ pub fn scale(loads: &[Load]) -> Option<Plot> {
     Some(plot(title, caption, Chart { layers, ..Chart::new(title, axes.0, axes.1) }))
 }
 
-/// It depends on the machine.
+/// The computing time of a tick, which depends on the machine.
 fn costs(results: &Results) -> Option<Plot> {
     let points: Vec<(f64, f64)> = results.timing.cost.iter().map(|cost| (cost.step_s, cost.updates_per_s)).collect();
     if points.is_empty() {

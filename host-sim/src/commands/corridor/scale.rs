@@ -1,10 +1,13 @@
-//! How fast a corridor is simulated: a number of vehicles enters; how much faster than real time so many are leaves.
+//! The speed of the simulation: a number of vehicles enters; how much faster than real time they are simulated leaves.
 //!
-//! So many vehicles under way at once take corridors side by side, with a seed each: as many as it takes until that many are
-//! under way on average in the time that is measured if nobody is held up, and of the arrivals of all of them so many that it is
-//! that many, to within one. The corridors are dealt to the threads, the largest first, each to whom has the least. When the roads have filled, all threads wait
-//! for one another, and what follows is timed. All that a run has is there: radio, buses, units, bodies, those who watch.
-//! Vehicles that have left and drive on out of sight are simulated too, but not counted.
+//! Corridors side by side, each with its own seed, give that number of vehicles under way at once, on average over the
+//! measured time, if no vehicle is delayed. There are as many corridors as this takes. Of all their arrivals, evenly
+//! chosen ones are left out, so that the number is met to within one vehicle.
+//!
+//! The corridors are dealt to the threads: the largest first, each to the thread with the least load. When the roads
+//! have filled, all threads wait for one another, and the simulation that follows is timed. Everything of a run is
+//! included: radio, buses, units, vehicles, observers. Vehicles that have left and drive on out of sight are simulated
+//! but not counted.
 
 use std::io;
 use std::sync::Barrier;
@@ -25,57 +28,59 @@ use crate::roads::traffic::Traffic;
 use crate::roads::trips::{Trip, trips};
 use crate::roads::watch::Watch;
 
-/// Vehicles under way at once, if nothing else is asked for.
+/// Default numbers of vehicles under way at once.
 pub const VEHICLES: [usize; 4] = [10, 30, 100, 300];
 
-/// The time that is simulated under the clock.
+/// Simulated time that is measured.
 pub const SPAN_S: f64 = 30.0;
 
-/// Before, the roads fill for so many mean travel times.
+/// Time for which the roads fill before that, in mean travel times.
 const FILL: f64 = 2.0;
 
-/// Roads by which hardly anybody comes are not laid more than so many times for each vehicle.
+/// At most this many corridors per vehicle are simulated, however few vehicles the roads have.
 const MOST_PER_VEHICLE: usize = 20;
 
-/// What it takes to simulate so many vehicles.
+/// The measurement with one number of vehicles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Load {
-    /// How many were to be under way at once.
+    /// Intended number of vehicles under way at once.
     pub vehicles: usize,
-    /// In so many corridors.
+    /// Number of corridors.
     pub corridors: usize,
-    /// On so many threads.
+    /// Number of threads.
     pub threads: usize,
-    /// How many were under way on average.
+    /// Mean number of vehicles that were under way.
     pub under_way: f64,
-    /// How many others each of them heard: messages heard over messages that one vehicle sends.
+    /// Mean number of peers that each vehicle heard: messages heard over messages that one vehicle sends.
     pub peers_heard: f64,
-    /// How long [`SPAN_S`] took.
+    /// Wall time of [`SPAN_S`].
     pub wall_s: f64,
-    /// How many times faster than real time that is.
+    /// Simulated time over wall time.
     pub times_real_time: f64,
     /// Simulated vehicle seconds per second, of all threads together.
     pub vehicle_seconds_per_s: f64,
-    /// How many cores the threads had on average, because others want them too; `None` where the system does not say.
+    /// Mean number of cores that the threads had, because other processes use them too; `None` where the system does
+    /// not say.
     pub cores: Option<f64>,
-    /// Microseconds of a core per vehicle second and peer heard; of a thread where the system does not say.
+    /// Microseconds of a core per vehicle second and peer heard; of a thread where the system does not report the time
+    /// on a core.
     pub us_per_vehicle_second_and_peer: f64,
 }
 
-/// What a share of the corridors came to.
+/// The result of one thread's corridors.
 struct Share {
     tally: Tally,
     wall_s: f64,
     core_s: Option<f64>,
 }
 
-/// For how long this thread has had a core; `None` where the system does not say.
+/// Time for which this thread has had a core; `None` where the system does not say.
 fn core_s() -> Option<f64> {
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(said.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }
 
-/// Measures it; nothing else is to run meanwhile. `travel_s` is the mean travel time.
+/// Measures one number of vehicles. No other work should run meanwhile. `travel_s` is the mean travel time.
 ///
 /// # Errors
 /// A scenario that the units refuse.
@@ -115,8 +120,8 @@ pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f6
     })
 }
 
-/// One corridor: who comes under a seed, and how many of them are under way on average in the time that is measured if nobody is
-/// held up; a little more in truth.
+/// One corridor: the trips of a seed, and the mean number of vehicles under way in the measured time if no vehicle is
+/// delayed. The true number is slightly larger.
 struct Lot {
     seed: u64,
     trips: Vec<Trip>,
@@ -136,7 +141,8 @@ impl Lot {
     }
 }
 
-/// Corridors with so many vehicles under way: as many as it takes, and arrivals left out at even distances.
+/// As many corridors as it takes for this number of vehicles under way. Surplus arrivals are left out at even
+/// distances.
 fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize) -> Vec<Lot> {
     let network = &experiment.network;
     let mut lots: Vec<Lot> = Vec::new();
@@ -158,7 +164,7 @@ fn lots(experiment: &Experiment, corridor: &Corridor, seed: u64, vehicles: usize
     lots.into_iter().map(thin).collect()
 }
 
-/// The corridors, dealt out to the threads: the largest first, each to whom has the least.
+/// Deals the corridors to the threads: the largest first, each to the thread with the least load.
 fn dealt(mut lots: Vec<Lot>, threads: usize) -> Vec<Vec<Lot>> {
     let mut hands: Vec<(f64, Vec<Lot>)> = (0..threads).map(|_| (0.0, Vec::new())).collect();
     lots.sort_by(|a, b| b.under_way.total_cmp(&a.under_way));
@@ -171,7 +177,7 @@ fn dealt(mut lots: Vec<Lot>, threads: usize) -> Vec<Vec<Lot>> {
     hands.into_iter().map(|(_, hand)| hand).collect()
 }
 
-/// One thread's share: the corridors of those seeds one after the other, first until they are full, then under the clock.
+/// Runs one thread's corridors one after the other, first until the roads are full, then timed.
 fn drive(experiment: &Experiment, corridor: &Corridor, lots: &[Lot], fill_s: f64, full: &Barrier) -> io::Result<Share> {
     let network = &experiment.network;
     let mut worlds: Vec<(Traffic, Referee, Beliefs)> = lots
@@ -190,7 +196,7 @@ fn drive(experiment: &Experiment, corridor: &Corridor, lots: &[Lot], fill_s: f64
         })
     };
     let before = advance(fill_s);
-    full.wait(); // whatever became of it: the others wait too
+    full.wait(); // even after an error, because the other threads wait too
     let (start, core_before_s) = (Instant::now(), core_s());
     let after = advance(fill_s + SPAN_S)?;
     let core_s = core_s().zip(core_before_s).map(|(after, before)| after - before);
@@ -218,7 +224,7 @@ mod tests {
         for seed in [1, 77, u64::MAX] {
             for vehicles in [10, 30, 100, 300] {
                 let lots = lots(&experiment, &corridor, seed, vehicles);
-                // One that is left out or not is at most one vehicle.
+                // Leaving out one arrival more or less changes the number by at most one vehicle.
                 assert!((sum(&lots) - vehicles as f64).abs() < 1.0, "{seed} {vehicles} {}", sum(&lots));
             }
         }

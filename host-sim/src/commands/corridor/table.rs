@@ -6,7 +6,7 @@ use super::Results;
 use super::scale::Load;
 use crate::roads::figures::Side;
 
-/// A figure's name and how it is spelled of a side.
+/// A figure's name, and its text for a side.
 pub type Line = (&'static str, fn(&Side) -> String);
 
 fn number(value: Option<f64>, digits: usize) -> String {
@@ -105,7 +105,7 @@ pub fn text(results: &Results) -> String {
     text
 }
 
-/// The columns of the table of how fast the simulator is.
+/// The columns of the table of the simulation's speed.
 pub const SCALE: [&str; 8] = [
     "vehicles",
     "corridors",
@@ -117,7 +117,7 @@ pub const SCALE: [&str; 8] = [
     "µs / vehicle s, peer",
 ];
 
-/// A row of it; the first cell says how many there were to be, and how many there were.
+/// A row of that table. The first cell has the intended and the true number of vehicles.
 #[must_use]
 pub fn scale_row(load: &Load) -> [String; 8] {
     [
@@ -132,7 +132,8 @@ pub fn scale_row(load: &Load) -> [String; 8] {
     ]
 }
 
-/// Whether the cost is in proportion, in words; nothing of less than two numbers of vehicles, or where nobody was heard.
+/// Whether the cost is in proportion, in words. Empty for fewer than two numbers of vehicles, and if no vehicle was
+/// heard.
 #[must_use]
 pub fn proportion(loads: &[Load]) -> Option<String> {
     let ([first, ..], [.., last]) = (loads, loads) else { return None };

@@ -1,13 +1,13 @@
-//! The verdict on a corridor: the figures of all seeds enter; why they fail, if they do, leaves.
+//! The verdict on a corridor: the figures of all seeds enter; the reasons of a failure leave.
 //!
-//! What was not measured has not passed. The scenario's limits are about driving without the envelope, whether it engages
-//! it or not; what keeps people safe is asked for with it too.
+//! A figure that was not measured has not passed. The scenario's limits apply to driving without the envelope, whether
+//! the scenario engages it or not. The checks of safety apply to driving with the envelope too.
 
 use crate::roads::description::Limits;
 use crate::roads::experiment::Sides;
 use crate::roads::figures::Side;
 
-/// Why the figures fail; empty if they pass.
+/// The reasons why the figures fail; empty if they pass.
 #[must_use]
 pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     let mut failures = safety("", &sides.holdover);
@@ -21,7 +21,7 @@ pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     failures
 }
 
-/// What keeps people safe, and whether everybody is served; `how` they were driving.
+/// The failures of safety, and vehicles that were not served; `how` names the side.
 pub(super) fn safety(how: &str, side: &Side) -> Vec<String> {
     let mut failures = Vec::new();
     if side.collisions() > 0 {

@@ -3,14 +3,14 @@
 use clap::Args;
 use std::path::PathBuf;
 
-/// Which unit it is; also what a device under test is said to be.
+/// Identity of the unit. `hil` uses the same arguments for the device under test.
 #[derive(Clone, Debug, Default, Args)]
 pub struct UnitArguments {
-    /// The unit's own station, 0 to 255, and otherwise that of a car as it is built into the firmware, which has station 1
+    /// The car that is built into the firmware (station 1 there), with this station, 0 to 255
     #[arg(long, value_name = "N", conflicts_with = "vehicle")]
     pub station: Option<u8>,
 
-    /// The unit of the vehicle with this index in the scenario; the ego's unless given
+    /// The unit of the vehicle with this index in the scenario; by default the ego's
     #[arg(long, value_name = "INDEX")]
     pub vehicle: Option<usize>,
 }
@@ -18,7 +18,7 @@ pub struct UnitArguments {
 /// The arguments of `ecu`.
 #[derive(Clone, Debug, Args)]
 pub struct EcuArguments {
-    /// The scenario that the unit's vehicle stands in: a file, or `paper`
+    /// The scenario of the unit's vehicle: a file, or `paper`
     #[arg(value_name = "SCENARIO", default_value = "paper")]
     pub scenario: PathBuf,
 

@@ -1,5 +1,5 @@
-//! `ecu`: the onboard unit as a Linux process in a device's place. Frames of a CAN interface enter, what the unit answers
-//! leaves on it: by a clock every period, or in lock step with the bus's time synchronisation.
+//! `ecu`: the onboard unit as a Linux process in place of a device. Frames of a CAN interface enter; the unit's answers
+//! leave on it, by a clock every period, or in lock step with the bus's time synchronisation.
 
 pub mod arguments;
 pub mod options;
@@ -18,18 +18,18 @@ use crate::sim::vehicle::Unit;
 use crate::verdict::Verdict;
 use options::{EcuOptions, identifiers};
 
-/// Its clock started so long before its first tick: what a message's stamp dates may lie before that.
+/// Time from the start of its clock to its first tick. The stamp of a message may be from before that tick.
 const POWERED_BEFORE: Duration = Duration::from_millis(60_000);
 
-/// Frames that it takes in, at most, before it looks at its clock.
+/// The most frames that it takes in before it checks its clock.
 const AT_ONCE: usize = 256;
-/// Between two looks at the bus in lock step.
+/// Time between two checks of the bus in lock step.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Runs the unit of the options, for ever.
+/// Runs the unit for ever.
 ///
 /// # Errors
-/// An interface that cannot be used, or that goes away.
+/// An interface that cannot be used, or that is removed.
 pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
     let mut port = bus::open(&options.bus)?;
     let failed = |error: &io::Error| {
@@ -46,8 +46,8 @@ pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// Lives on a port, for ever. As in the firmware, what has arrived is taken in before the unit ticks; but no flood of
-/// frames keeps it from ticking.
+/// Runs on a port for ever. As in the firmware, frames that have arrived are taken in before the unit ticks. A flood of
+/// frames does not keep the unit from ticking.
 fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
     loop {
         let wake = ecu.wakes().unwrap_or(port.now().plus(PATIENCE));
@@ -67,7 +67,7 @@ fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
     }
 }
 
-/// An interface that is down may come up again, and a full queue may empty.
+/// Sends an answer. An interface that is down may come up again, and a full queue may empty.
 fn transmit(ecu: &mut Ecu, port: &mut impl Port, answer: &Answer) -> io::Result<()> {
     for frame in &answer.frames {
         match port.send(frame.into()) {
@@ -88,29 +88,29 @@ pub struct Ecu {
     pace: Pace,
 }
 
-/// What makes it tick.
+/// The source of the ticks.
 #[derive(Clone, Debug)]
 enum Pace {
-    /// Its clock; the first tick is at once.
+    /// A clock of its own; the first tick is immediate.
     Clock {
-        /// Its first tick and the next one.
+        /// Time of its first tick, and of the next one.
         ticks: Option<(Instant, Instant)>,
     },
-    /// The bus.
+    /// The time synchronisation on the bus.
     LockStep(LockStep),
 }
 
 impl Ecu {
-    /// A unit that has just got power.
+    /// A unit that was just powered up.
     ///
     /// # Errors
-    /// What the unit finds wrong with its configuration.
+    /// An error of the unit's configuration.
     pub fn new(config: &Config, lock_step: bool) -> Result<Self, ConfigError> {
         let pace = if lock_step { Pace::LockStep(LockStep::new()) } else { Pace::Clock { ticks: None } };
         Ok(Self { unit: Unit::new(config)?, pace })
     }
 
-    /// When it ticks next, by the bus's time; `None`: at once, or when the bus says so.
+    /// Time of the next tick, by the bus's time; `None`: at once, or when the bus triggers it.
     #[must_use]
     pub fn wakes(&self) -> Option<Instant> {
         match &self.pace {
@@ -119,12 +119,12 @@ impl Ecu {
         }
     }
 
-    /// Whether it ticks by a clock.
+    /// Whether it ticks by a clock of its own.
     fn is_by_clock(&self) -> bool {
         matches!(self.pace, Pace::Clock { .. })
     }
 
-    /// Ticks if its clock says so. Periods that passed unseen are not made up for.
+    /// Ticks if its clock is due. Missed periods are not made up for.
     pub fn tick(&mut self, now: Instant) -> Option<Answer> {
         let Pace::Clock { ticks } = &mut self.pace else { return None };
         let (start, due) = ticks.unwrap_or((now, now));
@@ -143,7 +143,7 @@ impl Ecu {
             Pace::LockStep(lock_step) => lock_step.receive(&mut self.unit, frame),
             Pace::Clock { ticks } => {
                 let (start, _) = (*ticks)?;
-                let _ = self.unit.receive(local(start, at), frame); // a refusal is the unit's to count
+                let _ = self.unit.receive(local(start, at), frame); // the unit counts refusals
                 None
             }
         }

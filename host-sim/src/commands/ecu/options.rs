@@ -1,5 +1,5 @@
-//! The options of `ecu`: typed values enter, a checked configuration of a unit leaves. The harness says
-//! by the same words what its device is.
+//! The options of `ecu`: typed values enter, a checked configuration of a unit leaves. `hil` describes its device with
+//! the same arguments.
 
 use std::path::Path;
 
@@ -21,15 +21,15 @@ pub struct EcuOptions {
     pub bus: String,
     /// The unit.
     pub config: Config,
-    /// Whether it ticks by the bus.
+    /// Whether it ticks by the time synchronisation of the bus.
     pub lock_step: bool,
 }
 
 impl EcuOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, and a scenario that cannot be used.
+    /// Impossible values, and an unusable scenario.
     pub fn read(arguments: &EcuArguments) -> Result<Self, Error> {
         let scenario = scenario(&arguments.scenario, &Overrides::default())?;
         let config = unit(&scenario, &arguments.unit)?;
@@ -40,7 +40,7 @@ impl EcuOptions {
 /// A scenario by its file, or `paper`.
 ///
 /// # Errors
-/// As [`Scenario::read`].
+/// The errors of [`Scenario::read`].
 pub fn scenario(name: &Path, overrides: &Overrides) -> Result<Scenario, Error> {
     Scenario::read(file_of(name), overrides)
 }
@@ -51,10 +51,10 @@ pub fn file_of(name: &Path) -> Option<&Path> {
     (name != Path::new("paper") || name.exists()).then_some(name)
 }
 
-/// The configuration of the unit that the arguments name: of the scenario, or that of the firmware.
+/// The configuration of a unit: that of a vehicle of the scenario, or that of the firmware.
 ///
 /// # Errors
-/// A vehicle that there is not, and a scenario that a unit refuses.
+/// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
     if let Some(station) = arguments.station {
         return Ok(Config::car(StationHash(station)));

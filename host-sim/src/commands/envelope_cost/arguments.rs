@@ -10,11 +10,11 @@ pub struct EnvelopeCostArguments {
     #[arg(value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
 
-    /// Lengths of the silence, in seconds, each in the place of the scenario's outages [default: 1,2,4,8]
+    /// Lengths of the silence, in seconds, each instead of the scenario's outages [default: 1,2,4,8]
     #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub silences: Option<Vec<f64>>,
 
-    /// How many seeds, each a run with the envelope and one without
+    /// Number of seeds, each with one run with the envelope and one without
     #[arg(long, value_name = "N", default_value = "20")]
     pub seeds: u64,
 
@@ -22,7 +22,7 @@ pub struct EnvelopeCostArguments {
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
-    /// The way for which the travel time is taken
+    /// The distance for which the travel time is measured
     #[arg(long, value_name = "METRES", default_value = "200", allow_negative_numbers = true)]
     pub distance: f64,
 
@@ -30,7 +30,7 @@ pub struct EnvelopeCostArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub leader_motion: Option<PathBuf>,
 
-    /// Replace the random channel by this recording: `t_s,delay_s`; its silences take the place of --silences
+    /// Replace the random channel by this recording: `t_s,delay_s`; its silences replace --silences
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 

@@ -1,5 +1,5 @@
-//! `envelope-cost`: what the envelope costs. Checked options enter; a table or JSON on stdout and a report of runs without and
-//! with it leave; and the verdict.
+//! `envelope-cost`: the cost of the envelope. Checked options enter; a table or JSON on stdout, a report of runs
+//! without and with the envelope, and the verdict leave.
 //!
 //! ```text
 //! scenario with each silence -> rows (all seeds, without and with, on all cores) -> table, JSON, report
@@ -25,10 +25,10 @@ struct Results<'a> {
     rows: &'a [Row],
 }
 
-/// Runs everything and writes what the options ask for.
+/// Runs everything and writes the output that the options ask for.
 ///
 /// # Errors
-/// A scenario that the units refuse, and places that cannot be written.
+/// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &EnvelopeCostOptions) -> Result<Verdict, Error> {
     let bar = output::progress(2 * options.seeds * options.scenarios.len() as u64);
     let seeds = (options.seed, options.seeds);

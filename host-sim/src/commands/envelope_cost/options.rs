@@ -9,39 +9,39 @@ use crate::input::impairment::{Impairment, Window};
 use crate::input::scenario::{Overrides, Scenario};
 use crate::seeds;
 
-/// Silences unless given, in seconds.
+/// Default silences, in seconds.
 const SILENCES_S: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// Where the silence begins if the scenario has no outage, in seconds.
+/// Beginning of the silence if the scenario has no outage, in seconds.
 const BEGINS_S: f64 = 4.0;
 
-/// Runs go on for at least this long after the longest silence, in seconds: time to catch up again.
+/// Least time of a run after the longest silence, in seconds: time to catch up again.
 const AFTERWARDS_S: f64 = 30.0;
 
-/// What is to be measured and what becomes of it.
+/// The measurement, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EnvelopeCostOptions {
     /// Each silence in seconds with its scenario; a recorded channel is one scenario without a length.
     pub scenarios: Vec<(Option<f64>, Scenario)>,
-    /// The file that they came from; `None`: it is the paper's.
+    /// The scenario file; `None`: the paper's scenario.
     pub scenario_file: Option<PathBuf>,
-    /// What else the command line says of the scenario, as it would have to be typed again.
+    /// The other arguments about the scenario, as they would be typed again.
     pub arguments: Vec<String>,
     /// The first seed.
     pub seed: u64,
-    /// How many; at least 1.
+    /// Number of seeds; at least 1.
     pub seeds: u64,
-    /// The way for which the travel time is taken, in metres.
+    /// The distance for which the travel time is measured, in metres.
     pub distance_m: f64,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl EnvelopeCostOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, a scenario that cannot be used, and a folder that cannot be written.
+    /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: EnvelopeCostArguments) -> Result<Self, Error> {
         let words = typed(&arguments);
         let EnvelopeCostArguments {
@@ -100,13 +100,13 @@ fn scenarios(scenario: &Scenario, silences: Option<Vec<f64>>) -> Result<Vec<(Opt
             return Err(error.in_option("--silences"));
         }
         let outage = Window { from_s: begins_s, to_s: begins_s + length_s };
-        // As long for all silences, so that shares of time can be compared.
+        // The same length for all silences, so that fractions of time can be compared.
         Ok((Some(length_s), silent(scenario, outage, begins_s + longest_s + AFTERWARDS_S)?))
     };
     silences.into_iter().map(with).collect()
 }
 
-/// The scenario with one outage instead of its own, and until `end_s` at least.
+/// The scenario with one outage instead of its own, at least until `end_s`.
 fn silent(scenario: &Scenario, outage: Window, end_s: f64) -> Result<Scenario, Error> {
     let mut scenario = scenario.clone();
     match &scenario.leader.motion {
@@ -123,7 +123,7 @@ fn silent(scenario: &Scenario, outage: Window, end_s: f64) -> Result<Scenario, E
     Ok(scenario)
 }
 
-/// The options but for the seeds, as they would have to be typed again.
+/// The options except the seeds, as they would be typed again.
 fn typed(arguments: &EnvelopeCostArguments) -> Vec<String> {
     let file = |option: &str, file: &Option<PathBuf>| file.as_ref().map(|file| format!("{option} {}", file.display()));
     let silences = arguments.silences.as_ref().map(|lengths| {

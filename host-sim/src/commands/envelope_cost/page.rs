@@ -1,4 +1,4 @@
-//! The report of the envelope's cost: rows enter, an HTML page with a table and bars leaves.
+//! The report of the envelope's cost: rows enter; an HTML page with a table and bars leaves.
 
 use super::options::EnvelopeCostOptions;
 use super::rows::{Row, Side};

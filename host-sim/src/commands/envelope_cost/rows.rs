@@ -12,30 +12,31 @@ use crate::sim::world::Trace;
 /// The figures of one silence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Its length; `None`: as the channel was recorded.
+    /// Length of the silence; `None`: the channel is a recording.
     pub silence_s: Option<f64>,
-    /// Runs without the envelope, and as many with it.
+    /// Number of runs without the envelope; there are as many with it.
     pub seeds: u64,
-    /// The way for which the travel time is taken.
+    /// The distance for which the travel time is measured.
     pub distance_m: f64,
-    /// Without the envelope.
+    /// Figures without the envelope.
     pub off: Side,
-    /// With it.
+    /// Figures with the envelope.
     pub on: Side,
 }
 
-/// The figures of all runs of one kind.
+/// The figures of all runs with one setting of the envelope.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Side {
-    /// Share of time in which the envelope changed a command, of the vehicles whose link to the one ahead is impaired.
+    /// Fraction of time in which the envelope changed a command, of the vehicles whose link to the vehicle ahead is
+    /// impaired.
     pub limited_share: f64,
-    /// Mean travel time of these vehicles; `None`: one of them did not come that far.
+    /// Mean travel time of these vehicles; `None`: one of them did not cover the distance.
     pub travel_time_s: Option<f64>,
-    /// Full stops of vehicles that a unit drives, in all runs together.
+    /// Full stops of vehicles that are driven by a unit, in all runs together.
     pub full_stops: usize,
     /// Smallest bumper gap.
     pub min_gap_m: Option<f64>,
-    /// Hardest braking that a vehicle with a driving unit reached, as a magnitude.
+    /// Hardest braking of a vehicle that is driven by a unit, as a magnitude.
     pub hardest_braking_mps2: f64,
     /// Episodes of a bumper gap below 0, in all runs together.
     pub collisions: usize,
@@ -50,10 +51,10 @@ struct Outcome {
     travel_times_s: Vec<Option<f64>>,
 }
 
-/// Runs the scenario with every seed and both ways on all cores; `done` is called after each run.
+/// Runs the scenario with every seed, without and with the envelope, on all cores. `done` is called after each run.
 ///
 /// # Errors
-/// What a unit finds wrong with the configuration that the scenario gives it.
+/// An error that a unit finds in the configuration from the scenario.
 pub fn run(
     (silence_s, scenario): &(Option<f64>, Scenario),
     (seed, seeds): (u64, u64),
@@ -95,7 +96,7 @@ fn outcome(scenario: &Scenario, seed: u64, distance_m: f64) -> Result<Outcome, E
     })
 }
 
-/// When a vehicle has come so far from its start.
+/// Time at which a vehicle has covered this distance from its start.
 fn travel_time(trace: &Trace, vehicle: usize, distance_m: f64) -> Option<f64> {
     let ticks = &trace.vehicles[vehicle];
     let goal_m = ticks.first()?.position_m + distance_m;
@@ -121,7 +122,7 @@ impl Side {
     }
 }
 
-/// Why the rows fail; empty if they pass.
+/// The reasons why the rows fail; empty if they pass.
 #[must_use]
 pub fn failures(rows: &[Row]) -> Vec<String> {
     let mut failures = Vec::new();

@@ -9,7 +9,7 @@ use super::rows::{Row, Side};
 pub fn text(rows: &[Row], failures: &[String]) -> String {
     let mut text = String::new();
     let Some(first) = rows.first() else { return text };
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{} seeds each; travel time over {} m", first.seeds, first.distance_m);
     let heads = ["limited, %", "travel, s", "stops/run", "gap, m", "braking, m/s²", "collisions"];
     let _ = write!(text, "{:<11}{:<10}", "silence, s", "envelope");
@@ -24,7 +24,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     text
 }
 
-/// How a row's silence is called.
+/// Name of a row's silence.
 #[must_use]
 pub fn silence(row: &Row) -> String {
     row.silence_s.map_or("recorded".into(), |length| length.to_string())

@@ -6,15 +6,15 @@ use std::path::PathBuf;
 /// The arguments of `evaluate`.
 #[derive(Clone, Debug, Args)]
 pub struct EvaluateArguments {
-    /// Recorded drive: t_s,position_m,speed_mps and, if known, acceleration_mps2; several are pooled
+    /// Recorded drive: t_s,position_m,speed_mps and, if known, acceleration_mps2; several drives are pooled
     #[arg(long, value_name = "FILE.csv", required = true, num_args = 1..)]
     pub motion: Vec<PathBuf>,
 
-    /// Recorded link: t_s,delay_s, a row per message sent; an empty delay is a lost message
+    /// Recorded link: t_s,delay_s, one row per message sent; an empty delay is a lost message
     #[arg(long, value_name = "FILE.csv")]
     pub channel: Option<PathBuf>,
 
-    /// Instead of a link: 10 messages a second, and silences of these lengths from each of them on
+    /// Instead of a link: 10 messages per second, and after each of them silences of these lengths
     #[arg(long, value_name = "SECONDS,...", allow_hyphen_values = true)]
     pub outage: Option<String>,
 
@@ -38,12 +38,12 @@ pub struct EvaluateArguments {
     #[arg(long, conflicts_with = "out")]
     pub no_report: bool,
 
-    /// Write every tick that counts: time, truth, age, ours and each baseline
+    /// Write every tick that counts: time, truth, age, the unit's estimate and each baseline's
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 }
 
-/// What stands below the options.
+/// Text below the options.
 pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim evaluate --motion drive.csv --channel link.csv

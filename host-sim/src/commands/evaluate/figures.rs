@@ -1,4 +1,4 @@
-//! The figures of an evaluation: comparisons enter, the numbers that stand in the results leave.
+//! The figures of an evaluation: comparisons enter, the numbers of the results leave.
 
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ pub struct AgeClass {
     pub from_s: f64,
     /// Below this age; `None`: no end.
     pub to_s: Option<f64>,
-    /// How many ticks.
+    /// Number of ticks.
     pub count: usize,
     /// Root of the mean square.
     pub rms_position_m: Option<f64>,
@@ -27,7 +27,7 @@ pub struct AgeClass {
 pub struct OutageClass {
     /// The length.
     pub outage_s: f64,
-    /// How many silences.
+    /// Number of silences.
     pub count: usize,
     /// Root of the mean square.
     pub rms_position_m: Option<f64>,
@@ -37,7 +37,7 @@ pub struct OutageClass {
     pub max_position_m: Option<f64>,
 }
 
-/// The errors of one method; `None` where there is nothing to measure.
+/// The errors of one method; `None` where there is no measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Root of the mean square of the position error.
@@ -48,40 +48,40 @@ pub struct Figures {
     pub max_position_m: Option<f64>,
     /// Root of the mean square of the speed error.
     pub rms_speed_mps: Option<f64>,
-    /// Over a link: by age of the data.
+    /// Over a link: by age of the newest sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by_age: Option<Vec<AgeClass>>,
-    /// In silences: by their length.
+    /// In silences: by the length of the silence.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by_outage: Option<Vec<OutageClass>>,
 }
 
-/// Wall-clock figures; everything else is the same for the same input.
+/// Wall-clock figures. All other figures are the same for the same input.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Timing {
     /// Ticks of the unit per second, all cores together.
     pub ticks_per_s: f64,
 }
 
-/// The results, as they stand in the JSON.
+/// The results, as in the JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Results {
-    /// Ours.
+    /// Figures of the unit.
     pub ours: Figures,
-    /// The baselines' by name, on the same decoded messages.
+    /// Figures of the baselines by name, on the same decoded messages.
     pub baselines: BTreeMap<&'static str, Figures>,
     /// Comparisons with the truth.
     pub ticks: usize,
     /// Messages that the recorded vehicles sent.
     pub messages_sent: usize,
-    /// Those that were not lost.
+    /// Messages that were not lost.
     pub messages_delivered: usize,
     /// Wall-clock figures.
     pub timing: Timing,
 }
 
 impl Results {
-    /// Of all recordings together; `lengths_s` are those of the silences, if silences were measured.
+    /// The figures of all recordings together. `lengths_s` are the lengths of the silences, if silences were measured.
     #[must_use]
     pub fn pooled(outcomes: &[Outcome], lengths_s: Option<&[f64]>, timing: Timing) -> Self {
         let samples: Vec<&Sample> = outcomes.iter().flat_map(|outcome| &outcome.samples).collect();
@@ -96,7 +96,7 @@ impl Results {
         }
     }
 
-    /// Ours, then the baselines in the order of [`NAMES`].
+    /// The unit, then the baselines in the order of [`NAMES`].
     #[must_use]
     pub fn methods(&self) -> [(&'static str, &Figures); METHODS] {
         NAMES.map(|name| (name, self.baselines.get(name).unwrap_or(&self.ours)))

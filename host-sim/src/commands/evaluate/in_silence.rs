@@ -1,10 +1,10 @@
-//! A recorded vehicle that falls silent: its recording and lengths of silence enter, comparisons at the end of each
+//! A recorded vehicle that falls silent: its recording and lengths of silence enter; comparisons at the end of each
 //! length leave.
 //!
-//! The vehicle sends at 0, 0.1, 0.2, … s from the recording's start, and every message arrives at once. A silence starts
-//! at each of these times `t`: the message sent at `t` is the last one heard, and unit and baselines are compared with the
-//! truth at `t + L` for each length `L` that ends inside the recording. The newest sample is then `L` old, and as much
-//! more as the recording's sample was already at `t`.
+//! The vehicle sends at 0, 0.1, 0.2, … s from the recording's start, and every message arrives at once. A silence
+//! starts at each of these times `t`: the message sent at `t` is the last one that is received. At `t + L`, for each
+//! length `L` that ends inside the recording, unit and baselines are compared with the truth. The age of the newest
+//! sample is then `L` plus the age that the recording's sample had at `t`.
 
 use holdover::ConfigError;
 
@@ -20,23 +20,23 @@ use crate::sim::modem::V2xMessage;
 use crate::sim::quantities::metres;
 use crate::sim::time::micros;
 
-/// From one message, and one start of a silence, to the next.
+/// Time between two messages, and between the starts of two silences.
 const CYCLE_US: i64 = 100_000;
-/// Silences that are computed together: as many units are held in memory at once.
+/// Number of silences that are computed together; this many units are in memory at once.
 const TOGETHER: usize = 128;
 
-/// The beginning of a silence.
+/// The start of a silence.
 struct Start {
     at_us: i64,
     sampled_us: i64,
     listener: Deaf,
 }
 
-/// Compares at the end of every silence, silences in parallel; `advance` is told of every second of the recording that has been
-/// done.
+/// Compares at the end of every silence, with the silences in parallel. `advance` is called after every second of the
+/// recording.
 ///
 /// # Errors
-/// What the unit finds wrong with its configuration.
+/// An error of the unit's configuration.
 pub fn evaluate(
     recording: &Recording,
     lengths_s: &[f64],
@@ -62,7 +62,7 @@ pub fn evaluate(
         for message in ahead.into_iter().chain([published.message]) {
             listener.hear(at_us, &message, near);
         }
-        // Takes it in, so that it is not taken in anew in every silence.
+        // The unit takes the message in here, so that not every silence has to do it again.
         listener.beliefs(at_us, near);
         ticks.next_if_eq(&at_us);
         outcome.unit_ticks += 1;
@@ -95,8 +95,8 @@ fn fall_silent(
 }
 
 impl Start {
-    /// Ticks on without news, and compares at each length that ends in time. The unit ticks at every step after the last
-    /// message and, where that is no multiple of the step, at the length's end.
+    /// Ticks on without messages, and compares at each length that ends in time. The unit ticks at every step after the
+    /// last message. If the length is no multiple of the step, it also ticks at the length's end.
     fn last(mut self, motion: &Motion, timeline: Timeline, lengths_s: &[f64], end_us: i64) -> (Vec<Sample>, u64) {
         let mut ends: Vec<(i64, f64)> =
             lengths_s.iter().map(|&length_s| (self.at_us + micros(length_s), length_s)).collect();

@@ -1,11 +1,12 @@
-//! Who listens: messages from the channel enter as frames on a bus; what the unit and the baselines make of them leaves.
+//! The listening side: messages from the channel enter as frames on a bus; the estimates of the unit and of the
+//! baselines leave.
 //!
-//! The unit is that of a vehicle which follows the recorded one, abreast of it: positions, which stand on the wire modulo
-//! 33.5 km, are unwrapped near the truth, however long the drive is and wherever it starts. Nothing else of the ego
-//! enters the estimate of a target, and it does not drive by it.
+//! The unit is in a vehicle that follows the recorded vehicle and is abreast of it. So positions, which are modulo 33.5
+//! km on the wire, are unwrapped near the truth, however long the drive is and wherever it starts. Nothing else of the
+//! ego enters the estimate of a target, and the ego is not driven by it.
 //!
-//! Before the run the bus has been in use: a receiver trusts an identifier from its second good frame on, and that was
-//! long ago. What was said then is too old to be used.
+//! The bus has been in use before the run: a receiver trusts an identifier from its second good frame on, and these
+//! frames came long ago. The messages of that time are too old to be used.
 
 use holdover::health::Cause;
 use holdover::model::Reading;
@@ -30,31 +31,31 @@ use crate::sim::world::{HORIZON_S, horizon};
 
 /// The recorded vehicle.
 pub const TARGET: usize = 0;
-/// The vehicle that it follows.
+/// The vehicle that the recorded vehicle follows.
 pub const PREDECESSOR: usize = 1;
-/// The vehicle that listens.
+/// The vehicle with the unit.
 const EGO: usize = 2;
 
-/// Unit and baselines.
+/// Number of methods: the unit and the baselines.
 pub const METHODS: usize = 7;
-/// What they believe, ours first and the baselines in their own order.
+/// The estimates: the unit's first, then the baselines' in their order.
 pub type Beliefs = [Option<Estimate>; METHODS];
 
-/// The unit's clock started this long before the run.
+/// Time from the start of the unit's clock to the run.
 const CLOCK_OFFSET_US: u64 = 60_000_000;
 /// Cycle of the time base.
 const SYNC_EVERY_US: i64 = 500_000;
 /// The longest period that the unit can be configured with.
 const LONGEST_PERIOD_S: f64 = 0.1;
 
-/// A unit and the baselines in a silence: they hear nothing more.
+/// A unit and the baselines in a silence: they receive no more messages.
 #[derive(Clone)]
 pub struct Deaf {
     unit: Unit,
     baselines: Vec<Box<dyn Baseline>>,
 }
 
-/// A unit and the baselines, with the bus that they listen on.
+/// A unit and the baselines, with their bus.
 pub struct Listener {
     deaf: Deaf,
     vehicle: Sender<0>,
@@ -64,15 +65,15 @@ pub struct Listener {
     driven: Option<i64>,
     sequence: u8,
     tag: u8,
-    /// Refusals of the warm-up, by cause.
+    /// Refusals during the warm-up, by cause.
     expected: Vec<u64>,
 }
 
 impl Listener {
-    /// On a bus that has been in use by the same senders, whose messages are given; with that prediction step and period.
-    ///
+    /// A listener with this prediction step and period, on a bus that `senders` have used before: these are the
+    /// senders' messages.
     /// # Errors
-    /// What the unit finds wrong with its configuration.
+    /// An error of the unit's configuration.
     pub fn new(step_s: f64, senders: &[V2xMessage]) -> Result<Self, ConfigError> {
         let mut config = Config::car(station(EGO));
         config.period = duration(step_s.min(LONGEST_PERIOD_S));
@@ -97,7 +98,7 @@ impl Listener {
         Ok(listener)
     }
 
-    /// Every identifier once, the senders' states with stamps that are refused as stale.
+    /// Sends every identifier once. The motions have stamps that are refused as stale.
     fn warm_up(&mut self, at_us: i64, senders: &[V2xMessage]) {
         self.synchronise(at_us);
         self.say(at_us, &Message::DriverRequest(request(Some(TARGET), false, 0.0, 1.0)));
@@ -106,20 +107,20 @@ impl Listener {
             let stamp = gnss(seconds(at_us) - OLDEST_S - 1.0).stamp();
             let stale = V2xMessage { motion: Motion { stamp, ..sender.motion }, ..*sender };
             for frame in self.relayed(at_us, &stale) {
-                let _ = self.deaf.unit.receive(instant(at_us), &frame); // refused, as it is meant to be
+                let _ = self.deaf.unit.receive(instant(at_us), &frame); // the refusal is intended
                 let _ = self.observer.observe(seconds(at_us), &frame, Position::ZERO);
             }
         }
     }
 
-    /// A message that arrives; `near` is a position to unwrap its position near.
+    /// Takes in a message that arrives. `near` is a position near which its position is unwrapped.
     pub fn hear(&mut self, at_us: i64, message: &V2xMessage, near: Position) {
         if self.synced.is_none_or(|synced| at_us - synced >= SYNC_EVERY_US) {
             self.synchronise(at_us);
         }
         self.drive(at_us, near);
         for frame in self.relayed(at_us, message) {
-            let _ = self.deaf.unit.receive(instant(at_us), &frame); // a refusal is the unit's to count
+            let _ = self.deaf.unit.receive(instant(at_us), &frame); // the unit counts refusals
             if let Some(heard) = self.observer.observe(seconds(at_us), &frame, near) {
                 self.deaf.baselines.iter_mut().for_each(|baseline| baseline.hear(&heard));
             }
@@ -131,12 +132,12 @@ impl Listener {
         self.deaf.tick(at_us);
     }
 
-    /// What unit and baselines believe at an instant, which is a tick of the unit; `near` as above.
+    /// The estimates of unit and baselines at an instant, which is a tick of the unit; `near` as above.
     pub fn beliefs(&mut self, at_us: i64, near: Position) -> Beliefs {
         self.deaf.beliefs(at_us, near)
     }
 
-    /// What the unit refused, by cause, in the order of [`Cause::ALL`].
+    /// The unit's refusals by cause, in the order of [`Cause::ALL`].
     #[must_use]
     pub fn refusals(&self) -> Vec<(Cause, u64)> {
         let since = self.counts().zip(&self.expected).map(|(count, expected)| count - expected);
@@ -147,7 +148,7 @@ impl Listener {
         Cause::ALL.iter().map(|cause| u64::from(self.deaf.unit.health().of(*cause)))
     }
 
-    /// The unit and the baselines as they are now, to go on without news.
+    /// A copy of the unit and the baselines, which goes on without messages.
     #[must_use]
     pub fn deafened(&self) -> Deaf {
         self.deaf.clone()
@@ -163,13 +164,13 @@ impl Listener {
         self.synced = Some(at_us);
         self.sequence = (self.sequence + 1) % 16;
         let time = gnss(seconds(at_us)).as_micros();
-        // 32 bits of seconds last until 2116, and the rest is below a million
+        // 32 bits of seconds last until 2116, and the rest is below a million.
         let (seconds, micros) = ((time / 1_000_000) as u32, (time % 1_000_000) as u32);
         self.say(at_us, &Message::Sync(Sync { sequence: self.sequence, seconds }));
         self.say(at_us, &Message::FollowUp(FollowUp { sequence: self.sequence, micros }));
     }
 
-    /// The ego's own motion; once for messages that come together.
+    /// Sends the ego's own motion, once for messages that arrive together.
     fn drive(&mut self, at_us: i64, position: Position) {
         if self.driven.replace(at_us).is_some_and(|driven| at_us - driven < 1_000) {
             return;
@@ -192,20 +193,20 @@ impl Listener {
     fn say(&mut self, at_us: i64, message: &Message) {
         let unit = &mut self.deaf.unit;
         let sent = self.vehicle.send(message, &mut |frame| {
-            let _ = unit.receive(instant(at_us), &Frame::from(&frame)); // as above
+            let _ = unit.receive(instant(at_us), &Frame::from(&frame)); // the unit counts refusals
         });
         debug_assert!(sent.is_ok(), "the vehicle says nothing that the catalogue has no line for");
     }
 }
 
 impl Deaf {
-    /// One period of the unit: what it believes of its target after it, in its own frame of reference.
+    /// One period of the unit. Returns its target estimate after it, in its own frame of reference.
     pub fn tick(&mut self, at_us: i64) -> Option<Reading> {
         Some(self.unit.tick(instant(at_us)).estimate?.reading)
     }
 
-    /// What unit and baselines believe at an instant, which is a tick of the unit; `near` is a position to unwrap the
-    /// unit's near.
+    /// The estimates of unit and baselines at an instant, which is a tick of the unit. `near` is a position near which
+    /// the unit's estimate is unwrapped.
     pub fn beliefs(&mut self, at_us: i64, near: Position) -> Beliefs {
         let ours = self.tick(at_us).map(|reading| Estimate {
             position_m: unwrapped(reading.position.get().to_num(), near.get().to_num()),
@@ -219,7 +220,7 @@ impl Deaf {
     }
 }
 
-/// A position that is known modulo the wire's range, near another one.
+/// A position that is known modulo the wire's range, unwrapped near another one.
 fn unwrapped(position_m: f64, near_m: f64) -> f64 {
     let range_m = f64::from(1 << WirePosition::BITS) * 1e-3;
     position_m - ((position_m - near_m) / range_m).round() * range_m

@@ -1,5 +1,5 @@
-//! `evaluate`: recorded vehicles and a recorded link, or silences, enter; how far from the truth the unit and the
-//! baselines believe the vehicles to be leaves, as a table or JSON, a report and a trace.
+//! `evaluate`: recorded vehicles enter, and a recorded link or silences; the errors of the unit's and the baselines'
+//! estimates of these vehicles leave, as a table or JSON, a report and a trace.
 //!
 //! ```text
 //! recording -> publisher -> (link | silence) -> listener: bus -> unit      -> sample -> figures -> table, JSON
@@ -31,10 +31,10 @@ use figures::{Results, Timing};
 use options::{EvaluateOptions, Impairment};
 use sample::Outcome;
 
-/// Evaluates what the options name and writes all that they ask for.
+/// Evaluates the recordings and writes the output that the options ask for.
 ///
 /// # Errors
-/// Places that cannot be written.
+/// Output that cannot be written.
 pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
     let start = Instant::now();
     let outcomes = outcomes(options)?;
@@ -49,8 +49,8 @@ pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// Every recording, in the order of the command line: in parallel over a link, one after the other with its silences in
-/// parallel.
+/// The outcome of every recording, in the order of the command line. Over a link the recordings run in parallel. With
+/// silences they run one after the other, and the silences of each run in parallel.
 fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
     let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
     let bar = ProgressBar::new((total_s * 10.0) as u64);

@@ -1,4 +1,4 @@
-//! The options of `evaluate`: typed values enter; recordings that have been read and that belong together leave.
+//! The options of `evaluate`: typed values enter; recordings that have been read and fit together leave.
 
 use super::arguments::EvaluateArguments;
 use crate::commands::ending::Destination;
@@ -7,18 +7,18 @@ use crate::input::recording::{ChannelTrace, Motion};
 use crate::places::can_be_file;
 use std::path::{Path, PathBuf};
 
-/// What is to be measured and what becomes of its results.
+/// The measurement, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvaluateOptions {
-    /// The vehicles.
+    /// The recorded vehicles.
     pub recordings: Vec<Recording>,
-    /// What keeps their messages away.
+    /// The link, or the silences.
     pub impairment: Impairment,
     /// Prediction step of the core, and time between two ticks.
     pub step_s: f64,
     /// Where its results go.
     pub destination: Destination,
-    /// Where to write every tick.
+    /// File for the trace of every tick.
     pub trace: Option<PathBuf>,
 }
 
@@ -29,11 +29,11 @@ pub struct Recording {
     pub file: PathBuf,
     /// Its drive.
     pub motion: Motion,
-    /// The file and the drive of the vehicle that it follows.
+    /// The file and the drive of the vehicle that it follows, if that is recorded.
     pub predecessor: Option<(PathBuf, Motion)>,
 }
 
-/// What keeps messages away.
+/// What delays or loses messages.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Impairment {
     /// A recorded link.
@@ -43,10 +43,10 @@ pub enum Impairment {
 }
 
 impl EvaluateOptions {
-    /// Reads what the command line names and checks it.
+    /// Reads and checks the command line.
     ///
     /// # Errors
-    /// Whatever makes the input unusable, and places for output that cannot be written.
+    /// Unusable input, and output that cannot be written.
     pub fn read(arguments: EvaluateArguments) -> Result<Self, Error> {
         if !(0.001..=1.0).contains(&arguments.step) {
             let cause = format!("is {}", arguments.step);
@@ -66,7 +66,7 @@ impl EvaluateOptions {
         Ok(Self { recordings, impairment, step_s, destination, trace })
     }
 
-    /// The lengths of the silences, if those are to be measured.
+    /// The lengths of the silences, if silences are measured.
     #[must_use]
     pub fn lengths_s(&self) -> Option<&[f64]> {
         match &self.impairment {
@@ -90,7 +90,7 @@ fn impairment(arguments: &EvaluateArguments) -> Result<Impairment, Error> {
     }
 }
 
-/// The lengths of silences, all of them different and positive.
+/// The lengths of silences: all different and positive.
 fn outages(list: &str) -> Result<Vec<f64>, Error> {
     let mut lengths: Vec<f64> = Vec::new();
     for text in list.split(',').map(str::trim) {
@@ -129,7 +129,7 @@ fn recordings(arguments: &EvaluateArguments) -> Result<Vec<Recording>, Error> {
 }
 
 impl Recording {
-    /// That something can be sent over the link while the vehicle drives, and while the one ahead does.
+    /// Checks that a message can be sent over the link while the vehicle drives, and while its predecessor does.
     fn overlaps(&self, channel: &Path, trace: &ChannelTrace) -> Result<(), Error> {
         let (first_s, last_s) = (trace.rows()[0].t_s, trace.rows()[trace.rows().len() - 1].t_s);
         let drives = std::iter::once((&self.file, &self.motion)).chain(self.predecessor.as_ref().map(|(f, m)| (f, m)));

@@ -14,19 +14,19 @@ use crate::sim::modem::V2xMessage;
 use crate::sim::quantities::metres;
 use crate::sim::time::micros;
 
-/// What arrives at one time.
+/// The messages that arrive at one time.
 struct Arrival {
     at_us: i64,
     sampled_us: i64,
-    /// The one ahead speaks first.
+    /// The predecessor's message comes first.
     messages: Vec<V2xMessage>,
 }
 
-/// Compares at every tick from the first delivery to the earlier of the last sample and the last send; `advance` is told
-/// of every second that has been done.
+/// Compares at every tick, from the first delivery to the last sample or the last send, whichever is earlier. `advance`
+/// is called after every second.
 ///
 /// # Errors
-/// What the unit finds wrong with its configuration.
+/// An error of the unit's configuration.
 pub fn evaluate(
     recording: &Recording,
     link: &ChannelTrace,
@@ -65,7 +65,7 @@ pub fn evaluate(
     Ok(outcome)
 }
 
-/// Everything that is sent up to the end, in the order of arrival.
+/// All messages that are sent up to the end, in the order of arrival.
 fn arrivals(
     recording: &Recording,
     link: &ChannelTrace,
@@ -88,16 +88,16 @@ fn arrivals(
         outcome.messages.push((row.t_s, row.delay_s.filter(|_| at_us.is_some())));
         if let Some(at_us) = at_us {
             outcome.delivered += 1;
-            // A modem drops what is too old message by message: stamps repeat.
+            // A modem drops each message that is too old on its own, because stamps repeat.
             let ahead = ahead.filter(|ahead| !is_expired(ahead.sampled_us, at_us)).map(|ahead| ahead.message);
             arrivals.push(Arrival { at_us, sampled_us, messages: ahead.into_iter().chain([message]).collect() });
         }
     }
-    arrivals.sort_by_key(|arrival| arrival.at_us); // stable: what arrives together comes in the order of sending
+    arrivals.sort_by_key(|arrival| arrival.at_us); // stable: messages that arrive together stay in the order of sending
     arrivals
 }
 
-/// Whether the receiving modem drops a message, by its stamp, which is whole tenths of a millisecond.
+/// Whether the receiving modem drops a message by its stamp, which is in whole tenths of a millisecond.
 fn is_expired(sampled_us: i64, at_us: i64) -> bool {
     at_us - (sampled_us + 50).div_euclid(100) * 100 > micros(OLDEST_S)
 }

@@ -9,13 +9,13 @@ use crate::report::plot::{Interval, Series};
 use crate::sim::channel::LinkRecord;
 use std::path::Path;
 
-/// Nothing arrived for longer than this: a silence.
+/// A time without arrivals longer than this is a silence.
 const SILENCE_S: f64 = 0.5;
 
 /// The length of silence that is shown, if it was measured.
 const SHOWN_S: f64 = 2.0;
 
-/// Everything that the page shows.
+/// The content of the page.
 pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) -> EvaluateReport {
     let classes = match options.lengths_s() {
         None => Classes::Age,
@@ -52,7 +52,7 @@ pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results
     }
 }
 
-/// 2 s, or else the middle one.
+/// The length of 2 s if it was measured, or else the middle one.
 fn shown(lengths_s: &[f64]) -> f64 {
     let mut sorted = lengths_s.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -65,7 +65,7 @@ fn rms_and_max(figures: &Figures) -> Vec<(Option<f64>, Option<f64>)> {
     ages.chain(outages).collect()
 }
 
-/// The methods that are drawn over time: ours, the best baseline and the literal paper.
+/// The methods that are drawn over time: the unit, the best baseline and the literal paper.
 fn lines(methods: &[Method], classes: Classes, lengths_s: Option<&[f64]>) -> Vec<usize> {
     let class = match classes {
         Classes::Age => None,

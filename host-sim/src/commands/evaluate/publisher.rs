@@ -1,9 +1,9 @@
-//! A recorded vehicle as a sender: a send time enters, the V2X message that it broadcasts then leaves.
+//! A recorded vehicle as a sender: a time of sending enters, the V2X message of that time leaves.
 //!
-//! A vehicle whose predecessor is recorded too publishes driving parameters. Like any vehicle it says whom it follows only while it
-//! drives by its law, and that is decided by what it did: while its acceleration is the law's demand, to within
-//! 0.5 m/s², it names its predecessor; otherwise it names nobody and promises no limits but those of physics. A receiver
-//! that believed in a law which nobody drives by would be metres off.
+//! A vehicle whose predecessor is recorded too publishes driving parameters. Like any vehicle it names its predecessor
+//! only while it drives by its law. Whether it does is decided by its motion: while its acceleration is the law's
+//! demand to within 0.5 m/s², it names its predecessor. Otherwise it names no predecessor and publishes only physical
+//! limits. A receiver that assumed the law of a vehicle which does not drive by it would be wrong by metres.
 
 use holdover::Config;
 use holdover::units::{Acceleration, Jerk, Seconds};
@@ -21,13 +21,14 @@ use crate::sim::quantities::{acceleration, metres, speed};
 use crate::sim::station::station;
 use crate::sim::time::gnss;
 
-/// A vehicle drives by its law while its acceleration is no further than this from what the law demanded
-/// [`LATE_S`] before.
+/// Largest difference between the acceleration of a vehicle that drives by its law and the law's demand [`LATE_S`]
+/// before.
 const SAME_LAW_MPS2: f64 = 0.5;
-/// A car's acceleration follows the demand with a lag of 0.3 s, and its measurement is the slope over the last 0.5 s.
+/// Delay of the measured acceleration. A car's acceleration follows the demand with a lag of 0.3 s, and it is measured
+/// as the slope over the last 0.5 s.
 const LATE_S: f64 = 0.3 + 0.25;
 
-/// What any car on a dry road keeps to, as far as a message can say it.
+/// The limits of any car on a dry road, as far as a message can represent them.
 const PHYSICAL: Limits = Limits {
     acceleration: Acceleration::from_mm_per_s2(6_000),
     braking: Acceleration::from_mm_per_s2(6_000),
@@ -35,7 +36,7 @@ const PHYSICAL: Limits = Limits {
     emergency_braking: Acceleration::from_mm_per_s2(12_000),
 };
 
-/// The vehicle.
+/// The sender.
 #[derive(Clone, Debug)]
 pub struct Publisher<'a> {
     motion: &'a Motion,
@@ -45,17 +46,17 @@ pub struct Publisher<'a> {
     tag: u8,
 }
 
-/// A message and when its state was true.
+/// A message, and the time of its sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Published {
-    /// Time of the sample that it carries.
+    /// Time of the sample in the message.
     pub sampled_us: i64,
     /// The message.
     pub message: V2xMessage,
 }
 
 impl<'a> Publisher<'a> {
-    /// The recorded vehicle and, if it is recorded too, the one that it follows.
+    /// The sender of the recorded vehicle, with the vehicle that it follows, if that is recorded too.
     #[must_use]
     pub fn pair(recording: &'a Recording, timeline: Timeline) -> (Self, Option<Self>) {
         let target = Self::new(&recording.motion, timeline, station(TARGET));
@@ -68,7 +69,7 @@ impl<'a> Publisher<'a> {
         }
     }
 
-    /// The first message of each of them.
+    /// The first message of each vehicle.
     #[must_use]
     pub fn first_words(recording: &Recording, timeline: Timeline) -> Vec<V2xMessage> {
         let (target, ahead) = Publisher::pair(recording, timeline);
@@ -76,14 +77,14 @@ impl<'a> Publisher<'a> {
         ahead.into_iter().chain([target]).filter_map(say).collect()
     }
 
-    /// A vehicle that says where it is but not how it drives.
+    /// A vehicle that publishes its motion but no driving parameters.
     #[must_use]
     pub fn new(motion: &'a Motion, timeline: Timeline, station: StationHash) -> Self {
         Self { motion, timeline, station, follows: None, tag: 0 }
     }
 
-    /// The same behind that vehicle, whose length is a car's; its law is the one that a unit is configured with, at the time
-    /// gap of 1 s that scenarios have where they say no other.
+    /// The same, behind `ahead`, which is as long as a car. Its law is the default of a unit's configuration, with a
+    /// time gap of 1 s, the default of scenarios.
     #[must_use]
     fn behind(self, ahead: &'a Motion, predecessor: StationHash) -> Self {
         let Config { length, lag, limits, law, .. } = Config::car(self.station);
@@ -103,7 +104,7 @@ impl<'a> Publisher<'a> {
         Self { follows: Some((ahead, parameters)), ..self }
     }
 
-    /// What it broadcasts at that time: the last recorded sample at or before it; nothing before the first.
+    /// The broadcast at this time: the last recorded sample at or before it. `None` before the first sample.
     pub fn publish(&mut self, at_us: i64) -> Option<Published> {
         let known = self.motion.rows().partition_point(|row| self.timeline.micros(row.t_s) <= at_us);
         let sample = self.motion.rows().get(known.checked_sub(1)?)?;
@@ -135,7 +136,7 @@ impl<'a> Publisher<'a> {
     }
 }
 
-/// What the law demands of a vehicle at a time, behind another one that is as long as itself.
+/// The law's demand for a vehicle at a time, behind a vehicle of its own length.
 fn demand(parameters: &DrivingParameters, motion: &Motion, ahead: &Motion, at_s: f64) -> f64 {
     let parameters = HeardParameters::from_parameters(parameters, None);
     let (own, ahead) = (motion.at(at_s), ahead.at(at_s));
@@ -162,7 +163,7 @@ mod tests {
         assert_eq!(sent.iter().map(|s| s.sampled_us).collect::<Vec<_>>(), [1_000_000, 1_000_000, 1_100_000, 1_200_000]);
         assert_eq!(sent[0].message.motion.stamp, sent[1].message.motion.stamp);
         assert_eq!(sent[0].message.motion.acceleration.to_mm_per_s2(), 0);
-        // Least squares of 5, 5.5, 6.5 m/s at 1, 1.1, 1.2 s.
+        // Least-squares slope of 5, 5.5, 6.5 m/s at 1, 1.1, 1.2 s.
         assert_eq!(sent[3].message.motion.acceleration.to_mm_per_s2(), 7_500);
         assert_eq!(sent[3].message.motion.position.mm(), 11_100);
     }

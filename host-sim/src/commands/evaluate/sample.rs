@@ -1,26 +1,26 @@
-//! What an evaluation collects: one recording's comparisons of beliefs with the truth.
+//! The samples of an evaluation: the comparisons of one recording's estimates with the truth.
 
 use holdover::health::Cause;
 
 use super::listener::{Beliefs, METHODS};
 use crate::measure::baseline::Estimate;
 
-/// The names of the methods, as they stand in results: ours, then the baselines.
+/// The names of the methods in results: the unit, then the baselines.
 pub const NAMES: [&str; METHODS] =
     ["holdover", "freeze", "constant_speed", "constant_acceleration", "singer", "kalman", "paper"];
 
-/// One instant at which beliefs are compared with the truth.
+/// One instant at which estimates are compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time of the recording.
     pub at_s: f64,
     /// Time since the stamp of the newest delivered sample.
     pub age_s: f64,
-    /// How long the silence has lasted, where silences are measured.
+    /// Length of the silence so far, where silences are measured.
     pub outage_s: Option<f64>,
     /// The truth.
     pub truth: Estimate,
-    /// What each method believes.
+    /// The estimate of each method.
     pub beliefs: Beliefs,
 }
 
@@ -38,7 +38,7 @@ impl Sample {
     }
 }
 
-/// All that one recording gave.
+/// The result of one recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// The comparisons, in the order of time; silences one after the other.
@@ -47,17 +47,17 @@ pub struct Outcome {
     pub sent: usize,
     /// Messages that were not lost.
     pub delivered: usize,
-    /// Each message: when it was sent and its delay, in seconds of the recording; `None`: lost.
+    /// For each message its time of sending and its delay, in seconds of the recording; `None`: lost.
     pub messages: Vec<(f64, Option<f64>)>,
     /// The last instant of the run.
     pub end_s: f64,
-    /// What the unit refused, by cause.
+    /// The unit's refusals, by cause.
     pub refusals: Vec<(Cause, u64)>,
-    /// Ticks that the unit took, for the figure of speed.
+    /// Ticks of the unit, for the figure of speed.
     pub unit_ticks: u64,
 }
 
-/// What the units refused in all outcomes together, by cause; causes that did not occur are left out.
+/// The refusals of the units in all outcomes together, by cause, without causes that did not occur.
 #[must_use]
 pub fn refusals(outcomes: &[Outcome]) -> Vec<(&'static str, u64)> {
     let of = |cause: Cause| {

@@ -11,7 +11,7 @@ use crate::report::markup::count;
 pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) -> String {
     let mut text = String::new();
     let (ticks, sent, delivered) = (results.ticks, results.messages_sent, results.messages_delivered);
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let _ = match options.lengths_s() {
         None => writeln!(
             text,
@@ -47,7 +47,7 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
     text
 }
 
-/// A column for each class, a row for each method.
+/// Writes a column for each class and a row for each method.
 fn classes(text: &mut String, results: &Results) {
     let heads = heads(&results.ours);
     let row = |text: &mut String, name: &str, cells: Vec<String>| {
@@ -60,7 +60,7 @@ fn classes(text: &mut String, results: &Results) {
     row(text, "count", heads.iter().map(|(_, samples)| count(*samples as u64)).collect());
 }
 
-/// Ours after each length of silence, recording by recording, beside the best baseline.
+/// Writes the unit's errors after each length of silence, per recording, beside the best baseline's.
 fn recordings(text: &mut String, options: &EvaluateOptions, outcomes: &[Outcome], lengths_s: &[f64]) {
     let _ = writeln!(text, "\nholdover / best baseline, recording by recording, rms, m");
     for (recording, outcome) in options.recordings.iter().zip(outcomes) {

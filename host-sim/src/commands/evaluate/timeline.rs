@@ -1,8 +1,9 @@
-//! The clock of an evaluation: times of the recordings enter; whole microseconds since an origin leave, in which sends,
-//! arrivals, stamps and ticks are compared exactly.
+//! The clock of an evaluation: times of the recordings enter; whole microseconds since an origin leave, so that sends,
+//! arrivals, stamps and ticks can be compared exactly.
 //!
-//! Recorded times are decimal fractions, which binary ones hold only nearly: 0.11 s + 0.02 s is not 0.13 s, and whether a
-//! message is there at a tick must not depend on that. A microsecond is far below what recordings resolve.
+//! Recorded times are decimal fractions, which binary fractions hold only approximately: 0.11 s + 0.02 s is not 0.13 s.
+//! Whether a message has arrived at a tick must not depend on that. A microsecond is far below the resolution of
+//! recordings.
 
 use crate::sim::time::micros;
 
@@ -14,19 +15,20 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// With its origin at the last multiple of the step at or before a time, so that ticks are at multiples of the step.
+    /// A clock whose origin is the last multiple of the step at or before a time, so that ticks are at multiples of the
+    /// step.
     #[must_use]
     pub fn around(start_s: f64, step_s: f64) -> Self {
         Self { origin_s: (start_s / step_s).floor() * step_s, step_s }
     }
 
-    /// With its origin, and tick 0, at that time.
+    /// A clock whose origin, and tick 0, is at a time.
     #[must_use]
     pub fn from(start_s: f64, step_s: f64) -> Self {
         Self { origin_s: start_s, step_s }
     }
 
-    /// A recorded time, to nearest.
+    /// A recorded time, rounded to the nearest microsecond.
     #[must_use]
     pub fn micros(&self, recorded_s: f64) -> i64 {
         micros(recorded_s - self.origin_s)
@@ -50,7 +52,8 @@ impl Timeline {
     }
 }
 
-/// In seconds; the quotient is the float nearest to the decimal fraction, so it equals a bound written as one.
+/// The time in seconds. The quotient is the float nearest to the decimal fraction, so it equals a limit that is written
+/// as one.
 #[must_use]
 pub fn seconds(us: i64) -> f64 {
     us as f64 / 1e6

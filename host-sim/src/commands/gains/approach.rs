@@ -1,14 +1,14 @@
-//! What a law makes of one situation: own speed, target speed and headway at the moment of association enter; how near, how
-//! hard and how long the approach is leaves. The target keeps its speed; the vehicle is a car with its lag and its limits,
-//! in steps of 20 ms.
+//! The approach of a law in one situation: own speed, target's speed and headway at the moment of association enter;
+//! how near, how hard and how long the approach is leaves. The target keeps its speed. The vehicle is a car with its
+//! lag and its limits, in steps of 20 ms.
 //!
-//! The limits on the demand, 2.5 and -4 m/s² and 5 m/s³, hold by construction: the demand is cut to them, and what a lag makes
-//! of it is never more. So they are no result.
+//! The limits on the demand, 2.5 and -4 m/s² and 5 m/s³, hold by construction: the demand is limited to them, and the
+//! lag never exceeds its input. So they are not results.
 
 use super::linear::Law;
 
 const STEP_S: f64 = 0.02;
-/// Watched for this long.
+/// Number of steps that are simulated.
 const STEPS: u32 = 3_000;
 const LAG_S: f64 = 0.3;
 const ACCELERATION_MPS2: f64 = 2.5;
@@ -16,7 +16,7 @@ const BRAKING_MPS2: f64 = 4.0;
 const JERK_MPS3: f64 = 5.0;
 const LENGTH_M: f64 = 4.8;
 const STANDSTILL_M: f64 = 2.0;
-/// Settled within these of the gap and the speed that are wanted.
+/// An approach has settled within these differences to the final gap (m) and the target's speed (m/s).
 const SETTLED: (f64, f64) = (0.25, 0.1);
 
 /// A situation at the moment of association.
@@ -30,12 +30,12 @@ pub struct Situation {
     pub headway_m: f64,
 }
 
-/// How an approach goes.
+/// The figures of an approach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     /// Smallest bumper gap.
     pub least_gap_m: f64,
-    /// How far the gap falls below the smaller of the one at the start and the one wanted in the end.
+    /// How far the gap falls below both the gap at the start and the final gap.
     pub overshoot_m: f64,
     /// Hardest braking reached, as a magnitude.
     pub braking_mps2: f64,
@@ -43,7 +43,7 @@ pub struct Approach {
     pub acceleration_mps2: f64,
     /// Fastest change of the acceleration reached.
     pub jerk_mps3: f64,
-    /// When it has settled for good; the whole time if it has not.
+    /// Time from which it stays settled; the whole time if it does not settle.
     pub settled_s: f64,
 }
 
@@ -52,12 +52,12 @@ impl Situation {
         self.headway_m - LENGTH_M
     }
 
-    /// The bumper gap wanted in the end.
+    /// The final bumper gap.
     fn wanted_gap_m(&self, time_gap_s: f64) -> f64 {
         STANDSTILL_M + self.target_mps * time_gap_s
     }
 
-    /// The approach by that law.
+    /// The approach by a law.
     #[must_use]
     pub fn by_law(&self, law: Law) -> Approach {
         let Law { pair, time_gap_s } = law;
@@ -67,7 +67,8 @@ impl Situation {
         })
     }
 
-    /// The approach by braking that hard from the start, until the speeds are equal, beside the gap that this time gap wants.
+    /// The approach by braking this hard from the start until the speeds are equal; judged by the final gap of this
+    /// time gap.
     #[must_use]
     pub fn by_braking(&self, braking_mps2: f64, time_gap_s: f64) -> Approach {
         let desired = |_, own_mps| if own_mps > self.target_mps { -braking_mps2 } else { 0.0 };
@@ -132,7 +133,7 @@ mod tests {
     #[test]
     fn braking_from_20_to_0_at_4_takes_some_50_metres_more_than_the_ramp() {
         let braking = Situation { own_mps: 20.0, target_mps: 0.0, headway_m: 104.8 }.by_braking(4.0, 1.0);
-        // 20²/8, and the jerk's ramp of 0.8 s and the lag of 0.3 s at 20 m/s: half of one and all of the other.
+        // 20²/8 m, plus half of the jerk's ramp of 0.8 s and all of the lag of 0.3 s at 20 m/s.
         assert!((100.0 - braking.least_gap_m - 64.0).abs() < 1.0, "{braking:?}");
     }
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The arguments of `gains`.
 #[derive(Clone, Debug, Args)]
 pub struct GainsArguments {
-    /// Write the table here, as Rust
+    /// Write the table to this file, as Rust
     #[arg(long, value_name = "FILE.rs")]
     pub write: Option<PathBuf>,
 

@@ -1,38 +1,39 @@
-//! The table: nothing enters; the curve of `γ` over `k` and all cells leave, searched on all cores.
+//! The table: the curve of `γ` over `k` and all cells, searched on all cores.
 //!
-//! With the lag of a bus the sound pairs are a narrow strip, and the mean of two of them may lie beside it. So there is one
-//! curve through its middle, the cells say where on it, and whatever is interpolated is on it too: the whole of it is
-//! proved, thousandth by thousandth. Curve and cells are chosen at one time gap, and [proved](super::proof) at more.
+//! With the lag of a bus the sound pairs are a narrow strip, and the mean of two of them may lie outside it. So one
+//! curve runs through the middle of the strip, and each cell is a point on it. Interpolated pairs are on it too. The
+//! whole curve is proved, thousandth by thousandth. Curve and cells are chosen at one time gap, and
+//! [proved](super::proof) at more.
 
 use super::approach::Situation;
 use super::cell::Cell;
 use super::linear::{DESIGN_TIME_GAP_S, Pair};
 use crate::parallel;
 
-/// Speeds, own and target's: so many, from 0, in steps of this many m/s.
+/// Number of own and of target speeds, from 0, in steps of [`SPEED_STEP_MPS`].
 pub const SPEEDS: usize = 8;
 /// See [`SPEEDS`].
 pub const SPEED_STEP_MPS: u32 = 4;
-/// Headways: so many, from this many metres, in steps of this many.
+/// Number of headways, from [`HEADWAY_FIRST_M`], in steps of [`HEADWAY_STEP_M`].
 pub const HEADWAYS: usize = 8;
 /// See [`HEADWAYS`].
 pub const HEADWAY_FIRST_M: u32 = 8;
 /// See [`HEADWAYS`].
 pub const HEADWAY_STEP_M: u32 = 16;
-/// The first `k` of the curve, in thousandths, and the steps in which it goes on.
+/// The first `k` of the curve, in thousandths.
 pub const CURVE_FIRST_MILLI: u32 = 250;
-/// See [`CURVE_FIRST_MILLI`].
+/// Steps of `k` on the curve, in thousandths.
 pub const CURVE_STEP_MILLI: u32 = 50;
 /// Steps of `k` in the cells, in thousandths.
 pub const GAIN_STEP_MILLI: u32 = 5;
 
-/// `γ` of the sound pairs is tried in steps of this, in milliseconds.
+/// Steps of `γ` in which sound pairs are searched, in milliseconds.
 const DAMPING_STEP_MILLI: u32 = 10;
 const POINTS: u32 = 8;
-/// Candidates for the cells are this far apart, in thousandths of `k`.
+/// Distance between the candidates for the cells, in thousandths of `k`.
 const TRIED_EVERY_MILLI: u32 = 25;
 
-/// `γ` in milliseconds at each point of `k`: the middle of all that are sound there.
+/// `γ` in milliseconds at each point of `k`: the middle of all sound values there.
 #[must_use]
 pub fn curve() -> Vec<u32> {
     let middle = |point: u32| {
@@ -46,7 +47,7 @@ pub fn curve() -> Vec<u32> {
     (0..POINTS).map(middle).collect()
 }
 
-/// The pair of that `k`, in thousandths, on the curve.
+/// The pair on the curve with this `k`, in thousandths.
 #[must_use]
 pub fn on_curve(curve: &[u32], gain_milli: u32) -> Pair {
     let along = f64::from(gain_milli.saturating_sub(CURVE_FIRST_MILLI)) / f64::from(CURVE_STEP_MILLI);
@@ -64,7 +65,7 @@ pub fn pairs(curve: &[u32]) -> Vec<Pair> {
     (CURVE_FIRST_MILLI..=last).map(|gain| on_curve(curve, gain)).collect()
 }
 
-/// All situations: own speed slowest, headway fastest.
+/// All situations; the own speed varies slowest, the headway fastest.
 #[must_use]
 pub fn situations() -> Vec<Situation> {
     let mut situations = Vec::new();
@@ -80,7 +81,7 @@ pub fn situations() -> Vec<Situation> {
     situations
 }
 
-/// The best pair on the curve of every situation.
+/// The best pair on the curve for every situation.
 #[must_use]
 pub fn cells(curve: &[u32]) -> Vec<Cell> {
     let last = CURVE_FIRST_MILLI + (POINTS - 1) * CURVE_STEP_MILLI;

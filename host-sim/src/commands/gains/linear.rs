@@ -1,28 +1,28 @@
-//! What holds of a pair of gains whatever the situation: `k`, `γ` and the time gap enter, string stability and stability
-//! margin leave.
+//! The properties of a pair of gains in every situation: `k`, `γ` and the time gap enter; string stability and
+//! stability margin leave.
 //!
-//! Behind the actuators' lag `T` the law of eq. 5 passes a predecessor's motion on by
-//! `G(s) = k (1 + γ s)/(T s³ + s² + k (t_g + γ) s + k)`, and its own loop is
-//! `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
+//! With the actuators' lag `T`, the law of eq. 5 transmits a predecessor's motion by `G(s) = k (1 + γ s)/(T s³ + s² + k
+//! (t_g + γ) s + k)`. Its own loop is `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
 
-/// The time gap `t_g` that the gains are chosen for, in seconds: the smallest that they are proved at, and the scenarios'.
+/// The time gap `t_g` that the gains are chosen for, in seconds. It is the smallest at which they are proved, and that
+/// of the scenarios.
 ///
-/// String stability is what a small gap makes hard, and what holds of it at one gap holds at every larger one
-/// ([`Law::is_string_stable_at_larger_time_gaps`]). Nothing else does: with a larger gap the loop crosses over at a higher
-/// frequency, where a delay takes more and in the end the lag does too, and it settles later. So the shipped gap is proved
-/// besides.
+/// A small gap makes string stability hard, and if it holds at one gap it holds at every larger one
+/// ([`Law::is_string_stable_at_larger_time_gaps`]). No other property does. With a larger gap the loop's crossover
+/// frequency is higher, where a delay costs more phase and finally the lag does too, and the loop settles later. So the
+/// shipped gap is proved as well.
 pub const DESIGN_TIME_GAP_S: f64 = 1.0;
-/// The laziest actuators, those of a bus, in seconds.
+/// The slowest actuators, those of a bus, in seconds.
 pub const LAZIEST_S: f64 = 0.5;
-/// The largest `|G(jω)|` without lag and with a car's: 1, but for the rounding of this computation.
+/// The largest `|G(jω)|` without lag and with a car's: 1, except for the rounding of this computation.
 const LARGEST_GAIN: f64 = 1.000_1;
-/// And with the laziest actuators.
+/// The largest `|G(jω)|` with the slowest actuators.
 const LARGEST_GAIN_LAZY: f64 = 1.002;
-/// A car's actuators, in seconds.
+/// Time constant of a car's actuators, in seconds.
 pub const CAR_S: f64 = 0.3;
 /// The least phase margin, in radians: 40°.
 pub const LEAST_PHASE: f64 = 0.698;
-/// The least delay that the loop bears besides, in seconds: a period of 100 ms and as much again.
+/// The least additional delay that the loop has to bear, in seconds: a period of 100 ms, and as much again.
 pub const LEAST_DELAY_S: f64 = 0.2;
 
 /// A pair of gains.
@@ -44,7 +44,7 @@ pub struct Law {
 }
 
 impl Pair {
-    /// The law with these gains at that time gap.
+    /// The law with these gains at a time gap.
     #[must_use]
     pub fn at(self, time_gap_s: f64) -> Law {
         Law { pair: self, time_gap_s }
@@ -52,7 +52,7 @@ impl Pair {
 }
 
 impl Law {
-    /// `t_g + γ`, what the law looks ahead by.
+    /// `t_g + γ`, the time by which the law looks ahead.
     fn lead_s(self) -> f64 {
         self.time_gap_s + self.pair.damping_s
     }
@@ -64,12 +64,12 @@ impl Law {
         self.time_gap_s >= (damping_s * damping_s + 2.0 / gain).sqrt() - damping_s - 1e-12
     }
 
-    /// Whether a larger time gap amplifies no frequency beyond 1 and what this one does, with that lag or any smaller one.
+    /// Whether a larger time gap amplifies no frequency by more than 1 and this gap's amplification, with this lag or
+    /// any smaller one.
     ///
-    /// The numerator of `|G(jω)|²`, `k² (1 + γ² ω²)`, does not know the gap; the denominator is
-    /// `(k - ω²)² + ω² (k (t_g + γ) - T ω²)²`. Up to `ω² = k (t_g + γ)/T` the denominator grows with `t_g`. Beyond, its
-    /// first term alone is at least the numerator if `ω² >= k (2 + k γ²)`, and beyond begins above that if
-    /// `t_g + γ >= T (2 + k γ²)`.
+    /// The numerator of `|G(jω)|²`, `k² (1 + γ² ω²)`, does not depend on the gap. The denominator is `(k - ω²)² + ω² (k
+    /// (t_g + γ) - T ω²)²`. Up to `ω² = k (t_g + γ)/T` it grows with `t_g`. Beyond that frequency, its first term alone
+    /// is at least the numerator if `ω² >= k (2 + k γ²)`. That holds everywhere beyond if `t_g + γ >= T (2 + k γ²)`.
     #[must_use]
     pub fn is_string_stable_at_larger_time_gaps(self, lag_s: f64) -> bool {
         let Pair { gain, damping_s } = self.pair;
@@ -94,7 +94,7 @@ impl Law {
         let (gain, lead_s) = (self.pair.gain, self.lead_s());
         let loop_gain =
             |w: f64| gain * (1.0 + (lead_s * w).powi(2)).sqrt() / (w * w * (1.0 + (lag_s * w).powi(2)).sqrt());
-        // The loop's gain falls all the way, so it is 1 once.
+        // The loop's gain falls monotonically, so it is 1 at one frequency only.
         let (mut low, mut high) = (1e-3, 1e3);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
@@ -104,7 +104,7 @@ impl Law {
         (phase, phase / low)
     }
 
-    /// Whether all of it is within the limits.
+    /// Whether all properties are within the limits.
     #[must_use]
     pub fn is_sound(self) -> bool {
         let (phase, delay_s) = self.margins(LAZIEST_S);
@@ -117,7 +117,7 @@ impl Law {
     }
 }
 
-/// 400 of them, evenly on a logarithmic scale: 2 % apart.
+/// 400 frequencies, evenly on a logarithmic scale: 2 % apart.
 fn frequencies() -> impl Iterator<Item = f64> {
     (0..400).map(|step| 0.01 * 3000f64.powf(f64::from(step) / 399.0))
 }
@@ -171,7 +171,7 @@ mod tests {
         }
         let phase = |law: Law| law.margins(LAZIEST_S).0;
         assert!(phase(laws[1]) > LEAST_PHASE && phase(laws[3]) < LEAST_PHASE, "{}", phase(laws[3]).to_degrees());
-        // Where the condition does not hold a larger gap can amplify more.
+        // Where the condition does not hold, a larger gap can amplify more.
         let (soft, lag_s) = (Pair { gain: 0.1, damping_s: 0.0 }, 0.5);
         assert!(!soft.at(0.1).is_string_stable_at_larger_time_gaps(lag_s));
         assert!(soft.at(0.5).largest_gain(lag_s) > soft.at(0.1).largest_gain(lag_s));

@@ -1,5 +1,5 @@
-//! `gains`: eq. 6. Nothing but options enters; the table of gains that the core ships leaves, with the proof of every cell at
-//! the time gap that it is made for and at the shipped one, a report with a picture of it, and the verdict.
+//! `gains`: eq. 6. Only options enter. The table of gains that the core ships leaves, with the proof of every cell at
+//! the time gap that the table is made for and at the shipped one, a report with a picture of it, and the verdict.
 //!
 //! ```text
 //! sound pairs -> curve -> cells (on all cores) -> proofs -> source, JSON, report
@@ -28,20 +28,20 @@ use arguments::GainsArguments;
 use cell::Cell;
 use proof::Proof;
 
-/// What becomes of the table.
+/// The output of the command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GainsOptions {
-    /// Where to write it.
+    /// File for the table as Rust.
     pub write: Option<PathBuf>,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl GainsOptions {
-    /// Checks what the arguments say.
+    /// Checks the arguments.
     ///
     /// # Errors
-    /// Places that cannot be written.
+    /// Output that cannot be written.
     pub fn read(arguments: GainsArguments) -> Result<Self, Error> {
         let GainsArguments { write, json, out, no_report } = arguments;
         let destination = Destination::new(json, (!no_report).then_some(out))?;
@@ -57,11 +57,11 @@ impl GainsOptions {
 pub struct Table {
     /// `γ` in ms over `k`.
     pub curve: Vec<u32>,
-    /// By own speed, target's speed and headway.
+    /// Cells by own speed, target's speed and headway.
     pub cells: Vec<Cell>,
-    /// At the time gap that it is made for, and at the shipped one.
+    /// Proofs at the time gap that the table is made for, and at the shipped one.
     pub proofs: [Proof; 2],
-    /// What does not hold.
+    /// The requirements that do not hold.
     pub failures: Vec<String>,
 }
 
@@ -76,7 +76,7 @@ struct Results<'a> {
 }
 
 impl Table {
-    /// Searches and proves it.
+    /// Searches and proves the table.
     #[must_use]
     pub fn made() -> Self {
         let curve = grid::curve();
@@ -99,10 +99,10 @@ impl Table {
     }
 }
 
-/// Makes and proves the table, and writes what the options ask for.
+/// Makes and proves the table, and writes the output that the options ask for.
 ///
 /// # Errors
-/// Places that cannot be written.
+/// Output that cannot be written.
 pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
     let table = Table::made();
     if let Some(file) = &options.write {

@@ -1,4 +1,5 @@
-//! The proof of the table at one time gap: curve and cells enter, the worst figures and whatever does not hold leave.
+//! The proof of the table at one time gap: curve and cells enter; the worst figures leave, and the requirements that do
+//! not hold.
 
 use serde::Serialize;
 
@@ -12,35 +13,35 @@ use crate::parallel;
 pub struct Proof {
     /// The time gap.
     pub time_gap_s: f64,
-    /// Cells of which everything is asked.
+    /// Cells of which everything is required.
     pub everything_asked: usize,
-    /// Cells of which no collision is asked.
+    /// Cells of which no collision is required.
     pub no_collision_asked: usize,
-    /// Cells of which nothing is asked.
+    /// Cells of which nothing is required.
     pub nothing_asked: usize,
-    /// Along a string, of all pairs on the curve: without lag, with a car's, with the laziest.
+    /// Largest amplification along a string, of all pairs on the curve: without lag, with a car's, with the slowest.
     pub largest_amplification: [f64; 3],
-    /// Of all pairs on the curve, with the laziest lag.
+    /// Least phase margin of all pairs on the curve, with the slowest lag.
     pub least_phase_margin_deg: f64,
-    /// Of all pairs on the curve, with the laziest lag.
+    /// Least delay margin of all pairs on the curve, with the slowest lag.
     pub least_delay_margin_s: f64,
-    /// By when everything has to have settled.
+    /// Latest allowed settling time.
     pub settling_limit_s: f64,
-    /// Of the cells of which everything is asked, and so the next two.
+    /// Longest settling time of the cells of which everything is required.
     pub longest_settling_s: f64,
-    /// Into the gap.
+    /// Largest overshoot into the gap, of the same cells.
     pub largest_overshoot_m: f64,
-    /// A magnitude; 4 at most by construction.
+    /// Hardest braking of the same cells, a magnitude; 4 at most by construction.
     pub hardest_braking_mps2: f64,
-    /// Of the cells of which no collision is asked; none if there is no such cell.
+    /// Smallest gap of the cells of which no collision is required; `None` if there is no such cell.
     pub smallest_gap_m: Option<f64>,
-    /// What does not hold, in words.
+    /// The requirements that do not hold, in words.
     #[serde(skip)]
     pub failures: Vec<String>,
 }
 
 impl Proof {
-    /// The proof at that time gap, on all cores.
+    /// The proof at a time gap, on all cores.
     #[must_use]
     pub fn at(time_gap_s: f64, curve: &[u32], cells: &[Cell]) -> Self {
         let laws: Vec<Law> = grid::pairs(curve).into_iter().map(|pair| pair.at(time_gap_s)).collect();
@@ -109,7 +110,7 @@ mod tests {
     fn at_a_time_gap_that_is_too_large_the_margins_of_the_curve_fail() {
         let proof = Proof::at(3.995, &grid::curve(), &[]);
         assert!(!proof.failures.is_empty() && (36.9..37.1).contains(&proof.least_phase_margin_deg), "{proof:?}");
-        // String stability is kept all the same.
+        // String stability holds nevertheless.
         assert!(proof.largest_amplification.into_iter().all(|largest| largest <= 1.000_1), "{proof:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The table as the core ships it: the curve and the cells enter, the text of `src/controller/gain_table.rs` leaves.
+//! The source text of the table: curve and cells enter; the text of `src/controller/gain_table.rs` leaves.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ const HEAD: &str = "\
 #[must_use]
 pub fn text(curve: &[u32], cells: &[Cell]) -> String {
     let mut text = String::from(HEAD);
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let mut constant = |doc: &str, name: &str, kind: &str, value: u32| {
         let _ = writeln!(text, "/// {doc}\npub(super) const {name}: {kind} = {};", spelled(value));
     };
@@ -47,12 +47,12 @@ pub fn text(curve: &[u32], cells: &[Cell]) -> String {
     text
 }
 
-/// `k` of a cell in the table's steps.
+/// `k` of a cell, in the table's steps.
 fn step(cell: &Cell) -> u32 {
     (cell.pair.gain * 1e3 / f64::from(GAIN_STEP_MILLI)).round() as u32
 }
 
-/// A number with its thousands parted as Rust does.
+/// A number with its thousands separated as in Rust.
 fn spelled(value: u32) -> String {
     if value < 10_000 { value.to_string() } else { format!("{}_{:03}", value / 1000, value % 1000) }
 }

@@ -17,27 +17,29 @@ pub struct HilArguments {
     #[arg(long, value_name = "INTERFACE")]
     pub bus: String,
 
-    /// Step by step: the device ticks by the time synchronisation alone, and has to say the same as its twin, bit for bit
+    /// Step by step: the device ticks by the time synchronisation alone, and has to send the same as its twin, bit for
+    /// bit
     #[arg(long)]
     pub lock_step: bool,
 
-    /// What the device is; its twin is the same.
+    /// The device; its twin has the same configuration.
     #[command(flatten)]
     pub unit: UnitArguments,
 
-    /// Start the device by this command, and end it when the run is over
+    /// Start the device by this command, and end it after the run
     #[arg(long, value_name = "COMMAND")]
     pub device: Option<String>,
 
-    /// How long the device may take to say its first word
+    /// Longest wait for the first frame of the device
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub wait: f64,
 
-    /// How long after its vehicle's motion the device's command may come, but for one of 100; in real time
+    /// Longest time from the vehicle's motion to the device's command that rests on it, except for one command in 100;
+    /// in real time
     #[arg(long, value_name = "MS", default_value_t = LATENCY_P99_MS, allow_negative_numbers = true)]
     pub latency: f64,
 
-    /// Press a fault button, such as power@5:1 (below); may be repeated
+    /// Inject a fault, such as power@5:1 (below); may be repeated
     #[arg(long, value_name = "FAULT")]
     pub fault: Vec<String>,
 

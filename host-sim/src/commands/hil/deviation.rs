@@ -1,12 +1,12 @@
-//! How far the device is from its twin: what the two said in a tick and how well the time of that tick is known enter; the
-//! largest differences leave, and how many of them the time does not explain.
+//! The deviation of the device from its twin: their frames of a tick enter, with the uncertainty of that tick's time.
+//! The largest differences leave, and the number of differences that this uncertainty does not explain.
 //!
-//! *What explains a difference in real time:* the device ticked at some moment within a period before its command was on the
-//! bus, or within a period and its lag, which its count of periods tells (see [`super::monitor::Monitor::lag`]); the twin ticks
-//! when the command is on the bus, and a frame that came in between was known to the twin only. In that window the target makes
-//! way, news moves the estimate by what it corrects, and commands move by their jerk and by what the twin's own did. Differences
-//! within what those make up are explained by the time stamps. In lock step there is nothing to explain: everything has to be
-//! the same.
+//! *What explains a difference in real time:* the device ticked at some moment within a window before its command was
+//! on the bus. The window is a period, or a period and the device's lag, which its count of periods tells (see
+//! [`super::monitor::Monitor::lag`]). The twin ticks when the command is on the bus, so it alone knows a frame that
+//! came in between. Within the window the target moves, a new message corrects the estimate, and commands change by
+//! their jerk and by as much as the twin's own commands did. A difference that is not larger than the sum of these is
+//! explained by the time stamps. In lock step no difference is explained: everything has to be the same.
 
 use std::collections::VecDeque;
 
@@ -17,19 +17,19 @@ use holdover::wire::estimate::TargetEstimate;
 
 use super::said::Said;
 
-/// What the wire rounds to, and what the clocks' error of half a millisecond makes up, in metres.
+/// Difference that the wire's rounding and the clocks' error of half a millisecond explain, in metres.
 const POSITION_ROUNDING_M: f64 = 0.01;
-/// The same of speed, in m/s.
+/// The same for the speed, in m/s.
 const SPEED_ROUNDING_MPS: f64 = 0.01;
-/// The same of the command, in m/s².
+/// The same for the command, in m/s².
 const COMMAND_ROUNDING_MPS2: f64 = 0.02;
-/// Hardest change of a speed that news may correct within one period's age, in m/s².
+/// Largest correction of a speed by a message, per second of its age, in m/s².
 const HARDEST_MPS2: f64 = 8.0;
-/// Hardest change of a command: that of the law, in m/s³.
+/// Largest change of a command: the jerk of the law, in m/s³.
 const JERK_MPS3: f64 = 5.0;
-/// How much longer than the window the modes may differ: less than a period.
+/// Time by which the modes may differ for longer than the window: less than a period.
 const MODE_LATER_S: f64 = 0.008;
-/// How long the twin's commands are remembered, in seconds.
+/// Time for which the twin's commands are kept, in seconds.
 const MEMORY_S: f64 = 1.0;
 
 /// The differences so far.
@@ -37,9 +37,9 @@ const MEMORY_S: f64 = 1.0;
 pub struct Deviation {
     /// Ticks that were compared.
     pub ticks: u64,
-    /// Ticks in which both said the same, bit for bit.
+    /// Ticks in which both sent the same, bit for bit.
     pub same: u64,
-    /// Ticks in which their modes differed.
+    /// Ticks in which the modes differed.
     pub modes: u64,
     /// Largest difference of the estimated position.
     pub position_m: f64,
@@ -47,17 +47,17 @@ pub struct Deviation {
     pub speed_mps: f64,
     /// Largest difference of the command.
     pub command_mps2: f64,
-    /// Times of the run at which a difference is not explained, in seconds.
+    /// Times of the run with an unexplained difference, in seconds.
     pub unexplained_s: Vec<f64>,
-    /// What the twin commanded in the last window, and the command before it: time of the run and m/s².
+    /// The twin's commands in the last window, and the command before it: time of the run and m/s².
     recent: VecDeque<(f64, f64)>,
-    /// Since when the modes differ.
+    /// Time since which the modes differ.
     modes_since_s: Option<f64>,
 }
 
 impl Deviation {
-    /// A command of the device, and what its twin said in that tick. `window`: how long before the twin the device may
-    /// have ticked.
+    /// Compares a command of the device with its twin's frames of that tick. `window` is the longest time by which the
+    /// device may have ticked before the twin.
     pub fn command(&mut self, at_s: f64, device: &Command, twin: &Said, window: Duration) {
         self.ticks += 1;
         self.same += u64::from(same(device, &twin.command));
@@ -66,7 +66,7 @@ impl Deviation {
         let allowed = COMMAND_ROUNDING_MPS2 + self.moved(at_s, twin, window) + JERK_MPS3 * seconds(window);
         let is_other = device.mode != twin.command.mode;
         self.modes += u64::from(is_other);
-        // One of them may hear of a change a window and a tick before the other.
+        // One of the two may know of a change a window and a tick before the other.
         self.modes_since_s = is_other.then(|| self.modes_since_s.unwrap_or(at_s));
         let is_long = self.modes_since_s.is_some_and(|since_s| at_s - since_s > seconds(window) + MODE_LATER_S);
         if difference > allowed || is_long {
@@ -74,7 +74,7 @@ impl Deviation {
         }
     }
 
-    /// How far the twin's commands were apart in that window.
+    /// The range of the twin's commands in that window.
     fn moved(&mut self, at_s: f64, twin: &Said, window: Duration) -> f64 {
         self.recent.push_back((at_s, mps2(twin.command.acceleration)));
         while self.recent.get(1).is_some_and(|(then_s, _)| *then_s <= at_s - MEMORY_S) {
@@ -87,13 +87,14 @@ impl Deviation {
         most - least
     }
 
-    /// An estimate of the device, and its twin's of the same tick.
+    /// Compares an estimate of the device with its twin's of the same tick.
     pub fn estimate(&mut self, at_s: f64, device: &TargetEstimate, twin: &TargetEstimate, window: Duration) {
         let position = apart_m(device, twin);
         let speed = (mps(device.speed) - mps(twin.speed)).abs();
         self.position_m = self.position_m.max(position);
         self.speed_mps = self.speed_mps.max(speed);
-        // A sample of another age: one of the two has news that the other has not, and news corrects.
+        // The ages of the samples differ: one of the two has a message that the other has not, and a message corrects
+        // the estimate.
         let is_other = device.age.minus(twin.age).as_micros().abs() > (window.as_micros() + 10_000).max(20_000);
         let corrected_s = if is_other { seconds(device.age.max(twin.age)) } else { 0.0 };
         let window_s = seconds(window) + 0.001;
@@ -105,12 +106,12 @@ impl Deviation {
     }
 }
 
-/// Everything but the count of periods, which begins with the power.
+/// Whether two commands are the same, except for the count of periods, which starts at power-up.
 fn same(device: &Command, twin: &Command) -> bool {
     Command { tick: 0, ..*device } == Command { tick: 0, ..*twin }
 }
 
-/// The distance between two estimated positions, which stand on the wire modulo 2^25 mm.
+/// The distance between two estimated positions, which are modulo 2^25 mm on the wire.
 fn apart_m(a: &TargetEstimate, b: &TargetEstimate) -> f64 {
     const TURN_MM: i64 = 1 << 25;
     let apart_mm = (i64::from(a.position.mm()) - i64::from(b.position.mm()) + TURN_MM / 2).rem_euclid(TURN_MM);

@@ -1,4 +1,4 @@
-//! The fault buttons: what the command line says enters, a schedule of faults that are switched on and off leaves.
+//! The faults of a run: the text of the command line enters, a schedule of faults leaves.
 //!
 //! ```text
 //! KIND[=VALUE]@START[:DURATION]      seconds of the run
@@ -8,41 +8,41 @@ use std::str::FromStr;
 
 use crate::error::{Error, quoted};
 
-/// What is done to the device, or to its bus.
+/// A fault of the device, or of its bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// The device's power is cut.
     Power,
     /// The interface is taken down.
     Interface,
-    /// A node babbles at the highest priority, as much as the bus carries.
+    /// A node babbles at the highest priority, with as many frames as the bus carries.
     Babble,
-    /// Every third frame to the device has a bit the wrong way round.
+    /// Every third frame to the device has a flipped bit.
     Corrupt,
-    /// Every third frame to the device is cut short.
+    /// Every third frame to the device is shortened.
     Truncate,
-    /// Another node says on the vehicle's identifiers that the vehicle is somewhere else.
+    /// Another node sends on the vehicle's identifiers that the vehicle is at another place.
     Foreign,
-    /// Error frames, a hundred a second.
+    /// A hundred error frames per second.
     Errors,
-    /// The time synchronisation is off by so many seconds.
+    /// The time synchronisation is wrong by this many seconds.
     ClockStep(f64),
-    /// The time synchronisation runs fast by so many millionths.
+    /// The time synchronisation is fast by this many parts per million.
     ClockDrift(f64),
 }
 
-/// A fault and when it is.
+/// A fault and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// What.
+    /// The kind of fault.
     pub kind: Kind,
-    /// From then on, in seconds of the run.
+    /// Beginning, in seconds of the run.
     pub from_s: f64,
-    /// Until then.
+    /// End, in seconds of the run.
     pub to_s: f64,
 }
 
-/// Kinds by name, with the duration that they have unless one is given, and the value if they take one.
+/// Kinds by name, with their default duration, and a default value where they take one.
 const KINDS: [(&str, Kind, f64); 9] = [
     ("power", Kind::Power, 1.0),
     ("interface", Kind::Interface, 1.0),
@@ -71,7 +71,7 @@ impl Kind {
         }
     }
 
-    /// By how much the time synchronisation is wrong after so many seconds of it, in seconds.
+    /// The error of the time synchronisation after this many seconds of the fault, in seconds.
     #[must_use]
     pub fn clock_error_s(self, after_s: f64) -> f64 {
         match self {
@@ -83,7 +83,7 @@ impl Kind {
 }
 
 impl Fault {
-    /// Whether it is on.
+    /// Whether the fault is on at this time.
     #[must_use]
     pub fn is_on(&self, at_s: f64) -> bool {
         (self.from_s..self.to_s).contains(&at_s)

@@ -1,6 +1,5 @@
-//! The one who presses the fault buttons: a schedule and the time of the run enter; what is switched, what is spoilt and what
-//! a node of ill will sends leave. A fault that has changed nothing has tested nothing, so it counts as not played, with the
-//! reason.
+//! The fault injector: a schedule and the time of the run enter; switchings, altered frames and the frames of a hostile
+//! node leave. A fault that has changed nothing has tested nothing, so it counts as not played, with the reason.
 
 use std::io;
 
@@ -16,36 +15,36 @@ use super::talk::{Altered, line_of, payload};
 use crate::bus::Frame;
 use crate::bus::port::BusError;
 
-/// Between two doings of it.
+/// Time between two bursts of a fault.
 const EVERY: Duration = Duration::from_millis(1);
 /// Frames of a babbling node in that time: as many as a bus at 500 kbit/s carries.
 const BABBLE: usize = 4;
-/// How far off the vehicle is by the foreign node's account, in metres.
+/// Distance from the vehicle's true position to the one that the foreign node sends, in metres.
 const OFF_M: i64 = 50;
 
-/// The presser.
+/// The fault injector.
 pub struct FaultInjector {
     faults: Vec<Played>,
     base: BaseId,
     sender: Sender<0>,
     motion: [Option<Frame>; 2],
-    /// When it next does what it does a hundred times a second.
+    /// Time of the next act of a fault that acts a hundred times a second.
     next_s: f64,
-    /// What the harness had altered by the last look.
+    /// Frames that the harness had altered at the last check.
     altered: Altered,
 }
 
-/// A fault and what came of it.
+/// A fault and its effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Played {
-    /// What was to be done.
+    /// The fault.
     pub fault: Fault,
-    /// How often it was: switchings, frames of the foreign node, frames that were altered.
+    /// Number of acts: switchings, frames of the foreign node, altered frames.
     pub acts: u64,
-    /// Why it was not done, or not all of it.
+    /// Why the fault was not injected, or not completely.
     pub failed: Option<String>,
     is_on: bool,
-    /// Why the bus did not take a frame of it, the last time.
+    /// The last reason why the bus refused one of its frames.
     refused: Option<String>,
 }
 
@@ -54,7 +53,7 @@ impl Played {
         Self { fault, acts: 0, failed: None, is_on: false, refused: None }
     }
 
-    /// One act of it was done, or the bus did not take it. A full bus need not take every frame.
+    /// Records an act: it was done, or the bus refused it. A full bus need not take every frame.
     fn note(&mut self, done: io::Result<()>) {
         match done {
             Ok(()) => self.acts += 1,
@@ -62,7 +61,7 @@ impl Played {
         }
     }
 
-    /// At the end of a run: a fault without an act was not played.
+    /// The fault at the end of a run. A fault without an act was not played.
     fn ended(mut self) -> Self {
         if self.acts == 0 && self.failed.is_none() {
             let nothing = "it changed nothing while it was on".to_owned();
@@ -73,14 +72,14 @@ impl Played {
 }
 
 impl FaultInjector {
-    /// With these faults in mind.
+    /// An injector with these faults.
     #[must_use]
     pub fn new(faults: &[Fault], base: BaseId) -> Self {
         let faults = faults.iter().copied().map(Played::new).collect();
         Self { faults, base, sender: Sender::new(base), motion: [None; 2], next_s: 0.0, altered: Altered::default() }
     }
 
-    /// Switches what is due at that time; whether the device has got power anew.
+    /// Switches the faults that are due at this time. Returns whether the device was powered up anew.
     pub fn switch(&mut self, at_s: f64, rig: &mut dyn Rig) -> bool {
         let mut powered = false;
         for played in &mut self.faults {
@@ -105,12 +104,12 @@ impl FaultInjector {
         powered
     }
 
-    /// What is still switched off is switched on.
+    /// Switches everything on again that is still off.
     pub fn stop(&mut self, rig: &mut dyn Rig) {
         self.switch(f64::INFINITY, rig);
     }
 
-    /// The faults and what came of them. In a run that was cut short, a fault may not have had its time.
+    /// The faults and their effects. In a run that was cut short, a fault may not have been due.
     #[must_use]
     pub fn played(self, is_whole: bool) -> Vec<Played> {
         self.faults.into_iter().map(|played| if is_whole { played.ended() } else { played }).collect()
@@ -120,26 +119,26 @@ impl FaultInjector {
         self.faults.iter().filter(|played| played.is_on).map(|played| played.fault)
     }
 
-    /// What the time synchronisation is to be wrong by, in microseconds.
+    /// The present error of the time synchronisation, in microseconds.
     #[must_use]
     pub fn clock_error_us(&self, at_s: f64) -> i64 {
         crate::sim::time::micros(self.on().map(|fault| fault.kind.clock_error_s(at_s - fault.from_s)).sum())
     }
 
-    /// How the harness's own frames are to be spoilt.
+    /// How the harness's own frames are to be altered.
     #[must_use]
     pub fn spoils(&self) -> Option<Kind> {
         self.on().map(|fault| fault.kind).find(|kind| matches!(kind, Kind::Corrupt | Kind::Truncate))
     }
 
-    /// The harness has altered so much since the run began; to be told before faults are switched.
+    /// Records how much the harness has altered since the run began. It has to be called before faults are switched.
     pub fn note_altered(&mut self, altered: Altered) {
         let (frames, times) = (altered.frames - self.altered.frames, altered.times - self.altered.times);
         self.altered = altered;
         let spoils = self.spoils();
         for played in self.faults.iter_mut().filter(|played| played.is_on) {
             played.acts += match played.fault.kind {
-                // Of two that are on, one spoils.
+                // If both of these faults are on, one of them alters frames.
                 kind if Some(kind) == spoils => frames,
                 Kind::ClockStep(_) | Kind::ClockDrift(_) => times,
                 _ => 0,
@@ -147,7 +146,7 @@ impl FaultInjector {
         }
     }
 
-    /// The harness has sent a frame.
+    /// Takes in a frame that the harness has sent.
     pub fn overhear(&mut self, frame: &Frame) {
         match line_of(self.base, frame).map(|line| line.content) {
             Some(Content::Said(Speaker::Ego, About::MotionA)) => self.motion[0] = Some(*frame),
@@ -156,7 +155,8 @@ impl FaultInjector {
         }
     }
 
-    /// Does what it does all the while; how soon again. What the bus does not take is lost.
+    /// Sends the frames of the faults that are on. Returns the time until the next act. Frames that the bus refuses are
+    /// lost.
     pub fn act(&mut self, at_s: f64, rig: &mut dyn Rig) -> Option<Duration> {
         let is_due = at_s >= self.next_s;
         if is_due {
@@ -189,7 +189,7 @@ impl FaultInjector {
         acts_on.then_some(EVERY)
     }
 
-    /// The vehicle's motion, somewhere else; well protected, with counters of its own.
+    /// The vehicle's motion at another place: with valid protection, and with counters of its own.
     fn lies(&mut self) -> Vec<Frame> {
         let [Some(a), Some(b)] = self.motion else { return Vec::new() };
         let truth = Motion::decode(&[payload(&a), payload(&b)]);

@@ -1,7 +1,7 @@
 //! The judge: an outcome and the limits enter, figures and a verdict with its reasons leave.
 //!
-//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has tested something else than the device. Only
-//! a device whose process has ended by itself has failed however late the harness was.
+//! *Inconclusive* comes before failed: a harness that was late, or lost frames, has not tested the device properly.
+//! Only a device whose process ended by itself has failed however late the harness was.
 
 use std::collections::BTreeMap;
 
@@ -20,28 +20,28 @@ use crate::measure::figures::{BoundFigures, Summary, failures, summarise};
 use crate::sim::world::{Tick, Trace};
 use crate::verdict::Verdict;
 
-/// So long the device may take from its vehicle's motion to its command, unless somebody says otherwise, but for one of a
-/// hundred: two periods, because it need not tick when its vehicle speaks.
+/// Default limit of the time from the vehicle's motion to the device's command, except for one command in a hundred:
+/// two periods, because the device need not tick when its vehicle sends.
 pub const LATENCY_P99_MS: f64 = 20.0;
-/// Share of periods that a device in real time may miss on a system that is none.
+/// Fraction of periods that a device in real time may miss on an operating system without real time.
 pub const MISSED_SHARE: f64 = 0.01;
 
-/// What there is to say of the device.
+/// The figures of the device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DeviceFigures {
-    /// Frames of it.
+    /// Frames that it sent.
     pub frames: u64,
     /// Commands in the run.
     pub commands: usize,
-    /// Times that it started anew by itself.
+    /// Number of times that it restarted by itself.
     pub restarts: usize,
-    /// Faults of the protection of its frames, but for those of the faults' aftermath.
+    /// Errors of the protection of its frames, except in the aftermath of faults.
     pub e2e_errors: usize,
-    /// What it says that it refused, by cause.
+    /// Its refusals by cause, as it reports them.
     pub refusals: BTreeMap<&'static str, u32>,
     /// Commands by mode.
     pub modes: BTreeMap<&'static str, usize>,
-    /// Frames of others on the harness's identifiers.
+    /// Frames of other nodes on the harness's identifiers.
     pub foreign_frames: u64,
     /// Error frames on the bus.
     pub bus_errors: u64,
@@ -56,7 +56,7 @@ pub struct DeviationFigures {
     pub ticks: u64,
     /// Frames that were compared, in lock step.
     pub frames: u64,
-    /// Of those, frames that were not the same.
+    /// Number of those frames that were not the same.
     pub different_frames: u64,
     /// Largest difference of the estimated position.
     pub position_m: f64,
@@ -73,43 +73,43 @@ pub struct DeviationFigures {
 /// Wall-clock figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Timing {
-    /// From the vehicle's motion (in lock step: from the step) on the bus to the command that rests on it.
+    /// Time on the bus from the vehicle's motion (in lock step: from the step) to the command that rests on it.
     pub latency: Spread,
-    /// Periods in which the device said nothing.
+    /// Periods in which the device sent nothing.
     pub missed_periods: usize,
-    /// Commands that are in these, which leaves out those of the faults' aftermath.
+    /// Commands in these figures, without those in the aftermath of faults.
     pub judged_commands: usize,
-    /// Commands that are not, because the harness was late around them.
+    /// Commands that are not in them because the harness was late at that time.
     pub disturbed_commands: usize,
-    /// The harness's own.
+    /// The figures of the harness.
     pub harness: HarnessTiming,
 }
 
-/// The harness's own share.
+/// The figures of the harness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HarnessTiming {
     /// Frames that it sent.
     pub frames: u64,
-    /// Of those, frames that were not seen on the bus.
+    /// Number of those frames that were not seen on the bus.
     pub lost: u64,
     /// Frames that it could not send because the interface was down.
     pub refused: u64,
-    /// How late it was, over its ticks.
+    /// Lateness of its ticks.
     pub lateness: Spread,
 }
 
-/// Everything that is reported.
+/// The whole result.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Results {
     /// `passed`, `failed` or `inconclusive`.
     pub verdict: &'static str,
-    /// Why.
+    /// The reasons.
     pub reasons: Vec<String>,
     /// The device.
     pub device: DeviceFigures,
     /// The device beside its twin.
     pub deviation: DeviationFigures,
-    /// What became of it in each fault.
+    /// The consequences of each fault.
     pub faults: Vec<Recovery>,
     /// The scenario's own figures.
     pub scenario: Summary,
@@ -118,7 +118,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// The verdict of the exit code.
+    /// The verdict, for the exit code.
     #[must_use]
     pub fn code(&self) -> Verdict {
         match self.verdict {
@@ -129,7 +129,7 @@ impl Results {
     }
 }
 
-/// Judges.
+/// Judges an outcome.
 #[must_use]
 pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
     let mut scenario = summarise(&setup.scenario, &outcome.trace, outcome.realtime_factor);
@@ -197,7 +197,8 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let (disturbed, judged): (Vec<&CommandRecord>, Vec<&CommandRecord>) =
         monitor.beats().iter().filter(|beat| is_of_device(outcome.time_of(beat.at))).partition(is_disturbed);
     let latencies: Vec<i64> = judged.iter().filter_map(|beat| Some(beat.latency?.as_micros())).collect();
-    // Period by period: a lateness of the harness says nothing of those of the same silence that it is far from.
+    // Each period is judged on its own: a late tick of the harness excuses only the missed periods near it, not all
+    // periods of the same silence.
     let missed = monitor.missed().into_iter().filter(|_| outcome.steps.is_none());
     let missed = missed.flat_map(|(end, periods)| (1..=periods).map(move |back| (end, back)));
     let missed = missed.map(|(end, back)| outcome.time_of(end.minus(setup.config.period.times(back))));
@@ -216,8 +217,9 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     }
 }
 
-/// Ticks at which a target was outside its bound, but for the faults' aftermath, since who is lied to lies; and for those
-/// around which the harness was late, since what the device had said by then was heard later.
+/// Ticks at which a target was outside its bound. Not counted are the aftermath of faults, because a device that
+/// receives false values sends false values; and ticks around which the harness was late, because it received the
+/// device's frames later.
 fn violations(setup: &Setup, outcome: &Outcome) -> usize {
     let trace = &outcome.trace;
     let is_judged = |tick: usize| {
@@ -240,7 +242,7 @@ fn violations(setup: &Setup, outcome: &Outcome) -> usize {
     BoundFigures::of(&setup.scenario, &trace).violations
 }
 
-/// What the harness has to say against itself.
+/// The reasons against the harness.
 fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
     let mut reasons = Vec::from_iter(lateness::too_many(timing.disturbed_commands, timing.judged_commands));
     let lateness = timing.harness.lateness;
@@ -265,7 +267,7 @@ fn inconclusive(outcome: &Outcome, timing: &Timing) -> Vec<String> {
     reasons
 }
 
-/// What there is to say against the device.
+/// The reasons against the device.
 fn failed(
     setup: &Setup,
     outcome: &Outcome,
@@ -319,7 +321,7 @@ fn failed(
     reasons
 }
 
-/// A run that was cut short, in words.
+/// The reason why a run was cut short, in words.
 fn said(cut: &Cut) -> String {
     let ended =
         |ended: &Option<String>| ended.as_ref().map_or(String::new(), |how| format!("; its process ended: {how}"));

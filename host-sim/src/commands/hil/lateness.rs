@@ -1,46 +1,48 @@
-//! How late the harness was, tick by tick, enters; when it could not measure the device leaves.
+//! The lateness of the harness: its lateness enters tick by tick; the times at which it could not measure the device
+//! leave.
 //!
-//! What keeps the harness from its processor keeps a device that is a process of the same machine, or is emulated on it, from
-//! it too, and makes late what the harness is told of any other one. So what a device is late by around a tick in which the
-//! harness was late is not put down to it; and where that is most of the run, there is nothing to judge by.
+//! A cause that keeps the harness from the processor also delays a device that is a process of the same machine or is
+//! emulated on it. For any other device it delays the harness's reception of the frames. So the lateness of a device
+//! around a late tick of the harness does not count against the device. If that is most of the run, the device cannot
+//! be judged.
 
 use holdover::time::Duration;
 
 use super::spread::Spread;
 
-/// The harness may be so late in one tick: later, and the device rightly takes its vehicle's motion for lost.
+/// Largest lateness of the harness in a tick. Beyond it the device rightly takes its vehicle's motion for lost.
 pub const LATE_MAX_MS: f64 = 40.0;
-/// And so late in one of a hundred: as late as a device may be.
+/// Largest lateness of the harness, except for one tick in a hundred: as late as a device may be.
 pub const LATE_P99_MS: f64 = 20.0;
-/// A tick that is late by a period divided by this disturbs.
+/// A tick disturbs if it is late by more than a period divided by this.
 const DISTURBS: i64 = 4;
-/// What is said in a tick may be an answer to what was said so many ticks before.
+/// Number of ticks by which a device's answer may come after the message that it answers.
 const BEFORE: i64 = 3;
-/// And may be known only so many ticks later.
+/// Number of ticks by which it may be received later.
 const AFTER: i64 = 1;
 
-/// The harness's ticks in real time; none in lock step, which no lateness disturbs.
+/// The lateness of the harness's ticks in real time; empty in lock step, which no lateness disturbs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lateness {
     ticks_us: Vec<i64>,
-    /// Of them, those before the time 0 of the run.
+    /// Number of those ticks before the time 0 of the run.
     warm_up: i64,
     period: Duration,
 }
 
 impl Lateness {
-    /// No tick yet; so many are going to be before the time 0.
+    /// No tick yet; `warm_up` ticks will be before the time 0.
     #[must_use]
     pub const fn new(period: Duration, warm_up: i64) -> Self {
         Self { ticks_us: Vec::new(), warm_up, period }
     }
 
-    /// A tick was so late.
+    /// Records the lateness of a tick.
     pub fn note(&mut self, late: Duration) {
         self.ticks_us.push(late.as_micros());
     }
 
-    /// How late they were.
+    /// The distribution of the lateness.
     #[must_use]
     pub fn spread(&self) -> Spread {
         Spread::of(&self.ticks_us)
@@ -57,15 +59,15 @@ impl Lateness {
             .any(|late_us| *late_us > period_us / DISTURBS)
     }
 
-    /// Whether a command at that time may be so long after the motion that it rests on because of the harness: nothing that
-    /// takes longer than the ticks that are looked at.
+    /// Whether a lateness of the harness may explain this latency of a command. It explains no latency longer than the
+    /// ticks that are checked.
     #[must_use]
     pub fn excuses(&self, at_s: f64, latency: Duration) -> bool {
         latency <= self.period.times(BEFORE + 1 + AFTER) && self.is_around(at_s)
     }
 }
 
-/// Why so many disturbed commands are too many beside so many that could be judged: they are more.
+/// Why there are too many disturbed commands for a judgement: there are more of them than judged ones.
 #[must_use]
 pub fn too_many(disturbed: usize, judged: usize) -> Option<String> {
     (disturbed > judged).then(|| format!("the harness was late around {disturbed} of {} commands", disturbed + judged))

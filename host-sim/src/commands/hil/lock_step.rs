@@ -1,8 +1,9 @@
-//! A run in lock step: device and twin are given the same frames and the same time, step by step, and have to say the same,
-//! bit for bit. A setup, a port and a rig enter, what happened leaves.
+//! A run in lock step: device and twin get the same frames and the same time, step by step, and have to send the same
+//! frames, bit for bit. A setup, a port and a rig enter; the outcome leaves.
 //!
-//! A step: what the world has to say to the device, then a `Sync` and a `FollowUp` that date the step, then the device's
-//! whole answer, as many frames as the twin's. The world goes on when it is there, as fast as the device is.
+//! A step has three parts: the world's frames to the device; then a `Sync` and a `FollowUp` that date the step; then
+//! the device's whole answer, as many frames as the twin's. The world goes on when the answer is there, as fast as the
+//! device answers.
 
 use std::collections::VecDeque;
 use std::io;
@@ -31,14 +32,14 @@ use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::vehicle::Unit;
 use crate::sim::world::World;
 
-/// How long the world speaks before the run, in seconds.
+/// Time for which the world sends before the run, in seconds.
 const WARM_UP_S: f64 = 1.0;
-/// How long an answer may take.
+/// Longest time of an answer.
 const PATIENCE: Duration = Duration::from_millis(2000);
-/// Between two pairs that look for a device.
+/// Time between two pairs of `Sync` and `FollowUp` while no device has answered.
 const PROBE_EVERY: Duration = Duration::from_millis(200);
 
-/// The device's end of the run.
+/// The device's side of the run.
 struct Bench<P> {
     talk: Talk<P>,
     seat: MemoryNode,
@@ -50,15 +51,15 @@ struct Bench<P> {
     steps: Steps,
     foreign: u64,
     bus_errors: u64,
-    /// When the last step was on the bus.
+    /// Time at which the last step was on the bus.
     asked: Option<Instant>,
     answer: VecDeque<(Instant, Frame)>,
 }
 
-/// Runs it; `progress` is told the time of the run, now and then.
+/// Runs the setup. `progress` gets the time of the run from time to time.
 ///
 /// # Errors
-/// The port's; a configuration that the unit refuses counts as one.
+/// Errors of the port. A configuration that the unit refuses counts as one.
 pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
@@ -76,7 +77,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         asked: None,
         answer: VecDeque::new(),
     };
-    bench.talk.dates = false; // a step's time is the world's
+    bench.talk.dates = false; // the time of a step is that of the world
     let mut trace = world.trace();
     let mut paper = PaperBeside::of(&world, scenario);
     rig.power(true)?;
@@ -101,7 +102,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         let own = world.vehicles()[scenario.ego].instant(at_s);
         let mut frames = Vec::new();
         while let Some((_, frame)) = bench.seat.receive(own)? {
-            // The step's own pair takes the place of the vehicle's.
+            // The pair of the step replaces that of the vehicle.
             let content = line_of(bench.base, &frame).map(|line| line.content);
             if !matches!(content, Some(Content::Sync | Content::FollowUp)) {
                 frames.push(frame);
@@ -158,8 +159,8 @@ impl<P: Port> Bench<P> {
         frames
     }
 
-    /// Looks for a device by pairs of the same time. The count of its first answer says how many of them it has seen, and
-    /// its twin is given as many.
+    /// Looks for a device by sending pairs of the same time. The count in its first answer is the number of pairs that
+    /// it has seen, and its twin gets as many.
     fn find(&mut self, setup: &Setup, at_s: f64, rig: &mut dyn Rig) -> io::Result<Option<Cut>> {
         let end = self.talk.now().plus(setup.wait);
         let mut probes: Vec<Vec<Frame>> = Vec::new();
@@ -171,7 +172,7 @@ impl<P: Port> Bench<P> {
             self.listen(until, usize::MAX)?;
             if let Some(first) = self.answer.iter().find_map(|(_, frame)| command(self.base, frame)) {
                 let seen = usize::from(first.tick);
-                // An answer to each pair that it has seen is there, or on its way.
+                // The answers to all pairs that the device has seen have arrived, or are on their way.
                 self.listen(self.talk.now().plus(PROBE_EVERY), usize::MAX)?;
                 let answers = self.answer.iter().filter_map(|(_, frame)| command(self.base, frame)).count();
                 let Some(unseen) = probes.len().checked_sub(seen + answers - 1).filter(|_| seen == 1) else {
@@ -189,7 +190,7 @@ impl<P: Port> Bench<P> {
         Ok(Some(Cut::Silent { waited: setup.wait, ended: None }))
     }
 
-    /// One step; whether the device answered at all.
+    /// One step. Returns whether the device answered at all.
     fn step(&mut self, at_s: f64, frames: &[Frame], own: Instant) -> io::Result<bool> {
         frames.iter().for_each(|frame| self.talk.send(*frame));
         let expected = self.twin(frames);
@@ -203,14 +204,14 @@ impl<P: Port> Bench<P> {
         Ok(has_answered)
     }
 
-    /// What the twin says to these frames.
+    /// The twin's answer to these frames.
     fn twin(&mut self, frames: &[Frame]) -> Vec<Frame> {
         let (unit, shell) = &mut self.twin;
         let answers = frames.iter().filter_map(|frame| shell.receive(unit, frame));
         answers.flat_map(|answer| answer.frames.iter().map(Frame::from).collect::<Vec<_>>()).collect()
     }
 
-    /// Listens until then, or until so many frames of the device are there and everything is sent.
+    /// Listens until `until`, or until the device has sent `enough` frames and everything is sent.
     fn listen(&mut self, until: Instant, enough: usize) -> io::Result<()> {
         while self.talk.now() < until && (self.answer.len() < enough || !self.talk.is_idle()) {
             let Self { talk, base, answer, monitor, foreign, bus_errors, asked, .. } = self;
@@ -243,7 +244,7 @@ impl<P: Port> Bench<P> {
         Ok(())
     }
 
-    /// Holds the answer against what was expected, frame by frame, and forgets it.
+    /// Compares the answer with the expected one, frame by frame, and clears it.
     fn compare(&mut self, at_s: f64, expected: &[Frame]) {
         let mut got = self.answer.drain(..);
         for expected in expected {
@@ -264,7 +265,7 @@ impl<P: Port> Bench<P> {
     }
 }
 
-/// A command, taken at its word.
+/// The command in a frame, without a check of its counter.
 fn command(base: BaseId, frame: &Frame) -> Option<Command> {
     let line = line_of(base, frame)?;
     (line.content == Content::Command).then(|| Command::decode(&[payload(frame)]))

@@ -1,13 +1,13 @@
-//! `hil`: hardware in the loop. A scenario and a CAN interface with a device on it enter; a verdict on the device, a table
-//! or JSON on stdout and a report leave.
+//! `hil`: hardware in the loop. A scenario enters, and a CAN interface with a device on it. A verdict on the device, a
+//! table or JSON on stdout and a report leave.
 //!
 //! ```text
 //! world -> talk -> port (SocketCAN) -> device
 //!   ^        `--------> twin            |
 //!   `--- seat <- session <- port <------+-> monitor, deviation -> judge -> table, JSON, report
 //! ```
-//! [`session`] is a run in real time and [`lock_step`] one step by step; [`fault_injector`] presses the fault buttons; a
-//! [`virtual_bus`] tries all of it out without CAN.
+//! [`session`] is a run in real time, and [`lock_step`] a run step by step. [`fault_injector`] injects the faults. A
+//! [`virtual_bus`] tests all of it without CAN.
 
 pub mod arguments;
 pub mod deviation;
@@ -39,10 +39,10 @@ use judge::judge;
 use options::HilOptions;
 use rig::MachineRig;
 
-/// Runs the setup of the options and writes all that they ask for.
+/// Runs the setup and writes the output that the options ask for.
 ///
 /// # Errors
-/// An interface that cannot be used, and places that cannot be written.
+/// An interface that cannot be used, and output that cannot be written.
 pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
     let port = bus::open(&options.bus)?;
     let mut rig = MachineRig::new(&options.bus, options.device.clone());

@@ -1,5 +1,5 @@
-//! What the device does, as it can be seen on the bus: its frames with their time stamps enter; its beat, its modes, what it
-//! refuses and how well its frames are protected leave.
+//! The monitor of the device: its frames on the bus enter, with their time stamps; its commands, its modes, its
+//! refusals and the errors of its protection leave.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -11,56 +11,57 @@ use holdover::wire::{BaseId, Message, Received, Receiver, Role, Said};
 
 use crate::bus::Frame;
 
-/// Motions that are remembered: a second of them.
+/// Number of motions that are kept: those of a second.
 const INPUTS: usize = 100;
 
-/// Commands by which the lag of one is told: of a quarter of a second, in which clocks drift apart by nothing to speak of.
+/// Number of commands that determine the lag: those of a quarter of a second, in which the drift of the clocks is
+/// negligible.
 const LAG_BEATS: usize = 25;
 
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommandRecord {
-    /// When it was on the bus.
+    /// Time at which it was on the bus.
     pub at: Instant,
     /// The mode.
     pub mode: ModeCode,
     /// The count of periods.
     pub tick: u8,
-    /// How long after the motion of the vehicle that it rests on was on the bus, if the device says which one that is; in
-    /// lock step, how long after the step.
+    /// Time on the bus from the vehicle's motion that it rests on, if the device tells which motion that is. In lock
+    /// step: from the step.
     pub latency: Option<Duration>,
 }
 
-/// What a frame of the device brings.
+/// The content of a frame of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum News {
-    /// A command; whether the device has started anew before it.
+    /// A command, and whether the device has restarted before it.
     Command(Command, bool),
     /// An estimate.
     Estimate(TargetEstimate),
-    /// Anything else.
+    /// Any other content.
     Other,
 }
 
-/// The observer of the device.
+/// The monitor of the device.
 pub struct Monitor {
     period: Duration,
     receiver: Receiver<1>,
     beats: Vec<CommandRecord>,
-    /// Faults of the protection, with the time.
+    /// Errors of the protection, with their times.
     e2e: Vec<(Instant, Cause)>,
-    /// What the device says that it refused.
+    /// The refusals that the device reports.
     refusals: BTreeMap<&'static str, u32>,
-    /// The vehicle's motions that were last on the bus.
+    /// The vehicle's latest motions on the bus.
     inputs: VecDeque<(Stamp, Instant)>,
-    /// When the last step was on the bus.
+    /// Time at which the last step was on the bus.
     asked: Option<Instant>,
     frames: u64,
     restarts: Vec<Instant>,
 }
 
 impl Monitor {
-    /// Of a device whose catalogue begins at `base`, and which ticks that often.
+    /// The monitor of a device whose catalogue begins at `base`, with this period.
     #[must_use]
     pub fn new(base: BaseId, period: Duration) -> Self {
         Self {
@@ -76,7 +77,7 @@ impl Monitor {
         }
     }
 
-    /// The vehicle's motion with that stamp was on the bus.
+    /// Records that the vehicle's motion with this stamp was on the bus.
     pub fn input(&mut self, at: Instant, stamp: Stamp) {
         self.inputs.push_back((stamp, at));
         if self.inputs.len() > INPUTS {
@@ -84,12 +85,12 @@ impl Monitor {
         }
     }
 
-    /// In lock step, a step was on the bus.
+    /// In lock step: records that a step was on the bus.
     pub fn ask(&mut self, at: Instant) {
         self.asked = Some(at);
     }
 
-    /// A frame of the device was on the bus.
+    /// Takes in a frame of the device.
     pub fn hear(&mut self, at: Instant, frame: &Frame) -> News {
         self.frames += 1;
         match self.receiver.receive(at, frame) {
@@ -100,7 +101,7 @@ impl Monitor {
                 News::Other
             }
             Ok(Received::Whole(Message::Own(Said::Motion(motion)))) => {
-                // It says which motion it has made its command from.
+                // The device tells on which motion its command rests.
                 let input = self.inputs.iter().find(|(stamp, _)| *stamp == motion.stamp);
                 if let (Some((_, input)), Some(beat)) = (input, self.beats.last_mut()) {
                     beat.latency = beat.latency.or(Some(beat.at.since(*input)));
@@ -116,8 +117,8 @@ impl Monitor {
     }
 
     fn command(&mut self, at: Instant, command: Command) -> News {
-        // After a gap, a unit that goes on has the next number or one soon after it, or as many more as there were periods;
-        // one that has started anew has a small one.
+        // After a gap, a unit that has kept running counts on from its last number, or by the number of periods that
+        // passed. A unit that has restarted has a small number.
         let is_new = self.beats.last().is_some_and(|last| {
             let gap = at.since(last.at);
             let counted = i64::from(command.tick.wrapping_sub(last.tick) & 63);
@@ -134,8 +135,9 @@ impl Monitor {
         News::Command(command, is_new)
     }
 
-    /// How much later the last command was on the bus than the device's own count of periods says, by the earliest of those
-    /// just before it: it ticked late, or its line was slow. It does not tell a delay that all of them have.
+    /// The time by which the last command was on the bus later than the device's count of periods says, relative to the
+    /// earliest of the commands just before it. Either the device ticked late, or its connection was slow. A delay that
+    /// is common to all commands does not show.
     #[must_use]
     pub fn lag(&self) -> Duration {
         let Some(last) = self.beats.last() else { return Duration::ZERO };
@@ -146,38 +148,38 @@ impl Monitor {
         Duration::from_micros(self.beats.iter().rev().take(LAG_BEATS).map(lag).max().unwrap_or(0))
     }
 
-    /// Its commands.
+    /// The commands of the device.
     #[must_use]
     pub fn beats(&self) -> &[CommandRecord] {
         &self.beats
     }
 
-    /// Faults of its frames, with the time. The first frame of each identifier is none, nor that its message is then not
-    /// whole: nobody trusts what is heard for the first time.
+    /// Errors of the protection, with their times. The first frame of each identifier is not an error, and neither is its
+    /// message then being incomplete: no receiver trusts its first frame of an identifier.
     pub fn e2e(&self) -> impl Iterator<Item = (Instant, Cause)> + '_ {
         self.e2e.iter().copied().filter(|(_, cause)| !matches!(cause, Cause::NotYetTrusted | Cause::Torn))
     }
 
-    /// What it says that it refused, by cause; causes that it met.
+    /// The refusals that the device reports, by cause, without causes that did not occur.
     #[must_use]
     pub fn refusals(&self) -> BTreeMap<&'static str, u32> {
         self.refusals.iter().filter(|(_, count)| **count > 0).map(|(cause, count)| (*cause, *count)).collect()
     }
 
-    /// Its frames.
+    /// Number of frames of the device.
     #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames
     }
 
-    /// When it started anew.
+    /// Times at which the device restarted.
     #[must_use]
     pub fn restarts(&self) -> &[Instant] {
         &self.restarts
     }
 
-    /// Periods in which it said nothing, each gap with the time of its end. A command that was late, and the next one was not,
-    /// is late and not missing.
+    /// Periods in which the device sent nothing, each gap with the time of its end. If a command was late and the next
+    /// one was not, the command is late and not missing.
     #[must_use]
     pub fn missed(&self) -> Vec<(Instant, i64)> {
         let period = self.period.as_micros();
@@ -238,7 +240,8 @@ mod tests {
     #[test]
     fn a_gap_is_counted_in_whole_periods() {
         let mut device = Device::new();
-        // The commands of the periods 4 and 5 are missing, and that of 6 is late; that of 8 is late and none is missing.
+        // The commands of the periods 4 and 5 are missing, and that of period 6 is late. That of period 8 is late, and
+        // none is missing there.
         for (millis, tick) in [(0, 1), (10, 2), (20, 3), (56, 6), (61, 7), (77, 8), (81, 9), (91, 10)] {
             device.command(millis, tick);
         }
@@ -252,7 +255,7 @@ mod tests {
         for beat in 0..10 {
             device.command(15 * u64::from(beat), beat);
         }
-        assert_eq!(device.monitor.missed().len(), 8); // the first one is not trusted
+        assert_eq!(device.monitor.missed().len(), 8); // the first frame is not trusted
     }
 
     #[test]
@@ -263,7 +266,8 @@ mod tests {
             device.command(millis, tick);
             lags.push(device.monitor.lag().as_millis());
         }
-        // The first frame is not trusted. From the fourth on: a stall, its backlog, on time again, and a lost period.
+        // The first frame is not trusted. From the fourth on: a stall, its backlog, commands on time again, and a lost
+        // period.
         assert_eq!(lags, [0, 0, 1, 22, 13, 4, 0, 10]);
     }
 

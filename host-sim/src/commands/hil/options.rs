@@ -14,23 +14,23 @@ use crate::sim::quantities::duration;
 pub struct HilOptions {
     /// The interface.
     pub bus: String,
-    /// What is to be run.
+    /// The setup of the run.
     pub setup: Setup,
     /// The scenario's name.
     pub name: String,
-    /// Whether step by step.
+    /// Whether the run is in lock step.
     pub lock_step: bool,
-    /// The command that is the device.
+    /// The command that starts the device.
     pub device: Option<String>,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl HilOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be or do not fit together, and a scenario that cannot be used.
+    /// Impossible values, values that do not fit together, and an unusable scenario.
     pub fn read(arguments: HilArguments) -> Result<Self, Error> {
         let overrides = Overrides { seed: arguments.seed, ..Overrides::default() };
         let scenario = scenario(&arguments.scenario, &overrides)?;

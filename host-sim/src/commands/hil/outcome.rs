@@ -1,4 +1,4 @@
-//! What a bench run brought, before anybody judges it.
+//! The outcome of a run on the bench, before it is judged.
 
 use holdover::time::{Duration, Instant};
 
@@ -9,24 +9,24 @@ use super::monitor::Monitor;
 use super::talk::Counts;
 use crate::sim::world::Trace;
 
-/// Why a run ended before its time.
+/// Why a run ended early.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cut {
-    /// The device never said anything.
+    /// The device never sent anything.
     Silent {
-        /// How long it was waited for.
+        /// Time for which the harness waited.
         waited: Duration,
         /// How its process ended, if it did.
         ended: Option<String>,
     },
     /// The device fell silent and stayed so.
     Gone {
-        /// Since when, in seconds of the run.
+        /// Time since which it is silent, in seconds of the run.
         at_s: f64,
         /// How its process ended, if it did.
         ended: Option<String>,
     },
-    /// In lock step, the device had ticked before, or ticks by itself.
+    /// In lock step: the device had ticked before, or it ticks by itself.
     NotFresh {
         /// The count of its first answer.
         tick: u8,
@@ -54,7 +54,7 @@ pub struct Steps {
     pub first: Option<(f64, String, String)>,
 }
 
-/// Everything.
+/// The whole outcome.
 pub struct Outcome {
     /// The world's trace.
     pub trace: Trace,
@@ -64,26 +64,26 @@ pub struct Outcome {
     pub deviation: Deviation,
     /// The device beside its twin, in lock step.
     pub steps: Option<Steps>,
-    /// How much too late the harness was, tick by tick.
+    /// The lateness of the harness, tick by tick.
     pub lateness: Lateness,
-    /// The frames of the harness.
+    /// Counts of the harness's frames.
     pub counts: Counts,
-    /// Frames on the vehicle's or the modem's identifiers that are not the harness's.
+    /// Frames on the identifiers of the vehicle or the modem that are not the harness's.
     pub foreign: u64,
     /// Error frames.
     pub bus_errors: u64,
     /// The time of the bus at which the run began.
     pub origin: Instant,
-    /// The faults that were played, and why one could not be.
+    /// The faults that were injected, with the reason why one could not be.
     pub faults: Vec<Played>,
-    /// Seconds of the run per second.
+    /// Simulated seconds per second.
     pub realtime_factor: f64,
     /// Why it ended early.
     pub cut: Option<Cut>,
 }
 
 impl Outcome {
-    /// A time of the bus as one of the run, in seconds.
+    /// A time of the bus, as a time of the run in seconds.
     #[must_use]
     pub fn time_of(&self, at: Instant) -> f64 {
         at.since(self.origin).as_micros() as f64 * 1e-6

@@ -33,7 +33,7 @@ pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Str
     page.finish()
 }
 
-/// A line of the terminal's table: the figure's name, and after two blanks its value.
+/// The row of a line of the terminal's table: the figure's name, and after two blanks its value.
 fn row(line: &str) -> Option<Vec<Cell>> {
     let (name, value) = line.trim_start().split_once("  ")?;
     Some(vec![Cell::text(name.trim()), Cell::text(value.trim())])

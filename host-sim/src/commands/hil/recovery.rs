@@ -1,5 +1,5 @@
-//! What became of the device in a fault: its commands over time enter; the worst mode that it was in, and how long it took
-//! to drive again, leave.
+//! The consequences of a fault: the device's commands over time enter; its worst mode leaves, and the time until it
+//! drove again.
 
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
@@ -8,28 +8,28 @@ use super::outcome::Outcome;
 use super::session::{AFTERMATH_S, Setup};
 use crate::measure::figures::mode_name;
 
-/// So long it has to drive on for it to have recovered, in seconds.
+/// Time for which it has to drive without interruption to have recovered, in seconds.
 const STEADY_S: f64 = 0.3;
-/// A silence longer than this is one, in seconds: the timeout of the command.
+/// A gap longer than this is a silence, in seconds: the timeout of the command.
 const SILENCE_S: f64 = 0.05;
 
 /// A fault and its consequences.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Recovery {
-    /// What was done.
+    /// The fault.
     pub fault: &'static str,
-    /// From then.
+    /// Beginning of the fault.
     pub from_s: f64,
-    /// Until then.
+    /// End of the fault.
     pub to_s: f64,
-    /// The worst that was seen of the device until it had recovered: a mode, or `silent`.
+    /// The worst state of the device until it had recovered: a mode, or `silent`.
     pub worst: &'static str,
-    /// How long after the end of the fault it drove again; `None`: it did not.
+    /// Time from the end of the fault until it drove again; `None`: it did not.
     pub recovered_after_s: Option<f64>,
 }
 
 impl Recovery {
-    /// Why it is a failure, if it is one.
+    /// The reason if this is a failure.
     #[must_use]
     pub fn reason(&self) -> Option<String> {
         let Self { fault, to_s, worst, .. } = self;
@@ -41,7 +41,7 @@ impl Recovery {
     }
 }
 
-/// What became of it in each fault that ended within the run.
+/// The consequences of each fault that ended within the run.
 #[must_use]
 pub fn recoveries(setup: &Setup, outcome: &Outcome) -> Vec<Recovery> {
     let beats: Vec<(f64, ModeCode)> =
@@ -55,7 +55,8 @@ pub fn recoveries(setup: &Setup, outcome: &Outcome) -> Vec<Recovery> {
         .collect()
 }
 
-/// The worst from the beginning of a fault until it drove again, and how long after its end that was.
+/// The worst state from the beginning of a fault until the device drove again, and the time of that after the end of
+/// the fault.
 fn recovery(beats: &[(f64, ModeCode)], from_s: f64, to_s: f64) -> (&'static str, Option<f64>) {
     let drives = |mode: ModeCode| matches!(mode, ModeCode::Cooperative | ModeCode::Holdover);
     let is_steady = |first: usize| {

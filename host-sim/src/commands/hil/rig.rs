@@ -1,14 +1,14 @@
-//! The hands of the bench: what is to be done to the device's power, to the interface or on the bus enters; processes,
-//! commands and frames of a second node leave.
+//! The rig of the bench: requests about the device's power, the interface and the bus enter; processes, commands and
+//! frames of a second node leave.
 
 use std::io;
 use std::process::{Child, Command, Stdio};
 
 use crate::bus::port::Port;
 
-/// What a harness can do beside talking.
+/// What a harness can do besides sending frames.
 pub trait Rig {
-    /// Gives the device power, or cuts it.
+    /// Switches the device's power on or off.
     ///
     /// # Errors
     /// The device cannot be started or ended.
@@ -17,35 +17,36 @@ pub trait Rig {
     /// Takes the interface up or down.
     ///
     /// # Errors
-    /// That is not allowed.
+    /// The system does not allow it.
     fn interface(&mut self, up: bool) -> io::Result<()>;
 
-    /// A node of its own that means no good.
+    /// The port of a second node, for frames of a hostile node.
     ///
     /// # Errors
-    /// It cannot get onto the bus.
+    /// The node cannot be opened on the bus.
     fn injector(&mut self) -> io::Result<&mut dyn Port>;
 
-    /// How the device ended by itself, if it did.
+    /// How the device ended, if it ended by itself.
     fn has_ended(&mut self) -> Option<String>;
 }
 
-/// Runs the device's command, `$0`, until it ends or the harness does: then nobody holds the other end of the pipe any more that
-/// is its stdin, and its whole group is killed. A harness that is interrupted could not do that itself.
+/// Runs the device's command, `$0`, until it ends or the harness ends. When the harness ends, the other end of the pipe
+/// that is this shell's stdin closes, and the whole process group is killed. A harness that is interrupted could not
+/// kill it itself.
 const LEASH: &str = r#"exec 3<&0 </dev/null; { cat <&3 >/dev/null; kill -KILL 0; } & exec 3<&-; eval "$0""#;
 
-/// The rig of a machine with a CAN interface. The device is a command, or somebody else's.
+/// The rig of a machine with a CAN interface. The device is started by a command, or is run externally.
 pub struct MachineRig {
     interface: String,
     command: Option<String>,
     device: Option<Child>,
-    /// The command that switches the interface; how it ended shows when it is switched again.
+    /// The command that switches the interface. Its result is checked at the next switching.
     switching: Option<Child>,
     injector: Option<Box<dyn Port>>,
 }
 
 impl MachineRig {
-    /// On that interface; a device that is a command is not started yet.
+    /// The rig on an interface. A device that is a command is not started yet.
     #[must_use]
     pub fn new(interface: &str, command: Option<String>) -> Self {
         Self { interface: interface.into(), command, device: None, switching: None, injector: None }
@@ -53,7 +54,7 @@ impl MachineRig {
 
     fn end(&mut self) -> io::Result<()> {
         let Some(mut device) = self.device.take() else { return Ok(()) };
-        // The whole group: the device may be a shell with an emulator in it.
+        // The whole group, because the device may be a shell with an emulator in it.
         end_group(&device)?;
         device.wait().map(|_| ())
     }
@@ -76,7 +77,7 @@ impl Rig for MachineRig {
         let state = if up { "up" } else { "down" };
         let mut command = Command::new("ip");
         command.args(["link", "set", &self.interface, state]).stdin(Stdio::null()).stderr(Stdio::piped());
-        // Nobody waits for it: that would make the harness late.
+        // The harness does not wait for it, because that would make the harness late.
         self.switching = Some(command.spawn()?);
         last
     }
@@ -103,13 +104,13 @@ impl Rig for MachineRig {
 
 impl Drop for MachineRig {
     fn drop(&mut self) {
-        // Nobody is left to be told.
+        // There is no caller left to report an error to.
         let _ = self.end();
         let _ = self.switching.take().map(finished);
     }
 }
 
-/// What a command has to say against itself.
+/// The error of a command that has ended.
 fn finished(command: Child) -> io::Result<()> {
     let output = command.wait_with_output()?;
     if output.status.success() {
@@ -122,7 +123,7 @@ fn finished(command: Child) -> io::Result<()> {
 fn end_group(device: &Child) -> io::Result<()> {
     let status =
         Command::new("kill").args(["-KILL", "--", &format!("-{}", device.id())]).stderr(Stdio::null()).status()?;
-    // A group that has ended already is what was wanted.
+    // The group may have ended already, which is what was wanted.
     let _ = status;
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What a unit says in one tick, of what two units can be compared by: frames enter, its command and estimate leave.
+//! The frames of a unit in one tick by which two units are compared: frames enter, its command and estimate leave.
 
 use holdover::time::Instant;
 use holdover::wire::command::Command;
@@ -14,11 +14,12 @@ pub struct Said {
     pub estimate: Option<TargetEstimate>,
 }
 
-/// What stands in the frames of one answer. They are taken at their word: their counters are not judged.
+/// The content of the frames of one answer, without a check of their counters.
 #[must_use]
 pub fn said(base: BaseId, frames: &[Frame]) -> Option<Said> {
     let (mut command, mut estimate) = (None, None);
-    // Twice, because a receiver trusts nothing that it hears for the first time; counters that repeat are then refused.
+    // Twice, because a receiver does not trust the first frame of an identifier. The repeated counters are then
+    // refused.
     let mut receiver = Receiver::<1>::new(base, Role::Modem);
     for round in 0..2 {
         for frame in frames {

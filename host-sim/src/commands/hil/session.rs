@@ -1,9 +1,10 @@
-//! A run in real time: the world goes on by the bus's clock, frames go to the device and its twin, what the device commands
-//! moves the ego. A setup, a port and a rig enter, what happened leaves.
+//! A run in real time: the world goes on by the bus's clock, frames go to the device and its twin, and the device's
+//! commands move the ego. A setup, a port and a rig enter; the outcome leaves.
 //!
-//! Order within a tick: what the device said up to now has moved the ego; the world speaks at the tick's own time, however
-//! late the harness is, so that lateness makes messages older and never wrong; the others' units answer. Between ticks the
-//! bus is listened to. Every wait has an end, so a device that says nothing, or nothing more, ends the run.
+//! Order within a tick: the device's commands up to now move the ego; the world sends at the tick's own time, however
+//! late the harness is, so that lateness makes messages older and never wrong; the units of the other vehicles tick.
+//! Between ticks the harness listens to the bus. Every wait has an end, so the run also ends if the device never
+//! answers or falls silent.
 
 use std::io;
 
@@ -34,46 +35,47 @@ use crate::sim::station::station;
 use crate::sim::vehicle::Alias;
 use crate::sim::world::{Trace, World};
 
-/// How long the world speaks before the run, in seconds: a time base needs two synchronisations, half a second apart, that
-/// are trusted.
+/// Time for which the world sends before the run, in seconds. A time base needs two synchronisations, half a second
+/// apart, that are trusted.
 const WARM_UP_S: f64 = 2.0;
-/// A device that is silent for longer, and not by a fault, has gone; in seconds.
+/// A device that is silent for longer, without a fault, counts as gone; in seconds.
 const GONE_S: f64 = 2.0;
-/// How long the echoes of the last frames are waited for.
+/// Longest wait for the echoes of the last frames.
 const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
-/// How long after a fault its effects are put down to it, in seconds.
+/// Time after a fault in which effects are attributed to it, in seconds.
 pub const AFTERMATH_S: f64 = 5.0;
 
-/// What is to be run with what.
+/// The setup of a run.
 #[derive(Clone, Debug)]
 pub struct Setup {
     /// The world; its ego is the device's vehicle.
     pub scenario: Scenario,
     /// The device.
     pub config: Config,
-    /// How long it may take to say its first word.
+    /// Longest wait for its first frame.
     pub wait: Duration,
-    /// How long after its vehicle's motion its command may come, but for one of 100, in milliseconds.
+    /// Longest time from the vehicle's motion to the command that rests on it, except for one command in 100, in
+    /// milliseconds.
     pub latency_p99_ms: f64,
-    /// What is done to it.
+    /// The faults to inject.
     pub faults: Vec<Fault>,
 }
 
 impl Setup {
-    /// The device's bus calls its vehicle by the device's own station.
+    /// The names on the device's bus: the device's vehicle has the device's own station.
     #[must_use]
     pub fn alias(&self) -> Alias {
         Alias::between(station(self.scenario.ego), self.config.station)
     }
 
-    /// Whether what happens then is put down to a fault.
+    /// Whether an event at this time is attributed to a fault.
     #[must_use]
     pub fn is_excused(&self, at_s: f64) -> bool {
         self.faults.iter().any(|fault| (fault.from_s..fault.to_s + AFTERMATH_S).contains(&at_s))
     }
 }
 
-/// What listens to the bus.
+/// The listener on the bus.
 pub(super) struct BusListener {
     base: BaseId,
     config: Config,
@@ -85,7 +87,7 @@ pub(super) struct BusListener {
     pub foreign: u64,
     pub bus_errors: u64,
     last_beat: Option<Instant>,
-    /// Of the vehicle's motion.
+    /// The first half of the vehicle's motion.
     first_half: Payload,
 }
 
@@ -106,14 +108,15 @@ impl BusListener {
         })
     }
 
-    /// The device has got power anew, and so has its twin.
+    /// The device was powered up anew, and so is its twin.
     fn restart(&mut self) {
         if let Ok(twin) = Twin::new(&self.config) {
             self.twin = twin;
         }
     }
 
-    /// Something happened on the bus. `local` makes a time of the bus one of the run and one of the vehicle's own clock.
+    /// Takes in an event on the bus. `local` converts a time of the bus to one of the run and one of the vehicle's own
+    /// clock.
     pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
         match event {
             Event::Sent(frame) => {
@@ -148,7 +151,7 @@ impl BusListener {
                 if is_new {
                     self.restart();
                 }
-                // Before the run the two may have been given power at different times.
+                // Before the run, device and twin may have been powered up at different times.
                 let gap = self.last_beat.map_or(self.config.period, |last| at.since(last));
                 let window =
                     gap.max(Duration::from_micros(self.config.period.as_micros() + self.monitor.lag().as_micros()));
@@ -172,10 +175,10 @@ impl BusListener {
     }
 }
 
-/// Runs it; `progress` is told the time of the run, now and then.
+/// Runs the setup. `progress` gets the time of the run from time to time.
 ///
 /// # Errors
-/// The port's; a configuration that the unit refuses counts as one.
+/// Errors of the port. A configuration that the unit refuses counts as one.
 pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
@@ -240,7 +243,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             progress(at_s);
         }
     }
-    // What was sent last comes back.
+    // The echoes of the last frames come back.
     let end = talk.now().plus(ECHO_PATIENCE);
     while talk.now() < end && !talk.counts().is_complete() {
         let pause = talk.now().plus(Duration::from_millis(10));
@@ -298,7 +301,7 @@ fn listen<P: Port>(
     heard
 }
 
-/// Until its first word, which is sent without anybody's having spoken to it.
+/// Waits for the first frame of the device, which it sends without having received anything.
 fn wait_for_device<P: Port>(
     setup: &Setup,
     talk: &mut Talk<P>,
@@ -323,7 +326,7 @@ fn wait_for_device<P: Port>(
     Ok(Some(Cut::Silent { waited: setup.wait, ended: None }))
 }
 
-/// Whether the device has fallen silent for good, for no fault of ours.
+/// Whether the device has fallen silent for good, without a fault.
 fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, listener: &BusListener, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
     let last_s = talk.time_of(listener.monitor.beats().last()?.at);
     let is_gone = at_s - last_s > GONE_S && !setup.is_excused(at_s);

@@ -1,8 +1,8 @@
-//! How a measured time is spread: values enter, their median, 99th percentile and maximum leave.
+//! The distribution of a measured time: values enter; their median, 99th percentile and maximum leave.
 
 use serde::Serialize;
 
-/// The figures, in milliseconds; none without values.
+/// The figures, in milliseconds; `None` without values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// Median, by nearest rank.
@@ -14,7 +14,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of values in microseconds.
+    /// The figures of values in microseconds.
     #[must_use]
     pub fn of(micros: &[i64]) -> Self {
         let mut sorted = micros.to_vec();

@@ -10,7 +10,7 @@ use super::spread::Spread;
 pub fn text(results: &Results) -> String {
     let mut text = String::new();
     let Results { device, deviation, timing, scenario, .. } = results;
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let mut row = |name: &str, value: String| {
         let _ = writeln!(text, "{name:<38}{value:>24}");
     };

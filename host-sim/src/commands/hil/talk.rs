@@ -1,5 +1,6 @@
-//! The harness's side of the bus: frames of the vehicle and its modem enter, and leave on the port as fast as a bus takes
-//! them, with the time synchronisation dated as it really went out; what happens on the bus leaves in the order of time.
+//! The harness's side of the bus. Frames of the vehicle and its modem enter, and leave on the port as fast as a bus
+//! takes them; the time synchronisation carries the time at which it was really sent. The events on the bus leave in
+//! the order of time.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
@@ -16,41 +17,41 @@ use crate::bus::Frame;
 use crate::bus::port::{Event, Port};
 use crate::sim::time::EPOCH_US;
 
-/// Frames sent at once, and how often: 4000 a second are a full bus at 500 kbit/s.
+/// Frames sent at once. At 4000 per second the bus is full at 500 kbit/s.
 const BURST: u32 = 4;
 const BURST_EVERY: Duration = Duration::from_millis(1);
-/// How long the mark of a time synchronisation is waited for.
+/// Longest wait for the echo of a `Sync`.
 const MARK_PATIENCE: Duration = Duration::from_millis(50);
 
-/// What became of the frames.
+/// Counts of the harness's frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Given to the port.
+    /// Passed to the port.
     pub sent: u64,
     /// Seen on the bus.
     pub confirmed: u64,
-    /// Not taken, because the interface was down.
+    /// Refused, because the interface was down.
     pub refused: u64,
 }
 
 impl Counts {
-    /// Whether nothing is on its way.
+    /// Whether no frame is on its way.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.sent <= self.confirmed + self.refused
     }
 }
 
-/// What the harness has said otherwise than it was given, on purpose.
+/// What the harness has altered on purpose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Altered {
-    /// Frames that were spoilt.
+    /// Altered frames.
     pub frames: u64,
-    /// Time synchronisations that were wrong.
+    /// Wrong time synchronisations.
     pub times: u64,
 }
 
-/// The line of the catalogue that a frame stands on.
+/// The line of the catalogue for a frame.
 #[must_use]
 pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
     let Id::Standard(id) = frame.id() else { return None };
@@ -61,25 +62,25 @@ pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
 pub struct Talk<P> {
     port: P,
     base: BaseId,
-    /// The time of the bus at which the run begins.
+    /// The time of the bus at the beginning of the run.
     origin: Instant,
     queue: VecDeque<Frame>,
-    /// When the next burst may begin, and what is left of this one.
+    /// The earliest time of the next burst, and the frames that are left of this one.
     burst: (Instant, u32),
-    /// The last `Sync` and when it was sent, and when it was on the bus.
+    /// The last `Sync`, its time of sending, and the time at which it was on the bus.
     mark: Option<(Sync, Instant, Option<Instant>)>,
-    /// Whether a follow-up is given the time at which its mark was on the bus; otherwise it says what it says.
+    /// Whether a follow-up gets the time at which its `Sync` was on the bus; otherwise it is sent unchanged.
     pub dates: bool,
-    /// What the time synchronisation is wrong by, on purpose.
+    /// The intended error of the time synchronisation.
     pub clock_error_us: i64,
-    /// How frames are spoiled, on purpose.
+    /// The intended alteration of frames.
     pub spoiled: Option<Kind>,
     counts: Counts,
     altered: Altered,
 }
 
 impl<P: Port> Talk<P> {
-    /// On a port; the catalogue begins at `base`.
+    /// The side of the bus at a port, with a catalogue that begins at `base`.
     pub fn new(port: P, base: BaseId) -> Self {
         let now = port.now();
         Self {
@@ -102,45 +103,45 @@ impl<P: Port> Talk<P> {
         self.port.now()
     }
 
-    /// The run begins then.
+    /// Sets the beginning of the run.
     pub fn begin_at(&mut self, origin: Instant) {
         self.origin = origin;
     }
 
-    /// A time of the bus as one of the run, in seconds.
+    /// A time of the bus, as a time of the run in seconds.
     pub fn time_of(&self, at: Instant) -> f64 {
         at.since(self.origin).as_micros() as f64 * 1e-6
     }
 
-    /// A time of the run as one of the bus.
+    /// A time of the run, as a time of the bus.
     pub fn instant(&self, at_s: f64) -> Instant {
         self.origin.plus(Duration::from_micros(crate::sim::time::micros(at_s)))
     }
 
-    /// What became of the frames.
+    /// Counts of the frames.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// What was said otherwise, on purpose.
+    /// Counts of intended alterations.
     pub fn altered(&self) -> Altered {
         self.altered
     }
 
-    /// A frame is to be sent, behind those that wait already.
+    /// Queues a frame for sending.
     pub fn send(&mut self, frame: Frame) {
         self.queue.push_back(frame);
     }
 
-    /// Whether everything was sent.
+    /// Whether everything has been sent.
     pub fn is_idle(&self) -> bool {
         self.queue.is_empty()
     }
 
-    /// Sends what waits, until then; what happens goes to `hear`.
+    /// Sends the queued frames until `until`. Events go to `hear`.
     ///
     /// # Errors
-    /// The port's, but for an interface that is down.
+    /// Errors of the port, except for an interface that is down.
     pub fn pump(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event)) -> io::Result<()> {
         self.pump_while(until, |at, event| {
             hear(at, event);
@@ -148,10 +149,10 @@ impl<P: Port> Talk<P> {
         })
     }
 
-    /// The same, until `hear` has heard enough.
+    /// The same, until `hear` returns that it is enough.
     ///
     /// # Errors
-    /// As [`Talk::pump`].
+    /// The errors of [`Talk::pump`].
     pub fn pump_while(&mut self, until: Instant, mut hear: impl FnMut(Instant, Event) -> bool) -> io::Result<()> {
         loop {
             let wake = self.send_waiting()?.map_or(until, |next| next.min(until));
@@ -161,7 +162,7 @@ impl<P: Port> Talk<P> {
                     if !hear(at, event) {
                         return Ok(());
                     }
-                    // A bus that never falls silent must not stop the clock.
+                    // A bus that is never idle must not stop the clock.
                     if self.port.now() >= until && at > until {
                         return Ok(());
                     }
@@ -172,7 +173,7 @@ impl<P: Port> Talk<P> {
         }
     }
 
-    /// Sends what may be sent now; when there is more to send.
+    /// Sends the frames that may be sent now. Returns the time at which there is more to send.
     fn send_waiting(&mut self) -> io::Result<Option<Instant>> {
         while let Some(frame) = self.queue.front().copied() {
             let now = self.port.now();
@@ -220,7 +221,7 @@ impl<P: Port> Talk<P> {
         }
     }
 
-    /// The follow-up says when its mark was on the bus.
+    /// The follow-up with the time at which its `Sync` was on the bus.
     fn dated(&self, frame: &Frame, sync: &Sync, marked: Instant) -> Frame {
         let micros = marked.since(self.origin).as_micros().saturating_add(self.clock_error_us);
         let time = EPOCH_US.saturating_add_signed(micros);
@@ -233,7 +234,7 @@ impl<P: Port> Talk<P> {
         Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
     }
 
-    /// What is sent in a frame's place, if it is its turn to be spoilt.
+    /// The frame to send instead, if it is this frame's turn to be altered.
     fn spoilt(&self, frame: Frame) -> Option<Frame> {
         let kind = self.spoiled.filter(|_| self.counts.sent.is_multiple_of(3))?;
         match kind {
@@ -244,7 +245,7 @@ impl<P: Port> Talk<P> {
     }
 }
 
-/// The payload of a frame of 8 bytes; that of any other is empty.
+/// The payload of a frame of 8 bytes; that of any other frame is empty.
 pub fn payload(frame: &Frame) -> Payload {
     frame.data().try_into().map_or(Payload::EMPTY, Payload::from_bytes)
 }

@@ -1,5 +1,5 @@
-//! A bus with a device on it, in memory and in a time of its own that leaps from one event to the next: for trying out the
-//! harness where there is no CAN. Frames of the ports enter, the device's answers leave, as late as it is told to be.
+//! A bus with a device, in memory and with a time of its own that jumps from one event to the next. It tests the
+//! harness without CAN. Frames of the ports enter; the device's answers leave, as late as the behaviour says.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -14,32 +14,32 @@ use crate::bus::Frame;
 use crate::bus::port::{BusError, Event, Port};
 use crate::commands::ecu::Ecu;
 
-/// When its time begins.
+/// Time at which the bus starts.
 const START: Instant = Instant::from_micros(1_700_000_000_000_000);
-/// How long a frame is on its way.
+/// Transmission time of a frame.
 const TRANSIT: Duration = Duration::from_micros(100);
 
-/// What the device is, and how it behaves.
+/// The device and its behaviour.
 #[derive(Clone, Debug)]
 pub struct Behaviour {
     /// Its configuration.
     pub config: Config,
-    /// Whether it ticks by the bus.
+    /// Whether it ticks by the time synchronisation of the bus.
     pub lock_step: bool,
-    /// How long it takes to answer.
+    /// Time until its answer.
     pub latency: Duration,
-    /// When the harness stands still, from the beginning of the bus's time on, and for how long; in this order.
+    /// Stalls of the harness, in order: time since the start of the bus, and length.
     pub stalls: VecDeque<(Duration, Duration)>,
-    /// How often the device and its line stand still, and for how long: nothing is lost, and all of it is late.
+    /// Stalls of the device and its connection: their interval and their length. No frame is lost, and all are late.
     pub pause: Option<(Duration, Duration)>,
-    /// When it dies for good, from the beginning of the bus's time on.
+    /// Time since the start of the bus at which the device dies for good.
     pub dies_after: Option<Duration>,
-    /// Changes a frame of the device on its way out.
+    /// Changes a frame that the device sends.
     pub garble: fn(Frame) -> Frame,
 }
 
 impl Behaviour {
-    /// A good device, at once.
+    /// A correct device that answers at once.
     #[must_use]
     pub fn good(config: Config, lock_step: bool) -> Self {
         let latency = Duration::from_micros(300);
@@ -60,11 +60,11 @@ struct Shared {
     is_up: bool,
     behaviour: Behaviour,
     device: Option<Ecu>,
-    /// For each port, what it has still to be told.
+    /// For each port, the events that it has not received yet.
     inboxes: Vec<VecDeque<(Instant, Event)>>,
-    /// What the device is about to send.
+    /// The frames that the device is about to send.
     answers: VecDeque<(Instant, Frame)>,
-    /// What waits for the device to go on.
+    /// The frames that wait while the device is stalled.
     held: Vec<Frame>,
 }
 
@@ -75,12 +75,12 @@ pub struct VirtualPort {
     index: usize,
 }
 
-/// The hands that can pull the device's plug.
+/// The rig that can cut the device's power.
 pub struct VirtualRig {
     injector: VirtualPort,
 }
 
-/// A bus with that device, two ports of it: for the harness, and for its rig.
+/// A bus with this device, and two of its ports: for the harness, and for its rig.
 #[must_use]
 pub fn bench(behaviour: Behaviour) -> (VirtualPort, VirtualRig) {
     let device = Ecu::new(&behaviour.config, behaviour.lock_step).ok();
@@ -99,7 +99,7 @@ pub fn bench(behaviour: Behaviour) -> (VirtualPort, VirtualRig) {
 }
 
 impl Shared {
-    /// A frame of a port, or of the device, goes to all others.
+    /// Passes a frame of a port, or of the device, to all others.
     fn put(&mut self, from: Option<usize>, frame: Frame) {
         let at = self.now.plus(TRANSIT);
         for (index, inbox) in self.inboxes.iter_mut().enumerate() {
@@ -111,14 +111,14 @@ impl Shared {
         }
     }
 
-    /// The device receives it.
+    /// Passes a frame to the device.
     fn give(&mut self, at: Instant, frame: Frame) {
         if let Some(answer) = self.device.as_mut().and_then(|device| device.receive(at, &frame)) {
             self.answer(&answer.frames);
         }
     }
 
-    /// When the device goes on, if it stands still.
+    /// The end of the device's stall, if it is stalled.
     fn goes_on(&self) -> Option<Instant> {
         let (every, length) = self.behaviour.pause?;
         let since = Duration::from_micros(self.now.since(START).as_micros().rem_euclid(every.as_micros()));
@@ -130,7 +130,7 @@ impl Shared {
         self.answers.extend(frames.iter().map(|frame| (at, (self.behaviour.garble)(frame.into()))));
     }
 
-    /// Lets the device do what it does up to then; the time is that of what it did, or `until`.
+    /// Lets the device act up to `until`. The time is then that of its last act, or `until`.
     fn advance(&mut self, until: Instant) {
         if self.behaviour.dies_after.is_some_and(|after| self.now.since(START) > after) {
             self.device = None;

@@ -6,11 +6,12 @@ use std::path::PathBuf;
 /// The arguments of `motions`.
 #[derive(Clone, Debug, Args)]
 pub struct MotionsArguments {
-    /// Silences of each motion, 1 to 1000; ten in a row differ in when they begin or in when the target brakes in them
+    /// Silences of each motion, 1 to 1000; ten successive ones differ in their beginning, or in when the target brakes
+    /// in them
     #[arg(long, value_name = "N", default_value = "50", allow_negative_numbers = true)]
     pub silences: u32,
 
-    /// Seed of the first silence of each motion; each next one has the next
+    /// Seed of the first silence of each motion; each further silence has the next seed
     #[arg(long, value_name = "N", default_value = "1")]
     pub seed: u64,
 

@@ -1,14 +1,14 @@
-//! The consensus law of platoon simulators: messages enter, what the law takes for the target's position leaves.
+//! The consensus law of platoon simulators: messages enter; the target's position as the law assumes it leaves.
 //!
-//! Whenever it is evaluated it takes the message that came last and moves its position on by its age times its own speed,
-//! `r + v (now - stamp)`; the speed stands as it is. That is a constant speed, and on the same messages it differs from
-//! [`ConstantSpeed`](crate::measure::baseline::constant_speed::ConstantSpeed) in one thing: a message that was overtaken replaces
-//! the newer one, because stamps are not compared.
+//! Whenever the law is evaluated, it takes the message that arrived last and extrapolates its position by its age times
+//! its speed, `r + v (now - stamp)`. The speed is unchanged. That is a constant speed. On the same messages it differs
+//! from [`ConstantSpeed`](crate::measure::baseline::constant_speed::ConstantSpeed) in one respect: stamps are not
+//! compared, so an overtaken message replaces the newer one.
 
 use crate::measure::baseline::{Baseline, Estimate};
 use crate::measure::heard::Heard;
 
-/// Keeps the message that came last.
+/// Keeps the message that arrived last.
 #[derive(Clone, Debug)]
 pub struct Consensus {
     target: usize,
@@ -16,7 +16,7 @@ pub struct Consensus {
 }
 
 impl Consensus {
-    /// For that vehicle.
+    /// The method for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { target, last: None }

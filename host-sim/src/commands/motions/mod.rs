@@ -1,13 +1,13 @@
-//! `motions`: what a target does in a silence, and who knows it. Checked options enter; a table or JSON on stdout and a
-//! report leave.
+//! `motions`: the estimate of a target in a silence, over five motions. Checked options enter; a table or JSON on
+//! stdout and a report leave.
 //!
 //! ```text
 //! motion, phase -> scenario -> world: bus -> unit      -> errors in the silence -> rows -> table, JSON, report
 //!                                         -> baselines
 //! ```
 //!
-//! [`rows::run`] gives the figures, [`table::text`] their table and [`section`] and [`largest`] their part of a report and of a
-//! picture, for other commands.
+//! [`rows::run`] computes the figures, and [`table::text`] their table. [`section`] and [`largest`] are their parts of
+//! a report and of a picture, for other commands.
 
 pub mod arguments;
 pub mod consensus;
@@ -35,10 +35,10 @@ struct Results<'a> {
     rows: &'a [Row],
 }
 
-/// Runs everything and writes what the options ask for.
+/// Runs everything and writes the output that the options ask for.
 ///
 /// # Errors
-/// A configuration that the units refuse, and places that cannot be written.
+/// A configuration that the units refuse, and output that cannot be written.
 pub fn run(options: &MotionsOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
     let rows = rows::run(options.seed, options.silences, || bar.inc(1))?;

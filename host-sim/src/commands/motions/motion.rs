@@ -1,7 +1,8 @@
-//! What the target does: one of five motions and a phase enter; a scenario with a silence at its last vehicle leaves.
+//! The motion of the target: one of five motions and a phase enter; a scenario with a silence at its last vehicle
+//! leaves.
 //!
-//! The last vehicle listens to the one ahead, the target, over the paper's channel, and keeps so far behind that nothing
-//! it does matters. Its links alone are impaired: what the target does is not changed by the silence.
+//! The last vehicle listens to the vehicle ahead, the target, over the paper's channel. It stays so far behind that its
+//! own motion does not matter. Only its links are impaired, so the silence does not change the target's motion.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -13,36 +14,37 @@ use crate::input::scenario::{Overrides, Scenario};
 
 /// Length of the silence.
 pub const SILENCE_S: f64 = 4.0;
-/// Silences of one motion differ in when they begin, or in when the target brakes in them; so many ways.
+/// Number of phases. Silences of one motion differ in their beginning, or in when the target brakes in them.
 pub const PHASES: u32 = 10;
 
-/// Speed of a free road, and that at which a driver drives before anything happens.
+/// Target speed on a free road, and a driver's speed before anything happens.
 const CRUISE_MPS: f64 = 13.4;
-/// Before this everybody has heard everybody.
+/// By this time every unit has heard every vehicle.
 const EARLIEST_S: f64 = 2.0;
-/// When the silence begins in which a driver brakes.
+/// Beginning of a silence in which a driver brakes.
 const BRAKED_IN_FROM_S: f64 = 5.0;
 const SINE_HZ: f64 = 0.2;
 /// 10 km/h.
 const SINE_MPS: f64 = 10.0 / 3.6;
 
-/// What the target does.
+/// The motion of the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TargetMotion {
-    /// It leads and accelerates by Algorithm 2, from 1 to 4 m/s to 13.4 m/s; it says so.
+    /// The target leads and accelerates by Algorithm 2, from 1 to 4 m/s to 13.4 m/s. It publishes that.
     FreeAcceleration,
-    /// It finds its slot behind an accelerating leader, from a gap of 6 to 30 m, by the law; it says so.
+    /// The target moves into its place behind an accelerating leader, from a gap of 6 to 30 m, by the law. It publishes
+    /// that.
     SlotFollowing,
-    /// A driver's speed goes up and down by 10 km/h at 0.2 Hz.
+    /// A driver's speed oscillates by 10 km/h at 0.2 Hz.
     Sine,
-    /// A driver brakes at 2 m/s² from 0.2 to 2 s after the beginning of the silence on.
+    /// A driver brakes at 2 m/s², beginning 0.2 to 2 s after the silence begins.
     Braking,
-    /// A driver brakes at 5 m/s² to a stop, from 0.1 to 1 s after the beginning of the silence on.
+    /// A driver brakes at 5 m/s² to a stop, beginning 0.1 to 1 s after the silence begins.
     HardBraking,
 }
 
 impl TargetMotion {
-    /// All of them.
+    /// All motions.
     pub const ALL: [Self; 5] =
         [Self::FreeAcceleration, Self::SlotFollowing, Self::Sine, Self::Braking, Self::HardBraking];
 
@@ -58,29 +60,31 @@ impl TargetMotion {
         }
     }
 
-    /// Whether the target drives by its unit, which says how; what a driver will do nobody says.
+    /// Whether the target is driven by its unit, which publishes its driving parameters. A driver's intention is not
+    /// published.
     #[must_use]
     pub fn is_published(self) -> bool {
         matches!(self, Self::FreeAcceleration | Self::SlotFollowing)
     }
 
-    /// When the silence begins.
+    /// Beginning of the silence.
     #[must_use]
     pub fn silent_from_s(self, phase: u32) -> f64 {
         let phase = f64::from(phase % PHASES);
         match self {
             Self::FreeAcceleration => EARLIEST_S + 1.5 * phase,
             Self::SlotFollowing => EARLIEST_S + phase,
-            // Ten parts of a period.
+            // Tenths of a period.
             Self::Sine => EARLIEST_S + phase / SINE_HZ / f64::from(PHASES),
             Self::Braking | Self::HardBraking => BRAKED_IN_FROM_S,
         }
     }
 
-    /// The scenario; its last vehicle listens, and hears nothing from [`Self::silent_from_s`] on for [`SILENCE_S`].
+    /// The scenario. Its last vehicle listens, and from [`Self::silent_from_s`] on it receives nothing for
+    /// [`SILENCE_S`].
     ///
     /// # Errors
-    /// None, as long as the text below is a scenario.
+    /// None, as long as the text below is a valid scenario.
     pub fn scenario(self, phase: u32) -> Result<Scenario, Error> {
         let from_s = self.silent_from_s(phase);
         let (listener, ahead) = match self {
@@ -103,7 +107,7 @@ impl TargetMotion {
         Ok(scenario)
     }
 
-    /// What the driver does, if one drives, in steps of a period of the units.
+    /// The driver's motion, if a driver drives, in steps of the units' period.
     fn driven(self, phase: u32, scenario: &Scenario) -> Option<Motion> {
         let brakes_after = |least_s: f64| self.silent_from_s(phase) + least_s * f64::from(phase % PHASES + 1);
         let row: Box<dyn Fn(f64) -> MotionRow> = match self {

@@ -5,25 +5,25 @@ use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::seeds;
 
-/// The most silences of a motion: their errors are held at once.
+/// The most silences of a motion; the errors of all of them are in memory at once.
 pub const MOST_SILENCES: u32 = 1000;
 
-/// What is to be measured and what becomes of it.
+/// The measurement, and where its results go.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MotionsOptions {
     /// Silences of each motion; at least 1.
     pub silences: u32,
-    /// Seed of the first; there are as many seeds.
+    /// Seed of the first silence; there are as many seeds as silences.
     pub seed: u64,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl MotionsOptions {
-    /// Checks what the arguments say.
+    /// Checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, and a folder that cannot be written.
+    /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: MotionsArguments) -> Result<Self, Error> {
         let MotionsArguments { silences, seed, json, out, no_report } = arguments;
         if !(1..=MOST_SILENCES).contains(&silences) {
@@ -35,7 +35,7 @@ impl MotionsOptions {
         Ok(Self { silences, seed, destination })
     }
 
-    /// The same command again.
+    /// The command that repeats this.
     #[must_use]
     pub fn command(&self) -> String {
         format!("holdover-sim motions --silences {} --seed {}", self.silences, self.seed)

@@ -28,7 +28,7 @@ pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
     page.finish()
 }
 
-/// What the report says of it, for the page of any command.
+/// The section of a report, for the page of any command.
 pub fn section(page: &mut Page, rows: &[Row]) {
     page.paragraph(WHAT);
     table(page, rows, "Rms of the position error in the silence, m", |figures| figures.rms_position_m);
@@ -40,7 +40,7 @@ pub fn section(page: &mut Page, rows: &[Row]) {
     }
 }
 
-/// The largest error of each method by what the target does; logarithmic, as freezing is far off.
+/// The largest error of each method by motion. The axis is logarithmic, because the frozen position is far off.
 #[must_use]
 pub fn largest(rows: &[Row]) -> Bars {
     let errors = |method: usize| rows.iter().map(|row| Some(row.methods.get(method)?.max_position_m)).collect();
@@ -68,7 +68,7 @@ fn tone(index: usize, method: &str) -> Tone {
     }
 }
 
-/// A row for each method; what is least of a motion is strong.
+/// A table with a row for each method; the least value of each motion is bold.
 fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures) -> f64) {
     let spelled = |figures: &MethodFigures| significant(figure(figures), 3);
     let least = |row: &Row| row.methods.iter().min_by(|a, b| figure(a).total_cmp(&figure(b))).map(spelled);
@@ -89,13 +89,14 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
     page.table(caption, &header, &lines);
 }
 
-/// Freezing is so far off that its line would flatten all others; it stands in the tables.
+/// A curve of the errors over the silence. The frozen position is so far off that it would flatten all other lines; it
+/// is only in the tables.
 fn growth(page: &mut Page, row: &Row) {
     let line = |(index, method): (usize, &MethodFigures)| {
         let series = Series::new(method.name.replace('_', " "), method.growth.clone());
         Layer::Line { series, tone: tone(index, method.name), marked: false }
     };
-    // Ours last, so that it lies on top.
+    // The unit's line comes last, so that it lies on top.
     let layers = row.methods.iter().enumerate().rev().filter(|(_, method)| method.name != "freeze").map(line).collect();
     let axes = (Axis::linear("time since the silence began", "s"), Axis::linear("position error, rms", "m"));
     let title = row.motion.to_string();

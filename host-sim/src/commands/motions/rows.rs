@@ -1,4 +1,4 @@
-//! The figures: silences enter, for each motion and each method its errors leave.
+//! The figures: silences enter; the errors of each motion and each method leave.
 
 use serde::Serialize;
 
@@ -10,35 +10,35 @@ use crate::parallel;
 
 /// Width of a class of [`MethodFigures::growth`].
 const CLASS_S: f64 = 0.25;
-/// Ours is level with another whose rms is within this share of it.
+/// The unit is level with another method whose rms differs from its own by at most this fraction.
 const LEVEL: f64 = 0.05;
 
-/// Rms this share apart are the same, and the simpler method is named: what is below is rounding.
+/// Rms values within this fraction count as equal, because the rest is rounding. The simpler method is then named.
 const SAME: f64 = 1e-6;
 
 /// The figures of one motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// What the target did.
+    /// The motion of the target.
     #[serde(serialize_with = "key")]
     pub motion: TargetMotion,
-    /// Whether it had said so.
+    /// Whether the target had published it.
     pub published: bool,
-    /// Silences.
+    /// Number of silences.
     pub silences: u32,
     /// Comparisons, every 10 ms of each silence.
     pub comparisons: usize,
     /// The baseline with the least rms of the position error.
     pub best_baseline: &'static str,
-    /// Our rms over its.
+    /// The unit's rms over that of the best baseline.
     pub ours_over_best: f64,
-    /// How ours stands to it.
+    /// The unit beside the best baseline.
     pub standing: Standing,
-    /// Ours, then the baselines.
+    /// The figures of the unit, then of the baselines.
     pub methods: Vec<MethodFigures>,
 }
 
-/// How ours stands to the best baseline by the rms of the position error.
+/// The unit beside the best baseline, by the rms of the position error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Standing {
@@ -72,11 +72,11 @@ fn key<S: serde::Serializer>(motion: &TargetMotion, serializer: S) -> Result<S::
     serializer.serialize_str(motion.key())
 }
 
-/// Runs that many silences of each motion on all cores, each with a seed of its own from `seed` on; `done` is called after
-/// each.
+/// Runs this many silences of each motion on all cores, each with a seed of its own from `seed` on. `done` is called
+/// after each silence.
 ///
 /// # Errors
-/// Those of [`silence::run`].
+/// The errors of [`silence::run`].
 pub fn run(seed: u64, silences: u32, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
     let one = |motion, number: u32| {
         let errors = silence::run(motion, number % PHASES, seed.wrapping_add(u64::from(number)));
@@ -121,7 +121,7 @@ impl Standing {
         }
     }
 
-    /// In a word.
+    /// The result in a word.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {

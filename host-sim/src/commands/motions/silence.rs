@@ -1,8 +1,8 @@
-//! One silence: a motion, a phase and a seed enter; the errors of everybody's beliefs of the target, tick by tick of the
-//! silence, leave.
+//! One silence: a motion, a phase and a seed enter; the errors of every method's estimate of the target leave, tick by
+//! tick of the silence.
 //!
-//! The baselines decode the frames that the listener's unit receives, and are asked after its tick. Ours is what that unit
-//! says on its bus.
+//! The baselines decode the frames that the listener's unit receives, and are evaluated after its tick. The unit's
+//! estimate is the one on its bus.
 
 use std::io;
 use std::path::Path;
@@ -17,27 +17,27 @@ use crate::measure::observer::Tap;
 use crate::sim::stages::Stages;
 use crate::sim::world::{Measured, Trace, WARM_UP_S, World};
 
-/// Ours and the baselines.
+/// Number of methods: the unit and the baselines.
 pub const METHODS: usize = 8;
-/// Their names, as they stand in results.
+/// The names of the methods in results.
 pub const NAMES: [&str; METHODS] =
     ["holdover", "freeze", "constant_speed", "constant_acceleration", "singer", "kalman", "paper", "consensus"];
 
-/// The errors at one tick of a silence, believed minus true.
+/// The errors at one tick of a silence: estimated minus true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// Time since the beginning of the silence.
     pub since_s: f64,
-    /// Of the position, in m, method by method.
+    /// Errors of the position, in m, by method.
     pub position_m: [f64; METHODS],
-    /// Of the speed, in m/s.
+    /// Errors of the speed, in m/s, by method.
     pub speed_mps: [f64; METHODS],
 }
 
-/// Runs it.
+/// Runs the silence.
 ///
 /// # Errors
-/// A configuration that the units refuse, a bus that fails, and a target that was never heard.
+/// A configuration that the units refuse, errors of the bus, and a target that was never heard.
 pub fn run(motion: TargetMotion, phase: u32, seed: u64) -> Result<Vec<Errors>, Error> {
     let scenario = motion.scenario(phase)?;
     let world = World::new(&scenario, seed, None).map_err(|cause| {
@@ -79,14 +79,15 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
     Ok(errors)
 }
 
-/// What every method believes, ours first.
+/// The estimates of all methods, the unit's first.
 fn beliefs(baselines: &mut [Box<dyn Baseline>], at_s: f64, ours: Option<Estimate>) -> [Option<Estimate>; METHODS] {
     let mut baselines = baselines.iter_mut();
     std::array::from_fn(|method| if method == 0 { ours } else { baselines.next()?.estimate(at_s) })
 }
 
-/// A vehicle that a driver drives says of itself that it follows no law. The paper, which knows no such vehicles, would
-/// let it accelerate to the speed that its unit is set to; without driving parameters it takes 13.4 m/s, at which it cruises here.
+/// Removes the driving parameters of a vehicle that a driver drives, because such a vehicle publishes that it follows
+/// no law. The paper does not consider such vehicles: it would let this one accelerate to the target speed of its unit.
+/// Without driving parameters it assumes 13.4 m/s, at which the vehicle cruises here.
 fn with_law_only(heard: Heard) -> Heard {
     Heard {
         parameters: heard.parameters.filter(|parameters| parameters.leads || parameters.predecessor.is_some()),
@@ -99,7 +100,7 @@ fn ours(trace: &Trace, by: usize) -> Option<Estimate> {
     Some(Estimate { position_m: belief.position_m, speed_mps: belief.speed_mps })
 }
 
-/// The errors; `None` if somebody has no belief.
+/// The errors; `None` if a method has no estimate.
 fn against(trace: &Trace, target: usize, beliefs: &[Option<Estimate>; METHODS], since_s: f64) -> Option<Errors> {
     let truth = trace.vehicles[target].last()?;
     let mut errors = Errors { since_s, position_m: [0.0; METHODS], speed_mps: [0.0; METHODS] };

@@ -10,7 +10,7 @@ use crate::report::markup::significant;
 pub fn text(rows: &[Row]) -> String {
     let mut text = String::new();
     for row in rows {
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{}: {}", row.motion, standing(row));
         let _ = writeln!(text, "{:<23}{:>33}{:>14}", "", "position error, m", "speed, m/s");
         let _ = writeln!(text, "{:<23}{:>11}{:>11}{:>11}{:>14}", "", "rms", "99 %", "maximum", "rms");
@@ -29,7 +29,7 @@ pub fn text(rows: &[Row]) -> String {
     text
 }
 
-/// How ours stands to the best of the others, in words.
+/// The unit beside the best of the other methods, in words.
 #[must_use]
 pub fn standing(row: &Row) -> String {
     let published = if row.published { "published" } else { "not published" };

@@ -10,7 +10,7 @@ pub struct RecordArguments {
     #[arg(long, value_name = "INTERFACE")]
     pub bus: String,
 
-    /// The log, as `candump -l` writes it; standard output unless given
+    /// The log, as `candump -l` writes it; by default standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 

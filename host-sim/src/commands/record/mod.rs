@@ -1,4 +1,4 @@
-//! `record`: what happens on a CAN interface enters, a candump log with the kernel's time stamps leaves.
+//! `record`: the events on a CAN interface enter, a candump log with the kernel's time stamps leaves.
 
 pub mod arguments;
 
@@ -18,7 +18,7 @@ use crate::sim::quantities::duration;
 use crate::verdict::Verdict;
 use arguments::RecordArguments;
 
-/// Between two looks at whether the time is up, and two flushes of the log.
+/// Time between two checks of the end, and between two flushes of the log.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// A recording.
@@ -26,9 +26,9 @@ const PAUSE: Duration = Duration::from_millis(100);
 pub struct RecordOptions {
     /// The interface.
     pub interface: String,
-    /// The log; `None` is standard output.
+    /// The log; `None`: standard output.
     pub file: Option<PathBuf>,
-    /// Its length; `None`: until it is interrupted.
+    /// Length of the recording; `None`: until it is interrupted.
     pub length: Option<Duration>,
 }
 
@@ -36,7 +36,7 @@ impl RecordOptions {
     /// Checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be.
+    /// Impossible values.
     pub fn read(arguments: RecordArguments) -> Result<Self, Error> {
         let RecordArguments { bus, output, duration: length_s } = arguments;
         if let Some(file) = &output {
@@ -49,7 +49,7 @@ impl RecordOptions {
     }
 }
 
-/// Records as the options say.
+/// Records until the end.
 ///
 /// # Errors
 /// An interface that cannot be used, and a log that cannot be written.
@@ -74,20 +74,20 @@ pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// What can end a recording before its time.
+/// What can end a recording early.
 #[derive(Debug)]
 pub enum Failure {
-    /// The interface has gone.
+    /// The interface was removed.
     Port(io::Error),
     /// The log cannot be written.
     Log(io::Error),
 }
 
-/// Writes down what happens until then; how many frames that were. The log is whole up to a tenth of a second
-/// ago, however it ends.
+/// Records the events until `until`, and returns the number of frames. However it ends, the log is complete up to a
+/// tenth of a second before.
 ///
 /// # Errors
-/// The port's and the log's.
+/// Errors of the port and of the log.
 pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> Result<u64, Failure> {
     let (mut frames, mut flushed) = (0, port.now());
     loop {

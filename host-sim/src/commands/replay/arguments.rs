@@ -19,7 +19,7 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
 
-    /// As which vehicle's unit; the ego's unless given
+    /// The vehicle whose unit receives the log; by default the ego
     #[arg(long, value_name = "INDEX")]
     pub vehicle: Option<usize>,
 
@@ -39,7 +39,7 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub step: Option<f64>,
 
-    /// Which interface of the log to replay; that of its first frame unless given
+    /// The interface of the log to replay; by default that of its first frame
     #[arg(long, value_name = "NAME")]
     pub interface: Option<String>,
 

@@ -1,11 +1,10 @@
-//! `replay`: a candump log enters, the frames of a unit that lives on that bus, or a summary of what it made of the
-//! traffic, leave.
+//! `replay`: a candump log enters; the frames of a unit on that bus leave, or a summary of how it used the frames.
 //!
 //! ```text
 //! log -> candump -> player (timeline -> tick, receive) -> candump
 //!                   `-> tally -> summary
 //! ```
-//! The log is read and answered line by line, so its length does not matter. With `--bus` its frames go onto a CAN
+//! The log is read and answered line by line, so it may have any length. With `--bus` its frames are sent on a CAN
 //! interface instead ([`onto_bus`]).
 
 pub mod arguments;
@@ -32,7 +31,7 @@ use options::{Output, ReplayOptions};
 use player::{Player, Stop};
 use summary::Summary;
 
-/// Replays the log of the options.
+/// Replays the log.
 ///
 /// # Errors
 /// A log that cannot be read or replayed, and a standard output that cannot be written.
@@ -85,10 +84,10 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
     Ok(Verdict::Pass)
 }
 
-/// Where the unit's frames go: to standard output, or nowhere.
+/// Destination of the unit's frames: standard output, or none.
 enum Sink {
     Nowhere,
-    /// The interface is known with the first frame.
+    /// The writer; it needs the interface, which is known with the first frame.
     Stdout(Option<LogWriter<BufWriter<StdoutLock<'static>>>>),
 }
 
@@ -111,7 +110,8 @@ impl Sink {
     }
 }
 
-/// A reader that has gone has what it wanted; anything else is an error.
+/// The end of a replay whose output failed. It passes if the reader of the output has closed it; anything else is an
+/// error.
 fn without_reader(error: &io::Error) -> Result<Verdict, Error> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(Verdict::Pass),
@@ -119,7 +119,7 @@ fn without_reader(error: &io::Error) -> Result<Verdict, Error> {
     }
 }
 
-/// Nothing in the log was for this unit's bus.
+/// The error of a log without frames for this unit's bus.
 fn nothing(file: &Path, options: &ReplayOptions, other: Option<Interface>) -> Error {
     let error = match (&options.interface, other) {
         (Some(wanted), Some(there)) => {

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::output;
 use crate::verdict::Verdict;
 
-/// Plays the log onto an interface.
+/// Replays the log on an interface.
 pub(super) fn replay<R: BufRead>(
     bus: &str,
     interface: Option<&Interface>,
@@ -26,16 +26,16 @@ pub(super) fn replay<R: BufRead>(
     Ok(Verdict::Pass)
 }
 
-/// What was sent.
+/// The frames that were sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sent {
-    /// Frames.
+    /// Number of frames.
     pub frames: u64,
-    /// The most that one of them was sent after its time.
+    /// Largest delay of a frame behind its time.
     pub latest: Duration,
 }
 
-/// Sends the frames of an interface of the log, by default that of its first line, the first one now.
+/// Sends the frames of one interface of the log, by default that of its first line. The first frame is sent now.
 ///
 /// # Errors
 /// A log that cannot be read or replayed or has no frame of that interface, and a port that cannot send.
@@ -70,7 +70,7 @@ pub fn play<R: BufRead>(
     Ok(sent)
 }
 
-/// Waits, whatever happens on the bus meanwhile.
+/// Waits until `until`, whatever happens on the bus.
 fn wait(port: &mut impl Port, until: Instant) -> std::io::Result<()> {
     while port.now() < until {
         port.wait(until)?;

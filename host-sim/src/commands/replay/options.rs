@@ -17,20 +17,20 @@ use crate::sim::world;
 /// A replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayOptions {
-    /// The log; `None` is standard input.
+    /// The log; `None`: standard input.
     pub log: Option<PathBuf>,
     /// The unit.
     pub config: Config,
-    /// The interface to replay; `None` is that of the first frame.
+    /// The interface to replay; `None`: that of the first frame.
     pub interface: Option<Interface>,
-    /// What becomes of it.
+    /// The output.
     pub output: Output,
 }
 
-/// What becomes of a replay.
+/// The output of a replay.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// No unit is involved: the log's own frames go onto this interface.
+    /// The log's own frames, on this interface; no unit runs.
     Bus(String),
     /// The unit's frames.
     Frames,
@@ -41,10 +41,10 @@ pub enum Output {
 }
 
 impl ReplayOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, and a scenario that cannot be used.
+    /// Impossible values, and an unusable scenario.
     pub fn read(arguments: ReplayArguments) -> Result<Self, Error> {
         let ReplayArguments { log, bus, scenario, vehicle, station, base_id, period, step, interface, summary, json } =
             arguments;

@@ -1,4 +1,4 @@
-//! One unit on the log's clock: lines of a log enter one by one, the frames that the unit sends leave tick by tick.
+//! One unit on the log's clock: lines of a log enter one by one; the frames that the unit sends leave tick by tick.
 
 use std::io;
 
@@ -12,10 +12,10 @@ use crate::bus::candump::{Content, Entry};
 use crate::error::Error;
 use crate::sim::vehicle::Unit;
 
-/// The unit's clock is ahead of the log's by this. Logs may start at 0, and what a message's stamp dates lies before.
+/// The unit's clock is ahead of the log's by this time. Logs may start at 0, and stamps are from before their message.
 const POWERED_BEFORE: Duration = Duration::from_millis(60_000);
 
-/// What keeps a replay from going on.
+/// What ends a replay early.
 #[derive(Debug)]
 pub enum Stop {
     /// The line cannot be replayed.
@@ -24,47 +24,47 @@ pub enum Stop {
     Output(io::Error),
 }
 
-/// A unit that lives by a log.
+/// A unit that receives a log.
 pub struct Player {
     unit: Unit,
-    /// A unit that ticks with the other and hears nothing.
+    /// A unit that ticks at the same times and receives nothing.
     deaf: Option<Unit>,
     timeline: Timeline,
     tally: Tally,
 }
 
 impl Player {
-    /// A unit with that configuration. `compares`: whether it is to be compared with one that hears nothing.
+    /// A unit with this configuration. `compares`: whether it is to be compared with a unit that receives nothing.
     ///
     /// # Errors
-    /// What the unit finds wrong with its configuration.
+    /// An error of the unit's configuration.
     pub fn new(config: &Config, compares: bool) -> Result<Self, ConfigError> {
         let unit = Unit::new(config)?;
         let deaf = compares.then(|| unit.clone());
         Ok(Self { unit, deaf, timeline: Timeline::new(config.period), tally: Tally::new(config.base_id) })
     }
 
-    /// What became of the frames so far.
+    /// Counts of the frames so far.
     #[must_use]
     pub fn tally(&self) -> &Tally {
         &self.tally
     }
 
-    /// Whether there was a line to play.
+    /// Whether a line has been played.
     #[must_use]
     pub fn has_begun(&self) -> bool {
         self.timeline.last().is_some()
     }
 
-    /// Takes note of a line that is none of this unit's bus.
+    /// Counts a line that is not for this unit's bus.
     pub fn ignore(&mut self) {
         self.tally.ignore();
     }
 
-    /// Plays a line: the ticks before it, then what it says. `send` is given what the unit sends, with its time.
+    /// Plays a line: first the ticks before it, then its content. `send` gets the unit's frames with their times.
     ///
     /// # Errors
-    /// A line without a time or with an impossible one, and whatever `send` says.
+    /// A line without a time or with an impossible one, and errors of `send`.
     pub fn play(&mut self, entry: &Entry, mut send: impl FnMut(Instant, &Frame) -> io::Result<()>) -> Result<(), Stop> {
         let at = entry.at.ok_or_else(|| Stop::Line(no_time()))?;
         self.timeline.read(at).map_err(Stop::Line)?;
@@ -84,7 +84,7 @@ impl Player {
     /// The last tick.
     ///
     /// # Errors
-    /// Whatever `send` says.
+    /// Errors of `send`.
     pub fn finish(&mut self, mut send: impl FnMut(Instant, &Frame) -> io::Result<()>) -> io::Result<()> {
         self.timeline.last().map_or(Ok(()), |tick| self.tick(tick, &mut send))
     }
@@ -99,8 +99,8 @@ impl Player {
         answer.frames.iter().try_for_each(|frame| send(at, &frame.into()))
     }
 
-    /// Whether the unit is in any other state than if it had heard nothing; `None` if that was not asked for. States are
-    /// compared whole, field by field, as they are printed for debugging.
+    /// Whether the state of the unit differs from that of a unit that received nothing; `None` if they are not
+    /// compared. The whole states are compared, field by field, by their debug output.
     #[must_use]
     pub fn has_changed(&self) -> Option<bool> {
         self.deaf.as_ref().map(|deaf| format!("{deaf:?}") != format!("{:?}", self.unit))

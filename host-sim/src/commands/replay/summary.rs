@@ -17,25 +17,25 @@ pub struct Summary {
     pub recognised: BTreeMap<String, u64>,
     /// Refused frames by cause.
     pub refused: BTreeMap<&'static str, u64>,
-    /// Frames that are none of the unit's business.
+    /// Frames that are not for the unit.
     pub ignored: u64,
     /// Ticks of the unit.
     pub ticks: u64,
-    /// Whether the unit ended in any other state than one that ticked as often and heard nothing.
+    /// Whether the final state of the unit differs from that of a unit that ticked as often and received nothing.
     pub state_changed: bool,
     /// Wall-clock figures.
     pub timing: Timing,
 }
 
-/// Wall-clock figures; everything else is the same for the same log.
+/// Wall-clock figures. All other figures are the same for the same log.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Timing {
-    /// Frames over the time from opening the log to its end: reading, receiving, and all ticks.
+    /// Frames per second, from opening the log to its end: reading, receiving, and all ticks.
     pub frames_per_s: f64,
 }
 
 impl Summary {
-    /// Of these counts, after so many seconds.
+    /// The summary of these counts, after `seconds`.
     #[must_use]
     pub fn new(tally: &Tally, state_changed: bool, elapsed_s: f64) -> Self {
         Self {
@@ -49,11 +49,11 @@ impl Summary {
         }
     }
 
-    /// For a terminal.
+    /// The text for a terminal.
     #[must_use]
     pub fn text(&self) -> String {
         let mut text = String::new();
-        // Writing into a string cannot fail.
+        // Writing to a string cannot fail.
         let mut row = |indent: usize, name: &str, number: u64| {
             let _ = writeln!(text, "{:indent$}{name:<width$}{:>12}", "", count(number), width = 24 - indent);
         };

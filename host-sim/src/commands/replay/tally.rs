@@ -1,4 +1,4 @@
-//! What became of the frames of a log: receptions enter, counts by message and by cause leave.
+//! Counts of the frames of a log: receptions enter; counts by message and by cause leave.
 
 use std::collections::BTreeMap;
 
@@ -21,13 +21,13 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Nothing yet, on a bus whose catalogue starts at `base`.
+    /// Counts of 0, on a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
         Self { base, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
     }
 
-    /// Counts a frame that the unit was given.
+    /// Counts a frame that the unit received.
     pub fn count(&mut self, frame: &Frame, reception: Result<Reception, Cause>) {
         match (reception, frame.id()) {
             (Ok(Reception::Pending | Reception::Taken), Id::Standard(id)) => {
@@ -38,7 +38,7 @@ impl Tally {
         }
     }
 
-    /// Counts a frame that the unit could not be given.
+    /// Counts a frame that was not passed to the unit.
     pub fn ignore(&mut self) {
         self.ignored += 1;
     }
@@ -60,14 +60,14 @@ impl Tally {
         self.recognised.iter().map(|(id, count)| (self.name(*id), *count)).collect()
     }
 
-    /// Refused frames by cause, those that occurred.
+    /// Refused frames by cause, without causes that did not occur.
     #[must_use]
     pub fn refused(&self) -> Vec<(&'static str, u64)> {
         let counts = Cause::ALL.iter().zip(self.refused);
         counts.filter(|(_, count)| *count > 0).map(|(cause, count)| (cause.name(), count)).collect()
     }
 
-    /// Frames that are none of the unit's business.
+    /// Frames that are not for the unit.
     #[must_use]
     pub fn ignored(&self) -> u64 {
         self.ignored

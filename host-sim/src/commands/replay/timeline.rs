@@ -1,40 +1,39 @@
 //! The log's clock: the times of a log's lines enter, the times of the unit's ticks leave.
 //!
-//! The first tick is at the first line's time and every further one a period later. What lies at or before a tick is
-//! received before it. Merged logs are a little out of order, so a line may lie up to [`DISORDER`] before the latest one
-//! above it; ticks never go back for it.
+//! The first tick is at the first line's time, and every further one a period later. Frames at or before a tick are
+//! received before it. Merged logs are slightly out of order, so a line may be up to [`DISORDER`] before the latest
+//! line above it. Ticks never go back.
 
 use holdover::time::{Duration, Instant};
 
 use crate::error::Error;
 
-/// How far a line may lie before the latest one above it.
+/// Largest time by which a line may be before the latest line above it.
 pub const DISORDER: Duration = Duration::from_millis(1_000);
 
-/// How long a log may be silent. A longer gap is a clock that was set, or two logs in one, and ticking on through years
-/// would take days.
+/// Longest gap in a log. A longer gap comes from a clock that was set, or from two logs in one file. Ticking through
+/// years would take days.
 pub const LONGEST_GAP: Duration = Duration::from_millis(3_600_000);
 
-/// When the unit ticks.
+/// The times of the unit's ticks.
 #[derive(Clone, Copy, Debug)]
 pub struct Timeline {
     period: Duration,
-    /// The next tick and the latest line, once there was a line.
+    /// Time of the next tick and of the latest line, once there was a line.
     next: Option<(Instant, Instant)>,
 }
 
 impl Timeline {
-    /// Nothing read yet; ticks are to be a period apart.
+    /// A timeline without lines, with this period.
     #[must_use]
     pub fn new(period: Duration) -> Self {
         Self { period, next: None }
     }
 
-    /// Takes note of a line's time. All its [`Timeline::due`] ticks are to be made then, before what the line says is
-    /// received.
+    /// Takes in a line's time. All ticks that are then [`Timeline::due`] come before the line's content.
     ///
     /// # Errors
-    /// A time that no log of one recording has.
+    /// A time that is impossible in one recording.
     pub fn read(&mut self, at: Instant) -> Result<(), Error> {
         let (next, latest) = self.next.unwrap_or((at, at));
         let step = at.since(latest);
@@ -49,14 +48,14 @@ impl Timeline {
         Ok(())
     }
 
-    /// The next tick before the latest line; `None`: what that line says comes first.
+    /// The next tick before the latest line; `None`: the content of that line comes first.
     pub fn due(&mut self) -> Option<Instant> {
         let (tick, latest) = self.next.filter(|(tick, latest)| tick < latest)?;
         self.next = Some((tick.plus(self.period), latest));
         Some(tick)
     }
 
-    /// The last tick, the first at or after the last line; `None` if there was no line.
+    /// The last tick: the first one at or after the last line. `None` if there was no line.
     #[must_use]
     pub fn last(self) -> Option<Instant> {
         self.next.map(|(tick, _)| tick)

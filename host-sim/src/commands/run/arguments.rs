@@ -3,13 +3,13 @@
 use clap::Args;
 use std::path::PathBuf;
 
-/// What can follow `run`.
+/// The arguments of `run`.
 #[derive(Clone, Debug, Default, Args)]
 pub struct RunArguments {
-    /// The scenario, a file or one of `--list`; the paper's if none is given (scenarios/paper.toml explains it)
+    /// The scenario, a file or a name from `--list`; by default the paper's (scenarios/paper.toml explains it)
     #[arg(value_name = "SCENARIO")]
     pub scenario: Option<PathBuf>,
-    /// The rest.
+    /// The options.
     #[command(flatten)]
     pub settings: RunSettings,
 }
@@ -29,22 +29,22 @@ pub struct RunSettings {
     #[arg(long)]
     pub list: bool,
 
-    /// Measure how fast the program simulates these numbers of vehicles at once, in corridors side by side [with a report:
-    /// 10,30,100,300]. Corridors only
+    /// Measure how fast the program simulates these numbers of vehicles at once, in corridors side by side [with a
+    /// report: 10,30,100,300]. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub vehicles: Option<Vec<usize>>,
 
-    /// Try these amounts of traffic, in vehicles a minute, and nothing else. Each is run with and without the envelope, over
-    /// the scenario's link and over a perfect one. This can take an hour; stderr says after each run what is done and what
-    /// is left. Corridors only
+    /// Run these amounts of traffic, in vehicles per minute, and nothing else. Each is run with and without the
+    /// envelope, over the scenario's links and over perfect ones. This can take an hour; after each run stderr shows
+    /// what is done and what is left. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub demand: Option<Vec<f64>>,
 
-    /// Number of peers for which every unit has slots, instead of the scenario's; several with `--demand`. Corridors only
+    /// Number of peer slots of every unit, instead of the scenario's; several with `--demand`. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub slots: Option<Vec<usize>>,
 
-    /// Draw a picture of one page: trajectories, errors, and our method beside seven others. Corridors only
+    /// Draw a picture of one page: trajectories, errors, and this unit's method beside seven others. Corridors only
     #[arg(long, value_name = "FILE.svg")]
     pub picture: Option<PathBuf>,
 
@@ -60,8 +60,8 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
-    /// Engage the envelope, every unit's last gate: stay able to stop behind what is certain of the vehicle ahead.
-    /// A corridor is always run without and with it; with this option its excerpts and figures are those with it
+    /// Engage the envelope, the last stage of every unit: stay able to stop behind the bound of the vehicle ahead. A
+    /// corridor is always run without and with it; with this option its excerpts and figures are those with it
     #[arg(long)]
     pub envelope: bool,
 
@@ -77,20 +77,21 @@ pub struct RunSettings {
     #[arg(long, conflicts_with = "out")]
     pub no_report: bool,
 
-    /// Write every tick: time, truth, estimate and its bound, age, mode, command and whether the envelope changed it
+    /// Write every tick: time, truth, estimate and its bound, age, mode, command, and whether the envelope changed the
+    /// command
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 
-    /// Write the traffic on one vehicle's bus as a candump log
+    /// Write the frames on one vehicle's bus as a candump log
     #[arg(long, value_name = "FILE")]
     pub candump: Option<PathBuf>,
 
-    /// Whose bus that is; the ego's unless given
+    /// The vehicle of that bus; by default the ego
     #[arg(long, value_name = "INDEX", requires = "candump")]
     pub candump_vehicle: Option<usize>,
 }
 
-/// Examples and what else there is to say.
+/// Examples and further notes.
 pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim                           the paper's scenario

@@ -13,8 +13,8 @@ use crate::measure::figures::{mode_name, papers};
 use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::world::Trace;
 
-/// Writes every tick of the measured vehicle as its follower sees it, with the bound as it stands on the bus, and the
-/// follower's command; `limited` is 1 where the envelope changed that.
+/// Writes every tick of the measured vehicle as its follower estimates it, with the bound on the bus and the follower's
+/// command. `limited` is 1 where the envelope changed that command.
 pub fn write_trace(file: &Path, scenario: &Scenario, trace: &Trace) -> Result<(), Error> {
     let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
     let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
@@ -58,7 +58,7 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
     Ok(())
 }
 
-/// Writes the bus that was kept, at the GNSS time of each frame.
+/// Writes the frames of the logged bus, at the GNSS time of each frame.
 pub fn write_log(file: &Path, trace: &Trace) -> Result<(), Error> {
     let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
     let out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);

@@ -14,10 +14,10 @@ use crate::measure::simulate::simulate;
 use crate::verdict::Verdict;
 use options::RunOptions;
 
-/// Runs the scenario of the options and writes all that they ask for.
+/// Runs the scenario and writes the output that the options ask for.
 ///
 /// # Errors
-/// A scenario that the units refuse, and places that cannot be written.
+/// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let scenario = &options.scenario;
     let bar = ProgressBar::new(1000);

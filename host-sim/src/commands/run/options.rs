@@ -8,24 +8,24 @@ use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
 use crate::places::can_be_file;
 
-/// A run and what becomes of its results.
+/// A run, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunOptions {
-    /// The scenario, with what the command line says instead of its file.
+    /// The scenario, with the values of the command line.
     pub scenario: Scenario,
-    /// The file that it came from; `None`: it is the paper's.
+    /// The scenario file; `None`: the paper's scenario.
     pub scenario_file: Option<PathBuf>,
-    /// What else the command line says of the scenario, as it would have to be typed again.
+    /// The other arguments about the scenario, as they would be typed again.
     pub arguments: Vec<String>,
     /// Where its results go.
     pub destination: Destination,
-    /// Where to write every tick.
+    /// File for the trace of every tick.
     pub trace: Option<PathBuf>,
-    /// Which bus to record.
+    /// The bus to record.
     pub candump: Option<Candump>,
 }
 
-/// A bus to be recorded.
+/// A bus to record.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Candump {
     /// The log.
@@ -35,10 +35,10 @@ pub struct Candump {
 }
 
 impl RunOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Options for a corridor, a scenario that cannot be used, and places that cannot be written.
+    /// Options for a corridor, an unusable scenario, and output that cannot be written.
     pub fn read(RunArguments { scenario: scenario_file, settings }: RunArguments) -> Result<Self, Error> {
         let foreign = [
             ("--seeds", settings.seeds.is_some()),
@@ -81,7 +81,7 @@ impl RunOptions {
     }
 }
 
-/// The options that change the scenario, but for the seed.
+/// The options that change the scenario, except the seed, as they would be typed again.
 fn typed(overrides: &Overrides) -> Vec<String> {
     let file = |option: &str, file: &Option<PathBuf>| file.as_ref().map(|file| format!("{option} {}", file.display()));
     let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));

@@ -13,7 +13,7 @@ use crate::sim::world::{Tick, Trace};
 /// The paper's own figure for the same silence, in metres.
 const PAPER_ERROR_M: f64 = 0.5;
 
-/// Everything that the page shows.
+/// The content of the page.
 pub fn report(options: &RunOptions, trace: &Trace, summary: &Summary, failures: &[String]) -> RunReport {
     let scenario = &options.scenario;
     let names: Vec<String> = (0..trace.vehicles.len()).map(|index| name(scenario, index)).collect();
@@ -149,7 +149,8 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
     ]
 }
 
-/// When the link to the measuring vehicle was silent for longer than two messages and a half are apart.
+/// The times in which the link to the measuring vehicle was silent for longer than two and a half intervals between
+/// messages.
 fn silences(scenario: &Scenario, trace: &Trace) -> Vec<Interval> {
     let Some(link) = trace.channel.link(measured_link(trace)) else { return Vec::new() };
     let longer_than_s = 2.5 / scenario.message_rate_hz;
@@ -179,7 +180,7 @@ fn modes(trace: &Trace, names: &[String]) -> Vec<ModeTrack> {
         .collect()
 }
 
-/// The bound of the measured vehicle as it stands on the bus, seen from the estimate.
+/// The bound of the measured vehicle on the bus, relative to the estimate.
 fn bound(trace: &Trace) -> Vec<BoundSample> {
     let (measured, by) = (&trace.vehicles[trace.measured.vehicle], &trace.vehicles[trace.measured.by]);
     let ticks = trace.times_s.iter().zip(measured.iter().zip(by));

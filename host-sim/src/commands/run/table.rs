@@ -12,7 +12,7 @@ pub fn text(scenario: &Scenario, summary: &Summary, failures: &[String]) -> Stri
         true => "position error of the ego as its follower estimates it",
         false => "position error of the ego's target as the ego estimates it",
     };
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "{name}, m");
     let _ = writeln!(text, "{:<26}{:>12}{:>16}", "", "holdover", "literal paper");
     let row = |text: &mut String, label: &str, of: fn(&Errors) -> Option<f64>| {

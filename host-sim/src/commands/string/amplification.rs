@@ -1,9 +1,9 @@
-//! How much of a disturbance a vehicle passes on: the speeds of a string enter, the largest ratio of a vehicle's speed
-//! amplitude to its predecessor's leaves.
+//! The amplification of a disturbance along a string: the speeds of a string enter; the largest ratio of a vehicle's
+//! speed amplitude to its predecessor's leaves.
 //!
-//! For a sine the amplitude is that at the driven frequency, over whole periods after settling; for a step it is the
-//! farthest that the speed is ever from what it was before. Where the predecessor's amplitude is below 0.02 m/s there is
-//! nothing left to measure.
+//! For a sine, the amplitude is that at the driven frequency, over whole periods after settling. For a step, it is the
+//! largest difference of the speed to that before the step. If the predecessor's amplitude is below 0.02 m/s, there is
+//! nothing to measure.
 
 use std::f64::consts::TAU;
 
@@ -11,17 +11,17 @@ use serde::Serialize;
 
 use super::disturbance::Disturbance;
 
-/// Below this amplitude a predecessor passes nothing on, in m/s.
+/// Least amplitude of a predecessor that is measured, in m/s.
 const LEAST_MPS: f64 = 0.02;
 
-/// Where the largest ratio is.
+/// The largest ratio, and where it is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Worst {
     /// The ratio.
     pub ratio: f64,
-    /// What the leader did.
+    /// The disturbance by the leader.
     pub disturbance: String,
-    /// The vehicle whose amplitude is larger; 0 leads.
+    /// The vehicle whose amplitude is larger; 0 is the leader.
     pub vehicle: usize,
 }
 
@@ -30,12 +30,12 @@ pub struct Worst {
 pub struct Speeds {
     /// Time between two ticks; the first is at 0.
     pub period_s: f64,
-    /// m/s.
+    /// Speeds in m/s.
     pub vehicles: Vec<Vec<f64>>,
 }
 
 impl Speeds {
-    /// Of each vehicle the amplitude.
+    /// The amplitude of each vehicle.
     #[must_use]
     pub fn amplitudes(&self, disturbance: Disturbance) -> Vec<f64> {
         let tick = |at_s: f64| (at_s / self.period_s).round() as usize;
@@ -50,7 +50,7 @@ impl Speeds {
         self.vehicles.iter().map(of).collect()
     }
 
-    /// The largest ratio of a vehicle to the one ahead; `None`: nothing was passed on that could be measured.
+    /// The largest ratio of a vehicle to the vehicle ahead; `None`: no amplitude was large enough to measure.
     #[must_use]
     pub fn worst(&self, disturbance: Disturbance) -> Option<Worst> {
         let amplitudes = self.amplitudes(disturbance);
@@ -65,13 +65,13 @@ impl Speeds {
     }
 }
 
-/// The farthest from the first.
+/// The largest difference to the first value.
 fn farthest(speeds: &[f64]) -> f64 {
     let first = speeds.first().copied().unwrap_or(0.0);
     speeds.iter().map(|speed| (speed - first).abs()).fold(0.0, f64::max)
 }
 
-/// The amplitude at a frequency in cycles per tick.
+/// The amplitude at a frequency, in cycles per tick.
 fn harmonic(speeds: &[f64], frequency: f64) -> f64 {
     let count = speeds.len().max(1) as f64;
     let mean = speeds.iter().sum::<f64>() / count;
@@ -88,7 +88,7 @@ fn harmonic(speeds: &[f64], frequency: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Speeds of that amplitude at the frequency, with something beside it whose whole periods are watched too.
+    /// Speeds with this amplitude at a frequency, plus another sine whose periods fit the measured time too.
     fn sine(amplitude: f64, frequency_hz: f64) -> Vec<f64> {
         let speed = |t: f64| 15.0 + amplitude * (TAU * frequency_hz * t + 0.7).sin() + 0.5 * (TAU * t / 30.0).sin();
         (0..12_000).map(|tick| speed(f64::from(tick) * 0.01)).collect()
@@ -100,7 +100,7 @@ mod tests {
         let speeds = Speeds { period_s: 0.01, vehicles };
         let worst = speeds.worst(Disturbance::Sine(0.2)).unwrap();
         assert!((worst.ratio - 1.1).abs() < 0.02, "{worst:?}");
-        // 0.5 behind 0.019 does not count.
+        // The ratio of 0.5 to 0.019 does not count.
         assert_eq!((worst.vehicle, worst.disturbance.as_str()), (2, "0.2 Hz"));
     }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The arguments of `string`.
 #[derive(Clone, Debug, Args)]
 pub struct StringArguments {
-    /// Time gaps of the ten followers, in seconds from 0.1 to 3.995; the shipped one if there are none
+    /// Time gaps of the ten followers, in seconds from 0.1 to 3.995; by default the shipped one
     #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub time_gaps: Vec<f64>,
 
@@ -20,7 +20,7 @@ pub struct StringArguments {
     )]
     pub delays: Vec<f64>,
 
-    /// Shares of messages lost, from 0 to 0.9
+    /// Fractions of messages lost, from 0 to 0.9
     #[arg(
         long,
         value_name = "SHARE,…",
@@ -30,7 +30,7 @@ pub struct StringArguments {
     )]
     pub losses: Vec<f64>,
 
-    /// Frequencies of the leader's sines, in Hz from 0.02 to 2; a step comes besides
+    /// Frequencies of the leader's sines, in Hz from 0.02 to 2; a step is run as well
     #[arg(
         long,
         value_name = "HZ,…",
@@ -40,15 +40,15 @@ pub struct StringArguments {
     )]
     pub frequencies: Vec<f64>,
 
-    /// The step alone: no sines
+    /// Run the step alone, without sines
     #[arg(long, conflicts_with = "frequencies")]
     pub step_only: bool,
 
-    /// Seed of what is lost
+    /// Seed of the losses
     #[arg(long, value_name = "N", default_value = "1")]
     pub seed: u64,
 
-    /// So many seeds of step and sines, from `--seed` on, instead of 40 and 1; the largest ratio of all counts
+    /// Number of seeds of step and sines, from `--seed` on, instead of 40 and 1; the largest ratio of all counts
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seeds: Option<u64>,
 

@@ -1,4 +1,4 @@
-//! What the leader does to the string: a step or a sine enters, its drive leaves, tick by tick.
+//! The disturbance by the leader: a step or a sine enters; the leader's drive leaves, tick by tick.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -7,29 +7,29 @@ use crate::input::recording::{Motion, MotionRow};
 
 /// Speed at which the string drives, in m/s.
 pub const CRUISE_MPS: f64 = 15.0;
-/// By when ten vehicles have settled, in seconds: each passes a change on within two, and the slowest of its own motions
-/// dies out in three.
+/// Time by which ten vehicles have settled, in seconds. Each vehicle passes a change on within two seconds, and the
+/// slowest of its own motions dies out in three.
 pub const SETTLED_S: f64 = 60.0;
 
-/// When a step comes; before, everybody has found its place.
+/// Time of the step. By then every vehicle has reached its place in the string.
 const STEP_AT_S: f64 = 30.0;
-/// How much it slows down, and how hard.
+/// Size of the step; the leader brakes at the same number in m/s².
 const STEP_MPS: f64 = 2.0;
 const STEP_MPS2: f64 = 2.0;
-/// How long a step is watched.
+/// Time for which a step is measured.
 const STEP_WATCHED_S: f64 = 60.0;
-/// A sine is measured over at least this long, in whole periods, so that chance averages out.
+/// Least time over which a sine is measured, in whole periods, so that chance averages out.
 const WATCHED_S: f64 = 60.0;
-/// A sine's amplitude is this, or what makes an acceleration of 1 m/s² if that is less.
+/// Amplitude of a sine, or that of an acceleration of 1 m/s² if that is less.
 const SINE_MPS: f64 = 2.0;
 const SINE_MPS2: f64 = 1.0;
 
-/// What the leader does.
+/// The disturbance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Disturbance {
-    /// It slows down by 2 m/s, at 2 m/s².
+    /// The leader slows down by 2 m/s, at 2 m/s².
     Step,
-    /// Its speed goes up and down at that frequency, in Hz.
+    /// The leader's speed oscillates at this frequency, in Hz.
     Sine(f64),
 }
 
@@ -43,7 +43,7 @@ impl fmt::Display for Disturbance {
 }
 
 impl Disturbance {
-    /// The driven frequency, if there is one.
+    /// The driven frequency of a sine.
     #[must_use]
     pub fn frequency_hz(self) -> Option<f64> {
         match self {
@@ -52,7 +52,7 @@ impl Disturbance {
         }
     }
 
-    /// From when on it is measured.
+    /// Time from which it is measured.
     #[must_use]
     pub fn measured_from_s(self) -> f64 {
         match self {
@@ -61,7 +61,7 @@ impl Disturbance {
         }
     }
 
-    /// How long a run lasts: to the end of what is measured.
+    /// Length of a run: to the end of the measurement.
     #[must_use]
     pub fn duration_s(self) -> f64 {
         match self {
@@ -70,7 +70,7 @@ impl Disturbance {
         }
     }
 
-    /// The leader's drive, in steps of a period of the units.
+    /// The leader's drive, in steps of the units' period.
     #[must_use]
     pub fn motion(self, period_s: f64) -> Motion {
         let rows = (self.duration_s() / period_s).ceil() as u32 + 1;

@@ -1,5 +1,5 @@
-//! `string`: how a string of ten vehicles damps what its leader does. Checked options enter; a table or JSON on stdout and
-//! a report leave; and the verdict.
+//! `string`: how a string of ten vehicles damps a disturbance by its leader. Checked options enter; a table or JSON on
+//! stdout, a report and the verdict leave.
 //!
 //! ```text
 //! disturbance -> string of units, and strings without holdover -> speeds -> amplification -> rows -> table, JSON, report
@@ -27,19 +27,20 @@ use rows::Row;
 struct Results<'a> {
     /// The largest ratio allowed.
     limit: f64,
-    /// The time gap that is shipped.
+    /// The shipped time gap.
     shipped_time_gap_s: f64,
-    /// The smallest of the time gaps at and above which it holds; none if it does not hold at the largest.
+    /// The smallest time gap from which on the limit holds at every time gap; `None` if it does not hold at the
+    /// largest.
     smallest_time_gap_s: Option<f64>,
     /// The first seed.
     seed: u64,
     rows: &'a [Row],
 }
 
-/// Runs everything and writes what the options ask for.
+/// Runs everything and writes the output that the options ask for.
 ///
 /// # Errors
-/// A configuration that the units refuse, and places that cannot be written.
+/// A configuration that the units refuse, and output that cannot be written.
 pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let bar = output::progress(rows::count(options));
     let rows = rows::run(options, || bar.inc(1))?;

@@ -8,35 +8,35 @@ use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::seeds;
 
-/// Seeds of a step unless said otherwise: at a step chance decides.
+/// Default number of seeds of a step, whose result depends on chance.
 const STEP_SEEDS: u64 = 40;
-/// Seeds of a sine unless said otherwise: over whole periods chance averages out.
+/// Default number of seeds of a sine; over whole periods chance averages out.
 const SINE_SEEDS: u64 = 1;
 
-/// What is to be measured and what becomes of it.
+/// The measurement, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StringOptions {
     /// Time gaps, in seconds; at least one.
     pub time_gaps_s: Vec<f64>,
     /// Delays of every message, in seconds; at least one.
     pub delays_s: Vec<f64>,
-    /// Shares lost; at least one.
+    /// Fractions of messages lost; at least one.
     pub losses: Vec<f64>,
-    /// What the leader does.
+    /// The disturbances by the leader.
     pub disturbances: Vec<Disturbance>,
-    /// The first seed of what is lost.
+    /// The first seed of the losses.
     pub seed: u64,
-    /// How many, if it is said: from 1 to [`seeds::MOST`].
+    /// Number of seeds, if it is given: from 1 to [`seeds::MOST`].
     pub seeds: Option<u64>,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl StringOptions {
-    /// Checks what the arguments say.
+    /// Checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, and a folder that cannot be written.
+    /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
         let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, json, out, no_report } =
             arguments;
@@ -52,15 +52,14 @@ impl StringOptions {
         Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, destination })
     }
 
-    /// How many seeds of that disturbance are run where such a share is lost. Nothing else is drawn, so without a loss one
-    /// of them is all.
+    /// Number of seeds of a disturbance at a loss. Only losses are random, so without a loss one seed is enough.
     #[must_use]
     pub fn seeds_of(&self, disturbance: Disturbance, loss: f64) -> u64 {
         let usual = if disturbance == Disturbance::Step { STEP_SEEDS } else { SINE_SEEDS };
         if loss > 0.0 { self.seeds.unwrap_or(usual) } else { 1 }
     }
 
-    /// The same command again.
+    /// The command that repeats this.
     #[must_use]
     pub fn command(&self) -> String {
         let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
@@ -79,7 +78,7 @@ impl StringOptions {
     }
 }
 
-/// The time gap that a unit keeps where nobody asks for another.
+/// The default time gap of a unit.
 #[must_use]
 pub fn shipped_time_gap_s() -> f64 {
     f64::from(parameters::TIME_GAP.to_millis()) / 1e3

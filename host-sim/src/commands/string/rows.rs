@@ -1,5 +1,5 @@
-//! The runs: options enter; for each time gap, delay and loss the largest ratio of all disturbances leaves, with holdover
-//! and without.
+//! The runs: options enter; for each time gap, delay and loss the largest ratio of all disturbances leaves, with
+//! holdover and without.
 
 use std::path::Path;
 
@@ -19,34 +19,34 @@ use crate::sim::world::{Tick, Trace};
 /// The largest ratio that is allowed.
 pub const LIMIT: f64 = 1.01;
 
-/// The figures of one time gap, delay and loss; `None`: nothing was passed on that could be measured.
+/// The figures of one time gap, delay and loss; `None`: no amplitude was large enough to measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
     /// Time gap of the followers.
     pub time_gap_s: f64,
     /// Delay of every message.
     pub delay_s: f64,
-    /// Share of messages lost.
+    /// Fraction of messages lost.
     pub loss: f64,
-    /// With holdover.
+    /// Largest ratio with holdover.
     pub holdover: Option<Worst>,
-    /// By the newest message as it stands.
+    /// Largest ratio with the newest message as it is.
     pub as_it_stands: Option<Worst>,
-    /// By the newest message and its age times its speed.
+    /// Largest ratio with the newest message, extrapolated by its age times its speed.
     pub age_times_speed: Option<Worst>,
-    /// Of each disturbance the largest ratio with holdover.
+    /// Largest ratio of each disturbance, with holdover.
     pub by_disturbance: Vec<Option<Worst>>,
     /// Runs with holdover, one for each disturbance and seed.
     pub runs: usize,
-    /// Those of them in which the ratio is above the limit.
+    /// Number of those runs with a ratio above the limit.
     pub runs_above: usize,
     /// Collisions with holdover.
     pub collisions: usize,
-    /// Followers whose units did not always drive by their law while it was measured, of all runs.
+    /// Followers whose units did not always drive by their law during the measurement, in all runs.
     pub not_following: usize,
 }
 
-/// A place of the table: time gap, delay and loss.
+/// The place of a row: time gap, delay and loss.
 type Place = (f64, f64, f64);
 
 /// The outcome of one run.
@@ -58,7 +58,7 @@ struct Outcome {
     not_following: usize,
 }
 
-/// What is run at each place, in the order of the rows: each disturbance as often as it has seeds.
+/// The runs of each place, in the order of the rows: each disturbance once per seed.
 fn places(options: &StringOptions) -> Vec<(Place, Vec<(Disturbance, u64)>)> {
     let mut places = Vec::new();
     for &time_gap_s in &options.time_gaps_s {
@@ -72,16 +72,16 @@ fn places(options: &StringOptions) -> Vec<(Place, Vec<(Disturbance, u64)>)> {
     places
 }
 
-/// How many runs there are.
+/// Number of runs.
 #[must_use]
 pub fn count(options: &StringOptions) -> u64 {
     places(options).iter().flat_map(|(_, disturbances)| disturbances).map(|(_, seeds)| seeds).sum()
 }
 
-/// Runs all of it on all cores; `done` is called after each run.
+/// Runs everything on all cores. `done` is called after each run.
 ///
 /// # Errors
-/// What a unit finds wrong with the configuration.
+/// An error that a unit finds in the configuration.
 pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
     let places = places(options);
     let mut jobs = Vec::new();
@@ -104,7 +104,7 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
     Ok(places.iter().map(of_place).collect())
 }
 
-/// The outcomes of each disturbance with all its seeds.
+/// The row of a place, from the outcomes of each disturbance with all its seeds.
 fn row((time_gap_s, delay_s, loss): Place, outcomes: &[Vec<Outcome>]) -> Row {
     let largest = |outcomes: &mut dyn Iterator<Item = &Outcome>, of: fn(&Outcome) -> &Option<Worst>| {
         outcomes.filter_map(|outcome| of(outcome).clone()).max_by(|a, b| a.ratio.total_cmp(&b.ratio))
@@ -145,17 +145,17 @@ fn outcome((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, seed: u
     })
 }
 
-/// How many followers' units did not always drive by their law from that time on.
+/// Number of followers whose units did not always drive by their law from this time on.
 fn not_following(trace: &Trace, from_s: f64) -> usize {
     let begins = trace.times_s.partition_point(|at_s| *at_s < from_s - 1e-9);
     let follows = |tick: &Tick| matches!(tick.mode, ModeCode::Cooperative | ModeCode::Holdover);
     trace.vehicles.iter().skip(1).filter(|ticks| !ticks.iter().skip(begins).all(follows)).count()
 }
 
-/// The string: everybody at the gap and the speed that are wanted.
+/// The scenario of the string: every vehicle starts at its time gap and speed.
 ///
 /// # Errors
-/// None that values within the options' limits make.
+/// None for values within the options' limits.
 fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
     let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
@@ -176,7 +176,7 @@ fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) 
     Ok(scenario)
 }
 
-/// The largest ratio with holdover, if it is above the limit.
+/// The failures: the largest ratio with holdover, if it is above the limit, and strings that did not drive.
 #[must_use]
 pub fn failures(rows: &[Row]) -> Vec<String> {
     let above = |row: &Row| {
@@ -189,7 +189,7 @@ pub fn failures(rows: &[Row]) -> Vec<String> {
     let crashed = |row: &Row| {
         (row.collisions > 0).then(|| format!("{} collisions at a delay of {} s", row.collisions, row.delay_s))
     };
-    // One that stands passes nothing on, so no ratio tells.
+    // A vehicle at standstill passes no disturbance on, so its ratio does not show the failure.
     let lost = |row: &Row| {
         (row.not_following > 0).then(|| {
             let Row { time_gap_s, delay_s, loss, not_following, .. } = row;
@@ -203,7 +203,7 @@ pub fn failures(rows: &[Row]) -> Vec<String> {
     [each(&above), each(&crashed), each(&lost)].concat()
 }
 
-/// The smallest time gap for which the limit holds there and at every larger one that was tried.
+/// The smallest time gap for which the limit holds there and at every larger one that was run.
 #[must_use]
 pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
     let holds = |gap: f64| {

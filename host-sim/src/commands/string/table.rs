@@ -11,7 +11,7 @@ use super::rows::{LIMIT, Row, smallest_time_gap_s};
 #[must_use]
 pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
     let mut text = String::from("largest ratio of a vehicle's speed amplitude to its predecessor's\n");
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(
         text,
         "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>6}{:>12}{:>14}{:>17}",
@@ -49,14 +49,14 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
     text
 }
 
-/// The verdict, and of how much it is.
+/// The verdict, and what it is based on.
 #[must_use]
 pub fn verdict(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
     let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
     format!("verdict: {verdict}; {}", runs(options, rows))
 }
 
-/// How many runs there were, and with how many seeds of what.
+/// The number of runs, and of seeds of each disturbance.
 #[must_use]
 pub fn runs(options: &StringOptions, rows: &[Row]) -> String {
     let most = |disturbance: Disturbance| {

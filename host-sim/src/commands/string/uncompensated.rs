@@ -1,5 +1,6 @@
-//! The same string without holdover: a leader's drive, a channel and the same law enter, speeds leave. Each vehicle drives
-//! by the newest message of the one ahead as it stands, or moved on by its age times its speed, as platoon simulators do.
+//! The same string without holdover: a leader's drive, a channel and the same law enter, speeds leave. Each vehicle
+//! drives by the newest message of the vehicle ahead as it is, or extrapolated by its age times its speed, as in
+//! platoon simulators.
 
 use holdover::model::Body;
 use holdover::units::Acceleration;
@@ -12,16 +13,16 @@ use crate::sim::plant::Plant;
 use crate::sim::quantities::speed;
 use crate::sim::world::{config, machine};
 
-/// What a vehicle makes of a message that is some time old.
+/// How a vehicle uses a message that has some age.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// It takes it as it stands.
+    /// The position in the message is used as it is.
     AsItStands,
-    /// It adds age times speed to the position.
+    /// Age times speed is added to the position.
     AgeTimesSpeed,
 }
 
-/// A message: when it was sent, position and speed then.
+/// A message: its time of sending, and the position and speed in it.
 #[derive(Clone, Copy)]
 struct Sample {
     at_s: f64,
@@ -37,7 +38,7 @@ struct Follower {
     coming: Vec<(f64, Sample)>,
 }
 
-/// Drives the string of a scenario whose leader has a motion. Messages go from each vehicle to the next one only.
+/// Drives the string of a scenario whose leader has a motion. Each vehicle hears only the vehicle ahead of it.
 #[must_use]
 pub fn run(scenario: &Scenario, seed: u64, reading: Reading) -> Speeds {
     let period_s = scenario.period_s;
@@ -87,7 +88,7 @@ impl Follower {
         self.coming.retain(|(arrives_s, _)| *arrives_s > at_s);
     }
 
-    /// Eq. 5, within the limits that the units have too.
+    /// Eq. 5, within the same limits as those of the units.
     fn drive(&mut self, scenario: &Scenario, index: usize, at_s: f64, reading: Reading) {
         let config = config(scenario, index);
         let number = |thousandths: i32| f64::from(thousandths) / 1e3;

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
 pub struct SweepArguments {
-    /// The scenario; the paper's if none is given
+    /// The scenario; by default the paper's
     #[arg(value_name = "SCENARIO.toml")]
     pub scenario: Option<PathBuf>,
 
@@ -20,7 +20,7 @@ pub struct SweepArguments {
     )]
     pub steps: Vec<f64>,
 
-    /// How many seeds, each a run for every step
+    /// Number of seeds, each with one run per step
     #[arg(long, value_name = "N", default_value = "100")]
     pub seeds: u64,
 

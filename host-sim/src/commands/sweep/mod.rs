@@ -1,5 +1,5 @@
-//! `sweep`: checked options enter; a table or JSON on stdout and a report of errors and cost over the prediction step
-//! leave; and the verdict.
+//! `sweep`: checked options enter; a table or JSON on stdout, a report of errors and cost over the prediction step, and
+//! the verdict leave.
 //!
 //! ```text
 //! scenario at each step -> rows (runs of all seeds, on all cores) -> timing (alone) -> table, JSON, report
@@ -28,10 +28,10 @@ struct Results<'a> {
     rows: &'a [Row],
 }
 
-/// Runs the scenario at all steps with all seeds and writes what the options ask for.
+/// Runs the scenario at all steps with all seeds, and writes the output that the options ask for.
 ///
 /// # Errors
-/// A scenario that the units refuse, and places that cannot be written.
+/// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
     let bar = progress(options);
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
@@ -55,7 +55,7 @@ pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
 
 fn progress(options: &SweepOptions) -> ProgressBar {
     let bar = ProgressBar::new(options.runs());
-    // The template is a constant; should it ever be wrong, the usual bar does.
+    // The template is a constant. If it were wrong, the default bar would be used.
     if let Ok(style) = ProgressStyle::with_template("{msg:>12} {wide_bar} {pos}/{len} runs, {eta} to go") {
         bar.set_style(style);
     }

@@ -13,23 +13,23 @@ use crate::seeds;
 pub struct SweepOptions {
     /// The scenario.
     pub base: Scenario,
-    /// The same at each step, in the order given; at least one.
+    /// The same scenario at each step, in the order given; at least one.
     pub scenarios: Vec<Scenario>,
-    /// The file that it came from; `None`: it is the paper's.
+    /// The scenario file; `None`: the paper's scenario.
     pub scenario_file: Option<PathBuf>,
     /// The first seed.
     pub seed: u64,
-    /// How many; at least 1.
+    /// Number of seeds; at least 1.
     pub seeds: u64,
     /// Where its results go.
     pub destination: Destination,
 }
 
 impl SweepOptions {
-    /// Reads what the arguments name and checks it.
+    /// Reads and checks the arguments.
     ///
     /// # Errors
-    /// Values that cannot be, a scenario that cannot be used, and a folder that cannot be written.
+    /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
         let SweepArguments { scenario: scenario_file, steps, seeds, seed, json, out, no_report } = arguments;
         let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
@@ -46,7 +46,7 @@ impl SweepOptions {
         self.seed + (self.seeds - 1)
     }
 
-    /// Runs of all steps and seeds.
+    /// Number of runs of all steps and seeds.
     #[must_use]
     pub fn runs(&self) -> u64 {
         self.scenarios.len() as u64 * self.seeds

@@ -6,7 +6,7 @@ use super::verdict;
 use crate::report::run::Verdict;
 use crate::report::sweep::{SweepReport, SweepRow};
 
-/// Everything that the page shows.
+/// The content of the page.
 pub fn report(options: &SweepOptions, rows: &[Row], failures: &[Failure]) -> SweepReport {
     let name = options.scenario_file.as_ref().and_then(|file| file.file_stem());
     let name = name.map_or("The paper’s scenario".into(), |stem| stem.to_string_lossy().into_owned());

@@ -15,13 +15,13 @@ use crate::parallel;
 pub struct Row {
     /// Prediction step, `δt`.
     pub step_s: f64,
-    /// Runs.
+    /// Number of runs.
     pub seeds: u64,
-    /// Ours.
+    /// Errors of the unit.
     pub ours: Errors,
-    /// The literal paper's, on the same messages.
+    /// Errors of the literal paper's method, on the same messages.
     pub paper: Errors,
-    /// Wall-clock figures; everything else is the same for the same seeds.
+    /// Wall-clock figures. All other figures are the same for the same seeds.
     pub timing: Timing,
 }
 
@@ -45,20 +45,20 @@ impl Errors {
 pub struct Failure {
     /// Its seed.
     pub seed: u64,
-    /// Its step, as it is spelled.
+    /// Its step, as text.
     pub step: String,
-    /// Why.
+    /// The causes.
     pub causes: Vec<String>,
 }
 
 /// All runs of one step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Runs {
-    /// Ours.
+    /// Errors of the unit.
     pub ours: Errors,
-    /// The literal paper's.
+    /// Errors of the literal paper's method.
     pub paper: Errors,
-    /// Those that failed, by seed.
+    /// Failed runs, by seed.
     pub failures: Vec<Failure>,
 }
 
@@ -68,10 +68,10 @@ struct Outcome {
     causes: Vec<String>,
 }
 
-/// Runs the scenario with every seed on all cores; `done` is called after each run.
+/// Runs the scenario with every seed on all cores. `done` is called after each run.
 ///
 /// # Errors
-/// What a unit finds wrong with the configuration that the scenario gives it.
+/// An error that a unit finds in the configuration from the scenario.
 pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -> Result<Runs, Error> {
     let one = |seed: u64| {
         let outcome = outcome(scenario, seed);

@@ -13,7 +13,7 @@ use crate::report::sweep::PUBLISHED;
 pub fn text(options: &SweepOptions, rows: &[Row], failures: &[Failure]) -> String {
     let (first, last) = (options.seed, options.last_seed());
     let mut text = String::new();
-    // Writing into a string cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(text, "position error of the ego as its follower estimates it, m; seeds {first} to {last}");
     let _ = writeln!(text, "{:<8}{:>22}{:>24}{:>22}", "", "holdover", "literal paper", "cost of a tick");
     let _ = writeln!(

@@ -1,8 +1,8 @@
-//! What a tick costs: a scenario and a seed enter, the wall time of its follower's `tick` leaves.
+//! The computing time of a tick: a scenario and a seed enter; the wall time of the follower's `tick` leaves.
 //!
-//! The traffic on the follower's bus is recorded first; then a unit with the same configuration receives it again, with
-//! nothing else going on in between, and only its `tick` is timed. Every pass does the same work tick by tick, and whatever
-//! disturbs a tick makes it longer, so of each tick the fastest of a few passes counts.
+//! The frames on the follower's bus are recorded first. Then a unit with the same configuration receives them again,
+//! with no other work in between, and only its `tick` is timed. Every pass does the same work tick by tick, and any
+//! disturbance makes a tick longer. So the fastest of a few passes counts for each tick.
 
 use std::hint::black_box;
 use std::time;
@@ -20,24 +20,24 @@ use crate::sim::vehicle::Unit;
 use crate::sim::world::{Measured, config};
 
 const PASSES: usize = 5;
-/// As much of a run is enough.
+/// Longest part of a run that is timed, in seconds.
 const LONGEST_S: f64 = 20.0;
-/// The unit's clock at time 0 of the run; what is recorded begins before.
+/// The unit's clock at time 0 of the run. The recorded frames begin before that time.
 const POWERED_BEFORE_US: u64 = 60_000_000;
 
-/// What a tick costs.
+/// The computing time of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Timing {
     /// Mean wall time of the follower's `tick` over the ticks of a run, each the fastest of five passes.
     pub ns_per_tick: f64,
-    /// Ticks in a second of doing nothing else.
+    /// Ticks per second, if the thread does nothing else.
     pub updates_per_s: f64,
 }
 
-/// Measures it, on this thread alone.
+/// Measures it on this thread.
 ///
 /// # Errors
-/// What a unit finds wrong with the configuration that the scenario gives it.
+/// An error that a unit finds in the configuration from the scenario.
 pub fn measure(scenario: &Scenario, seed: u64) -> Result<Timing, Error> {
     let scenario = Scenario { duration_s: scenario.duration_s.min(LONGEST_S), ..scenario.clone() };
     let by = Measured::of(&scenario).by;
@@ -48,7 +48,7 @@ pub fn measure(scenario: &Scenario, seed: u64) -> Result<Timing, Error> {
     of_log(&unit, &config, &trace.log).ok_or_else(|| Error::new("nothing was on the bus", "lengthen the run"))
 }
 
-/// The cost of a unit that receives this traffic; `None` without any.
+/// The computing time of a unit that receives these frames; `None` without frames.
 #[must_use]
 pub fn of_log(unit: &Unit, config: &Config, log: &[(f64, Frame)]) -> Option<Timing> {
     let mut fastest = pass(unit.clone(), config, log);
@@ -63,7 +63,7 @@ pub fn of_log(unit: &Unit, config: &Config, log: &[(f64, Frame)]) -> Option<Timi
     Some(Timing { ns_per_tick, updates_per_s: 1e9 / ns_per_tick })
 }
 
-/// The time of each tick of the run from time 0 on; the unit ticks from the first frame on, as it did then.
+/// The time of each tick of the run from time 0 on. The unit ticks from the first frame on, as it did in the run.
 fn pass(mut unit: Unit, config: &Config, log: &[(f64, Frame)]) -> Vec<time::Duration> {
     let clock = |at_s: f64| Instant::from_micros(POWERED_BEFORE_US.saturating_add_signed(micros(at_s)));
     let (Some((first_s, _)), Some((last_s, _))) = (log.first(), log.last()) else { return Vec::new() };
@@ -72,7 +72,7 @@ fn pass(mut unit: Unit, config: &Config, log: &[(f64, Frame)]) -> Vec<time::Dura
     let mut now = clock(*first_s);
     while now <= clock(*last_s) {
         while let Some((at_s, frame)) = frames.next_if(|(at_s, _)| clock(*at_s) <= now) {
-            let _ = unit.receive(clock(*at_s), frame); // a refusal is the unit's to count
+            let _ = unit.receive(clock(*at_s), frame); // the unit counts refusals
         }
         let start = time::Instant::now();
         black_box(unit.tick(black_box(now)));

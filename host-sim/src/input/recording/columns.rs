@@ -1,5 +1,4 @@
-//! The checks that every recorded table goes through: bytes and column names enter, numbers or errors with their
-//! line leave.
+//! The checks of every recorded table: bytes and column names enter; numbers leave, or errors with their line.
 
 use crate::error::{Error, quoted};
 use csv::{ReaderBuilder, StringRecord};
@@ -12,7 +11,7 @@ pub struct Column {
     pub name: &'static str,
     /// Its unit, for the remedy.
     pub unit: &'static str,
-    /// What a number in it may be.
+    /// The allowed range of a number in it.
     pub limits: RangeInclusive<f64>,
 }
 
@@ -31,7 +30,7 @@ pub struct Table<'a> {
 }
 
 struct Record {
-    /// Where it stands in the file, counted from 1 as an editor counts.
+    /// Its line in the file, counted from 1 as in an editor.
     line: u64,
     fields: StringRecord,
 }
@@ -43,7 +42,7 @@ pub struct Line<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// Splits a file into header and lines. `columns` is the header it should have, for the remedies.
+    /// Splits a file into header and lines. Errors show `columns`, the expected header.
     pub fn parse(file: &'a Path, bytes: &[u8], columns: &'static str) -> Result<Self, Error> {
         let text = text_of(bytes).ok_or_else(|| {
             Error::new("is not a text file", format!("give a CSV file with the columns {columns}")).in_file(file)
@@ -57,13 +56,13 @@ impl<'a> Table<'a> {
                     .in_file(file)
                     .at_line(line)
             })?;
-            // The reader's position of a record is where it began to look for it, before any blank lines.
+            // The reader gives as the position of a record where it began to look for it, before any blank lines.
             let looked_from = fields.position().map_or(0, |position| position.byte() as usize);
             let blank = text[looked_from..].iter().take_while(|byte| b"\r\n".contains(byte)).count();
             let starts = looked_from + blank;
             line += text[counted_to..starts].iter().filter(|&&byte| byte == b'\n').count() as u64;
             counted_to = starts;
-            // A line of blanks alone comes out as one empty field.
+            // A line of blanks comes out as one empty field.
             if fields.iter().ne([""]) {
                 records.push(Record { line, fields });
             }
@@ -78,7 +77,7 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// That no line has more fields than there are columns.
+    /// Checks that no line has more fields than there are columns.
     fn is_even(&self) -> Result<(), Error> {
         let columns = self.header.fields.len();
         let longer = |record: &&Record| record.fields.iter().skip(columns).any(|field| !field.is_empty());
@@ -93,7 +92,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The column, which the file must have once.
+    /// Finds a column that the file must have once.
     pub fn column(&self, column: &'static Column) -> Result<FoundColumn, Error> {
         if self.header.fields.iter().filter(|name| *name == column.name).count() > 1 {
             let cause = format!("the column {} stands there twice", quoted(column.name));
@@ -112,7 +111,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The column, if the file has it.
+    /// Finds a column that the file may have.
     pub fn optional_column(&self, column: &'static Column) -> Option<FoundColumn> {
         let index = self.header.fields.iter().position(|name| name == column.name)?;
         Some(FoundColumn { column, index })
@@ -123,7 +122,7 @@ impl<'a> Table<'a> {
         self.records.iter().map(|record| Line { file: self.file, record })
     }
 
-    /// That there are enough of them.
+    /// Checks that there are enough rows.
     pub fn has_rows(&self, rows: usize, least: usize) -> Result<(), Error> {
         if rows >= least {
             return Ok(());
@@ -140,7 +139,7 @@ impl<'a> Table<'a> {
 }
 
 impl Line<'_> {
-    /// The number in that column.
+    /// The number in a column.
     pub fn number(&self, found: &FoundColumn) -> Result<f64, Error> {
         self.number_or_empty(found)?.ok_or_else(|| {
             let remedy = format!("give a number of {}, or delete the line", found.column.unit);
@@ -148,7 +147,7 @@ impl Line<'_> {
         })
     }
 
-    /// The number in that column, or `None` where there is nothing.
+    /// The number in a column; `None` if the field is empty.
     pub fn number_or_empty(&self, found: &FoundColumn) -> Result<Option<f64>, Error> {
         let Column { name, unit, limits } = found.column;
         let Some(text) = self.record.fields.get(found.index) else {
@@ -169,7 +168,7 @@ impl Line<'_> {
         Err(self.error(format!("`{name}` is {}", quoted(text)), remedy))
     }
 
-    /// That time goes on from line to line.
+    /// Checks that time increases from line to line.
     pub fn follows(&self, previous_t_s: Option<f64>, t_s: f64) -> Result<(), Error> {
         match previous_t_s {
             Some(previous) if t_s == previous => {
@@ -179,7 +178,7 @@ impl Line<'_> {
         }
     }
 
-    /// That time does not run backwards from line to line.
+    /// Checks that time does not decrease from line to line.
     pub fn does_not_precede(&self, previous_t_s: Option<f64>, t_s: f64) -> Result<(), Error> {
         match previous_t_s {
             Some(previous) if t_s < previous => Err(self.error(
@@ -199,7 +198,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// The bytes without a byte order mark, if they are text at all.
+/// The bytes without a byte order mark; `None` if they are not text.
 fn text_of(bytes: &[u8]) -> Option<&[u8]> {
     let text = std::str::from_utf8(bytes).ok()?;
     if text.contains('\0') {

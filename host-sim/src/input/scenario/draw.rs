@@ -9,7 +9,7 @@ pub fn initial_states(scenario: &Scenario, seed: u64) -> Vec<InitialState> {
     let mut rear_m = None;
     for (index, vehicle) in (0..).zip(&scenario.vehicles) {
         let mut generator = stream(seed, Purpose::InitialState(index));
-        // Drawn also where the span is a single number, so that fixing one number leaves the others as they were.
+        // Drawn even if the span is a single number, so that fixing one number leaves the others unchanged.
         let (place, pace) = (unit(&mut generator), unit(&mut generator));
         let position_m = match (vehicle.start, rear_m) {
             (Start::Position(span), _) => span.at(place),
@@ -23,7 +23,7 @@ pub fn initial_states(scenario: &Scenario, seed: u64) -> Vec<InitialState> {
 }
 
 impl Span {
-    /// The number a share (0 to 1) of the way from the low end to the high end.
+    /// The number at a fraction (0 to 1) between the low and the high end.
     fn at(self, share: f64) -> f64 {
         self.low + (self.high - self.low) * share
     }

@@ -1,36 +1,36 @@
-//! The section `[envelope]`: keys enter, the limits of every unit's last gate leave. The defaults are a car's, and it is
-//! not engaged, as in the core.
+//! The section `[envelope]`: keys enter, the limits of every unit's envelope leave. The defaults are those of a car,
+//! and the envelope is not engaged, as in the core.
 
 use super::keys::{Number, Section};
 use crate::error::Error;
 use holdover::units::{Acceleration, Distance, Jerk, Speed};
 
-// A car's, as in the core. A vehicle publishes 8 m/s² as the hardest braking that it is capable of, and what others know
-// of it rests on that, so the gate cannot brake harder.
+// The defaults are those of a car, as in the core. A vehicle publishes 8 m/s² as its hardest braking, and other
+// vehicles base its bound on that. So the envelope cannot brake harder.
 const ACCELERATION: Number = Number { key: "acceleration_mps2", unit: "m/s²", limits: 0.1..=20.46, default: 3.0 };
 const BRAKING: Number = Number { key: "braking_mps2", unit: "m/s²", limits: 0.5..=8.0, default: 8.0 };
 const JERK: Number = Number { key: "jerk_mps3", unit: "m/s³", limits: 1.0..=51.15, default: 25.0 };
 const SPEED: Number = Number { key: "speed_mps", unit: "m/s", limits: 1.0..=65.534, default: 50.0 };
 const MARGIN: Number = Number { key: "margin_m", unit: "metres", limits: 0.0..=10.0, default: 0.5 };
 
-/// The last gate of every unit.
+/// The envelope of every unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
-    /// Whether it is engaged.
+    /// Whether the envelope is engaged.
     pub engaged: bool,
-    /// Largest acceleration ever commanded; 0.1 to 20.46 m/s².
+    /// Largest commanded acceleration; 0.1 to 20.46 m/s².
     pub acceleration_mps2: f64,
-    /// Hardest braking ever commanded, as a magnitude; 0.5 to 8 m/s².
+    /// Hardest commanded braking, as a magnitude; 0.5 to 8 m/s².
     pub braking_mps2: f64,
-    /// Fastest change ever commanded; 1 to 51.15 m/s³.
+    /// Fastest change of the command; 1 to 51.15 m/s³.
     pub jerk_mps3: f64,
     /// No acceleration at or beyond this speed; 1 to 65.534 m/s.
     pub speed_mps: f64,
-    /// What is left between the bumpers when both have come to rest; 0 to 10 m.
+    /// Distance that is left between the bumpers when both vehicles have stopped; 0 to 10 m.
     pub margin_m: f64,
 }
 
-/// The section; `engaged` on the command line goes before it.
+/// Reads the section. `engaged` on the command line overrides it.
 pub fn read(mut section: Section, engaged: bool) -> Result<Envelope, Error> {
     let envelope = Envelope {
         engaged: section.flag("engaged")?.is_some_and(|engaged| engaged.value) || engaged,
@@ -45,7 +45,7 @@ pub fn read(mut section: Section, engaged: bool) -> Result<Envelope, Error> {
 }
 
 impl Envelope {
-    /// As the units take it: to the nearest thousandth; `None` if it is not engaged.
+    /// The units' configuration, rounded to the nearest thousandth; `None` if the envelope is not engaged.
     #[must_use]
     pub fn limits(&self) -> Option<holdover::config::Envelope> {
         let milli = |value: f64| (value * 1e3).round() as i32;

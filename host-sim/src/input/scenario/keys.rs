@@ -1,4 +1,4 @@
-//! Typed access to a TOML document: keys enter, checked values with their line leave, and a key that nobody asked for
+//! Typed access to a TOML document: keys enter; checked values leave with their lines. A key that was never asked for
 //! is an unknown key.
 
 use super::Span;
@@ -14,14 +14,14 @@ pub struct Number {
     pub key: &'static str,
     /// Its unit, for the remedy.
     pub unit: &'static str,
-    /// What it may be.
+    /// Its allowed range.
     pub limits: RangeInclusive<f64>,
-    /// What it is unless given.
+    /// Its default.
     pub default: f64,
 }
 
 impl Number {
-    /// The number if it may be that, the error without its place otherwise.
+    /// The number if it is in its range; otherwise an error without a place in the file.
     pub fn check(&self, number: f64) -> Result<f64, Error> {
         if self.limits.contains(&number) {
             return Ok(number);
@@ -36,12 +36,12 @@ impl Number {
     }
 }
 
-/// A value and where it came from.
+/// A value and its line.
 #[derive(Clone, Copy, Debug)]
 pub struct Found<T> {
     /// The value.
     pub value: T,
-    /// The line that gives it; `None`: it is the default.
+    /// Its line; `None`: it is the default.
     pub line: Option<u64>,
 }
 
@@ -55,7 +55,7 @@ pub struct Document<'a> {
     text: &'a str,
 }
 
-/// A table of the document, and which of its keys are known.
+/// A table of the document, with the keys that have been asked for.
 pub struct Section<'a> {
     document: Document<'a>,
     header: String,
@@ -66,7 +66,7 @@ pub struct Section<'a> {
 
 impl<'a> Document<'a> {
     pub fn new(file: &'a Path, text: &'a str) -> Self {
-        // The editor's byte order mark, if there is one, is no part of the document.
+        // An editor's byte order mark is not part of the document.
         Self { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) }
     }
 
@@ -83,18 +83,18 @@ impl<'a> Document<'a> {
         Section { document: *self, header: String::new(), line: None, table: Some(table), known: Vec::new() }
     }
 
-    /// A section in which everything is the default.
+    /// A section in which every value is the default.
     pub fn nothing(&self) -> Section<'a> {
         Section { document: *self, header: String::new(), line: None, table: None, known: Vec::new() }
     }
 
-    /// An error at a value that was found, or in the file at large if it is a default.
+    /// An error at a value that was found, or in the whole file if the value is a default.
     pub fn error_at(&self, line: Option<u64>, cause: impl Into<String>, remedy: impl Into<String>) -> Error {
         let error = Error::new(cause, remedy);
         self.place(error, line)
     }
 
-    /// Puts an error in its place in this file.
+    /// Adds the place in this file to an error.
     pub fn place(&self, error: Error, line: Option<u64>) -> Error {
         let error = if self.file.as_os_str().is_empty() { error } else { error.in_file(self.file) };
         line.map_or(error.clone(), |line| error.at_line(line))
@@ -116,7 +116,7 @@ impl<'a> Section<'a> {
         self.line
     }
 
-    /// The number or its default.
+    /// The number, or its default.
     pub fn number(&mut self, number: &Number) -> Result<Found<f64>, Error> {
         match self.value(number.key) {
             None => Ok(Found { value: number.default, line: None }),
@@ -127,7 +127,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// The number or range `[low, high]`, if given.
+    /// The number or the range `[low, high]`, if given.
     pub fn span(&mut self, number: &Number) -> Result<Option<Found<Span>>, Error> {
         let Some(value) = self.value(number.key) else { return Ok(None) };
         let span = match value.get_ref().as_array() {
@@ -167,7 +167,7 @@ impl<'a> Section<'a> {
         Ok(Some(Found { value: self.pair(number, array.iter(), value)?, line: self.line_of(value) }))
     }
 
-    /// Words, if given; not none.
+    /// A text, if given; it must not be empty.
     pub fn text(&mut self, key: &'static str) -> Result<Option<Found<String>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let words = value.get_ref().as_str().filter(|words| !words.trim().is_empty());
@@ -175,7 +175,7 @@ impl<'a> Section<'a> {
         Ok(Some(Found { value: words.to_owned(), line: self.line_of(value) }))
     }
 
-    /// A whole number, not negative, if given.
+    /// A whole number, at least 0, if given.
     pub fn whole(&mut self, key: &'static str) -> Result<Option<Found<u64>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let wanted = format!("a whole number from 0 to {}", u64::MAX);
@@ -183,14 +183,14 @@ impl<'a> Section<'a> {
         Ok(Some(Found { value: number, line: self.line_of(value) }))
     }
 
-    /// Yes or no, if given.
+    /// A truth value, if given.
     pub fn flag(&mut self, key: &'static str) -> Result<Option<Found<bool>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let flag = value.get_ref().as_bool().ok_or_else(|| self.mismatch(key, value, "true or false"))?;
         Ok(Some(Found { value: flag, line: self.line_of(value) }))
     }
 
-    /// The path of a file, if given; a relative one starts from the folder of this document.
+    /// The path of a file, if given. A relative path starts from the folder of this document.
     pub fn path(&mut self, key: &'static str) -> Result<Option<Found<PathBuf>>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let named = value.get_ref().as_str().filter(|path| !path.is_empty());
@@ -199,7 +199,7 @@ impl<'a> Section<'a> {
         Ok(Some(Found { value: folder.join(path), line: self.line_of(value) }))
     }
 
-    /// The value as it stands there, for keys that can be of several types.
+    /// The value as it is in the document, for keys of several types.
     pub fn value(&mut self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
         self.known.push(key);
         self.table?.get(key)
@@ -230,7 +230,7 @@ impl<'a> Section<'a> {
         sections.collect::<Result<_, _>>().map(Some)
     }
 
-    /// That everything in this section has been asked for.
+    /// Checks that every key in this section has been asked for.
     pub fn finish(self) -> Result<(), Error> {
         let unknown = self.table.iter().flat_map(|table| table.keys());
         let unknown = unknown.filter(|key| !self.known.contains(&key.get_ref().as_ref()));
@@ -243,7 +243,7 @@ impl<'a> Section<'a> {
         Err(self.document.error(Some(key.span()), format!("unknown key {}{place}", quoted(key.get_ref())), remedy))
     }
 
-    /// The error of a value that is not what it should be.
+    /// The error of a value of the wrong type or range.
     pub fn mismatch(&self, key: &str, value: &Spanned<DeValue<'_>>, wanted: &str) -> Error {
         let found = match value.get_ref() {
             DeValue::String(text) => quoted(text),
@@ -290,13 +290,13 @@ impl<'a> Section<'a> {
     }
 }
 
-/// The value as a whole number, if it is one and not negative.
+/// The value as a whole number, if it is one and at least 0.
 pub fn whole(value: &Spanned<DeValue<'_>>) -> Option<u64> {
     let number = value.get_ref().as_integer()?;
     u64::from_str_radix(number.as_str(), number.radix()).ok()
 }
 
-/// The known key that is most like the unknown one, if it is like it at all.
+/// The known key that is most similar to an unknown one, if any is similar enough.
 fn nearest<'k>(unknown: &str, known: &[&'k str]) -> Option<&'k str> {
     let likeness = |key: &str| strsim::jaro_winkler(unknown, key);
     let best = known.iter().copied().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;

@@ -1,5 +1,5 @@
-//! The keys of a vehicle's body, `kind` and `[vehicle.plant]`: keys enter, the kind and how the real vehicle differs from
-//! what its unit believes leave.
+//! The keys of a vehicle's body, `kind` and `[vehicle.plant]`: keys enter; the kind leaves, and the differences of the
+//! real vehicle from what its unit assumes.
 
 use super::keys::{Number, Section};
 use crate::error::Error;
@@ -10,7 +10,7 @@ const GRADE: Number = Number { key: "grade", unit: "a share", limits: -0.15..=0.
 const WIND: Number = Number { key: "headwind_mps", unit: "m/s", limits: -30.0..=30.0, default: 0.0 };
 const THROTTLE: Number = Number { key: "throttle", unit: "a share", limits: 0.05..=1.0, default: 1.0 };
 
-/// The kind, a car unless given.
+/// Reads the kind; a car by default.
 pub fn kind(section: &mut Section) -> Result<Kind, Error> {
     const KEY: &str = "kind";
     let Some(value) = section.value(KEY) else { return Ok(Kind::default()) };
@@ -18,7 +18,7 @@ pub fn kind(section: &mut Section) -> Result<Kind, Error> {
     named.ok_or_else(|| section.mismatch(KEY, value, "\"car\", \"van\" or \"bus\""))
 }
 
-/// The section; no difference unless given.
+/// Reads the section; no difference by default.
 pub fn difference(mut section: Section) -> Result<Difference, Error> {
     let difference = Difference {
         mass_scale: section.number(&MASS)?.value,

@@ -1,4 +1,5 @@
-//! What a vehicle knows of itself and sees of the one ahead: keys of `[[vehicle]]` enter, accuracies leave.
+//! The sensors of a vehicle: keys of `[[vehicle]]` enter; the accuracies of its own motion and of its range sensor
+//! leave.
 
 use super::keys::{Document, Number, Section};
 use crate::error::Error;
@@ -9,21 +10,21 @@ const SPEED: Number = Number { key: "speed_accuracy_mps", unit: "m/s", limits: 0
 const RANGE: Number = Number { key: "range_accuracy_m", unit: "metres", limits: 0.0..=1.55, default: 0.25 };
 const RANGE_SPEED: Number = Number { key: "range_speed_accuracy_mps", unit: "m/s", limits: 0.0..=1.5, default: 0.1 };
 
-/// A recorded drive is only as good as what recorded it: positions along a path jitter by decimetres, and its speed need
-/// not be their slope.
+/// Accuracy of a recorded drive, which is limited by the recording: positions along a path jitter by decimetres, and
+/// the recorded speed need not be their slope.
 const RECORDED: Accuracy = Accuracy { position_m: 0.5, speed_mps: 0.3 };
 
-/// How well a vehicle knows its own motion, as it publishes it. What it publishes is the truth, to the message's
+/// Accuracy of a vehicle's own motion, as it publishes it. The published motion is the true one, to the message's
 /// resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Of its position; 0 to 6.3 m.
+    /// Accuracy of the position; 0 to 6.3 m.
     pub position_m: f64,
-    /// Of its speed; 0 to 1.24 m/s.
+    /// Accuracy of the speed; 0 to 1.24 m/s.
     pub speed_mps: f64,
 }
 
-/// A sensor of the vehicle ahead on the same lane. Its errors are uniform within its accuracies.
+/// A range sensor for the vehicle ahead on the same lane. Its errors are uniform within its accuracies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeSensor {
     /// Largest error of the distance; 0 to 1.55 m.

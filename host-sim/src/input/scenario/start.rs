@@ -1,22 +1,22 @@
-//! Where vehicles can start, before anything is drawn: spans of positions enter, those that cannot be are refused.
+//! Possible starts of the vehicles, before anything is drawn: spans of positions enter; impossible spans are refused.
 
 use super::{Span, Start, Vehicle};
 
 /// Distances in the unit saturate at 2048 m.
 const LONGEST_STRING_M: f64 = 2000.0;
 
-/// What is wrong with the start of a vehicle.
+/// An impossible start of a vehicle.
 pub struct Misplaced {
     /// Its index.
     pub vehicle: usize,
-    /// What is wrong.
+    /// The cause.
     pub cause: String,
-    /// How to put it right.
+    /// The remedy.
     pub remedy: String,
 }
 
-/// The leader's position when the file gives none: as far along the lane as the string can be long, so that the last
-/// vehicle starts at 0 or beyond whatever is drawn.
+/// The leader's position if the file gives none: as far along the lane as the string can be long. So the last vehicle
+/// starts at 0 or beyond, whatever is drawn.
 pub fn leader_position(vehicles: &[Vehicle]) -> f64 {
     let ahead = vehicles.iter().map(|vehicle| vehicle.length_m);
     let gaps = vehicles.iter().skip(1).map(|vehicle| match vehicle.start {
@@ -26,7 +26,7 @@ pub fn leader_position(vehicles: &[Vehicle]) -> f64 {
     ahead.zip(gaps).map(|(length_m, gap_m)| length_m + gap_m).sum()
 }
 
-/// That whatever is drawn, nobody starts inside the vehicle ahead, and the last one within reach of the first.
+/// Checks that no vehicle can start inside the vehicle ahead, and that the last vehicle is within reach of the first.
 pub fn check(vehicles: &[Vehicle]) -> Result<(), Misplaced> {
     let leader = vehicles.first().map(|leader| leader.start);
     let mut ahead: Option<Span> = None; // rear bumper of the vehicle ahead

@@ -1,4 +1,5 @@
-//! From the keys of a scenario file to a checked [`Scenario`]: text and command line enter, one of the two leaves.
+//! From the keys of a scenario file to a checked [`Scenario`]: text and command line enter; a scenario or an error
+//! leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
 use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, envelope, plant, sensors, start};
@@ -9,7 +10,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use toml::de::DeValue;
 
-// The limits of what a vehicle publishes are those of its messages. `scenarios/paper.toml` gives the reasons.
+// The limits of published values are those of the messages. `scenarios/paper.toml` gives the reasons.
 const PROGRAM: Number = Number { key: "program", unit: "seconds and m/s", limits: 0.0..=86_400.0, default: 0.0 };
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 2.0..=86_400.0, default: 20.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
@@ -35,14 +36,14 @@ const PAPER_VEHICLES: usize = 5;
 const PAPER_EGO: usize = 2;
 const PAPER_GAP: Span = Span { low: 12.0, high: 16.0 };
 const PAPER_OUTAGES: [Window; 2] = [Window { from_s: 4.0, to_s: 6.0 }, Window { from_s: 6.0, to_s: 8.0 }];
-/// Start speeds lie this far to either side of 10 m/s, or of the speed at which a recorded leader starts.
+/// Start speeds are within this of 10 m/s, or of the speed at which a recorded leader starts.
 const SPEED_SPREAD_MPS: f64 = 1.0;
 
 pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenario, Error> {
     let document = Document::new(file, text);
     let table = document.parse()?;
     let mut top = document.top(&table);
-    let _ = (top.value("kind"), top.text("about")?); // the kind has been asked for already
+    let _ = (top.value("kind"), top.text("about")?); // the kind has been read already
 
     let seed = top.whole("seed")?.map_or(1, |seed| seed.value);
     let duration = top.number(&DURATION)?;
@@ -80,7 +81,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     })
 }
 
-/// A prediction step.
+/// Checks a prediction step.
 pub fn step(step_s: f64) -> Result<f64, Error> {
     STEP.check(step_s)
 }
@@ -131,7 +132,8 @@ fn program(document: &Document, section: &mut Section) -> Result<Vec<(f64, f64)>
     Ok(program)
 }
 
-/// The file of a recording: what the command line names, or else what the scenario names and what can be read.
+/// The file of a recording: the one that the command line names, or else the one that the scenario names, if it can be
+/// read.
 fn recording(
     document: &Document,
     key: &str,
@@ -185,14 +187,14 @@ fn vehicles(document: &Document, top: &mut Section, motion: Option<&Motion>) -> 
     Ok(vehicles)
 }
 
-/// What a vehicle drives by.
+/// The motion of a vehicle.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Drives {
-    /// It leads, on a free road.
+    /// It leads on a free road.
     Freely,
-    /// It leads, on a recording.
+    /// It leads on a recording.
     Recording,
-    /// It follows another one.
+    /// It follows another vehicle.
     Behind,
 }
 

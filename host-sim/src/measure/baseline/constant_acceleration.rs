@@ -1,4 +1,4 @@
-//! The newest sample's acceleration is held until the speed is 0; there the vehicle stays.
+//! Constant acceleration: the newest sample's acceleration is held until the speed is 0. Then the vehicle stays.
 
 use super::{Baseline, Estimate, Newest};
 use crate::measure::heard::Heard;
@@ -10,7 +10,7 @@ pub struct ConstantAcceleration {
 }
 
 impl ConstantAcceleration {
-    /// For that vehicle.
+    /// The method for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { newest: Newest::of(target) }
@@ -18,8 +18,7 @@ impl ConstantAcceleration {
 }
 
 /// The motion after `time_s` at a constant acceleration: `r + v t + a t²/2` and `v + a t` until the vehicle stops, at
-/// `t = -v/a`. A vehicle that stands (`v <= 0`) and is not accelerated stays; one that stands and is accelerated
-/// starts from 0.
+/// `t = -v/a`. A vehicle at standstill (`v <= 0`) stays if it is not accelerated, and starts from 0 if it is.
 pub(super) fn after(position_m: f64, speed_mps: f64, acceleration_mps2: f64, time_s: f64) -> Estimate {
     let speed_mps = speed_mps.max(0.0);
     let moving_s = if acceleration_mps2 < 0.0 { time_s.min(-speed_mps / acceleration_mps2) } else { time_s };

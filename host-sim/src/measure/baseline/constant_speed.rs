@@ -1,4 +1,4 @@
-//! The newest sample's speed is held: `r + v t`.
+//! Constant speed: the newest sample's speed is held, `r + v t`.
 
 use super::{Baseline, Estimate, Newest};
 use crate::measure::heard::Heard;
@@ -10,7 +10,7 @@ pub struct ConstantSpeed {
 }
 
 impl ConstantSpeed {
-    /// For that vehicle.
+    /// The method for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { newest: Newest::of(target) }

@@ -1,4 +1,5 @@
-//! The newest sample's position is held and the speed is 0: what a receiver does that treats silence as standstill.
+//! Constant position: the newest sample's position is held and the speed is 0, as for a receiver that treats silence as
+//! standstill.
 
 use super::{Baseline, Estimate, Newest};
 use crate::measure::heard::Heard;
@@ -10,7 +11,7 @@ pub struct Freeze {
 }
 
 impl Freeze {
-    /// For that vehicle.
+    /// The method for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { newest: Newest::of(target) }

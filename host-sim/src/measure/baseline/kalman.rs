@@ -1,5 +1,5 @@
-//! A constant-acceleration Kalman filter: position and speed of each message are its measurements, its state is
-//! position, speed and acceleration, and the newest estimate is taken to now at constant acceleration.
+//! A constant-acceleration Kalman filter. Its measurements are the position and the speed of each message; its state is
+//! position, speed and acceleration. The newest estimate is predicted to now at constant acceleration.
 //!
 //! Model: jerk is white noise of spectral density `q`, so over an interval `h`
 //!
@@ -9,16 +9,16 @@
 //!     | 0  0  1    |          | h³/6   h²/2  h    |        | 0 1 0 |        | 0     σ_v² |
 //! ```
 //!
-//! `Q` of two intervals in a row is that of the two together, so irregular stamps and lost messages need no case of their
-//! own. `R` is diagonal, so the two measurements are taken in one after the other, without a matrix inverse.
+//! `Q` of two successive intervals is that of the two together, so irregular stamps and lost messages need no special
+//! case. `R` is diagonal, so the two measurements are used one after the other, without a matrix inverse.
 //!
-//! Noise: `q` = 1 m²/s⁵, `σ_r` = 0.3 m (satellite positioning with corrections), `σ_v` = 0.1 m/s (wheel speed). Chosen
-//! on 5.5 minutes of recorded drives at 10 Hz messages, out of 48 combinations of 0.03 to 10 m²/s⁵, 0.05 and 0.3 m,
-//! 0.02 to 0.2 m/s: none of them has a position error (rms) more than 1 % smaller after a silence of 1 s or of 2 s, and
-//! a factor of ten in `q` or of two in `σ_v` makes it up to 8 % larger.
+//! Noise: `q` = 1 m²/s⁵, `σ_r` = 0.3 m (satellite positioning with corrections), `σ_v` = 0.1 m/s (wheel speed). These
+//! values were chosen on 5.5 minutes of recorded drives with messages at 10 Hz, out of 48 combinations of 0.03 to 10
+//! m²/s⁵, 0.05 and 0.3 m, 0.02 to 0.2 m/s. No other combination has a position error (rms) more than 1 % smaller after
+//! a silence of 1 s or of 2 s. A factor of ten in `q` or of two in `σ_v` makes that error up to 8 % larger.
 //!
-//! The filter is linear and knows no standstill; its read-out does: as with constant acceleration, where the predicted
-//! speed comes to 0, the vehicle stops and stays. Without that rule every braking vehicle would be predicted to reverse.
+//! The filter is linear and has no standstill. Its output has: as with constant acceleration, when the predicted speed
+//! reaches 0, the vehicle stops and stays. Without this rule every braking vehicle would be predicted to reverse.
 
 use super::constant_acceleration::after;
 use super::{Baseline, Estimate, Newest};
@@ -30,7 +30,7 @@ pub const JERK_DENSITY: f64 = 1.0;
 pub const POSITION_NOISE_M: f64 = 0.3;
 /// Standard deviation of a measured speed, m/s.
 pub const SPEED_NOISE_MPS: f64 = 0.1;
-/// Standard deviation of the acceleration before anything was measured of it, m/s².
+/// Standard deviation of the acceleration before the first measurement, m/s².
 pub const FIRST_ACCELERATION_MPS2: f64 = 2.0;
 
 /// Filters position and speed.
@@ -41,7 +41,7 @@ pub struct Kalman {
 }
 
 impl Kalman {
-    /// For that vehicle.
+    /// The filter for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { newest: Newest::of(target), filter: None }
@@ -116,7 +116,7 @@ impl Filter {
         }
     }
 
-    /// Takes in one measured component: `K = P hᵀ / (h P hᵀ + R)`, `x += K (z - h x)`, `P -= K h P`.
+    /// Applies one measured component: `K = P hᵀ / (h P hᵀ + R)`, `x += K (z - h x)`, `P -= K h P`.
     fn correct(&mut self, component: usize, measured: f64, variance: f64) {
         let row = self.covariance[component];
         let innovation = measured - self.state[component];

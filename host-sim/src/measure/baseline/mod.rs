@@ -1,5 +1,5 @@
-//! What others would do with the same decoded messages, in float64: messages enter, estimates of one vehicle's motion
-//! leave. Independent of the core: nothing here calls its estimator.
+//! The other methods, on the same decoded messages, in float64: messages enter, estimates of one vehicle's motion
+//! leave. They are independent of the core: none of them calls its estimator.
 //!
 //! | name | between messages |
 //! |---|---|
@@ -10,8 +10,8 @@
 //! | [`kalman`] | a Kalman filter on position and speed, its acceleration held until the vehicle stops |
 //! | [`paper`] | the literal paper: its Algorithms 1 to 4 on the chain of vehicles |
 //!
-//! Rules for all of them: of one vehicle's messages only one with a newer stamp than all before counts, so what comes
-//! out of order or twice changes nothing. A sample is never taken backwards: before its stamp it stands as it is.
+//! Rules for all methods: a message of a vehicle counts only if its stamp is newer than all before. So messages out of
+//! order and duplicates change nothing. A sample is never extrapolated backwards: before its stamp it holds as it is.
 
 pub mod constant_acceleration;
 pub mod constant_speed;
@@ -22,7 +22,7 @@ pub mod singer;
 
 use crate::measure::heard::Heard;
 
-/// Where a baseline believes the target is.
+/// An estimate of the target's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Front bumper along the lane.
@@ -31,19 +31,19 @@ pub struct Estimate {
     pub speed_mps: f64,
 }
 
-/// A way to estimate one vehicle, the target, from what was heard of it and of the others.
+/// A method that estimates one vehicle, the target, from the messages of all vehicles.
 pub trait Baseline: Send {
-    /// Its name, as it stands in results.
+    /// Its name in the results.
     fn name(&self) -> &'static str;
 
-    /// Takes a message in, in the order of arrival; messages of all vehicles are passed.
+    /// Takes in a message, in the order of arrival. Messages of all vehicles are passed.
     fn hear(&mut self, heard: &Heard);
 
-    /// The target at `now_s`, which never runs backwards and is not before the last arrival; `None` before the target
-    /// was first heard.
+    /// The target's motion at `now_s`. This time never decreases and is not before the last arrival. `None` before the
+    /// first message of the target.
     fn estimate(&mut self, now_s: f64) -> Option<Estimate>;
 
-    /// The same baseline with all that it has heard, to go on from here twice.
+    /// A copy with all messages so far, so that two runs can continue from here.
     fn duplicate(&self) -> Box<dyn Baseline>;
 }
 
@@ -53,7 +53,7 @@ impl Clone for Box<dyn Baseline> {
     }
 }
 
-/// All baselines for that target, in the order of the table above; `step_s` is the paper's prediction step `δt`.
+/// All methods for one target, in the order of the table above; `step_s` is the paper's prediction step `δt`.
 #[must_use]
 pub fn all(target: usize, step_s: f64) -> Vec<Box<dyn Baseline>> {
     vec![
@@ -78,7 +78,7 @@ impl Newest {
         Self { vehicle, sample: None }
     }
 
-    /// Keeps the sample if it is this vehicle's and newer than the one kept; tells whether it was.
+    /// Keeps the sample if it is of this vehicle and newer than the one kept. Returns whether it was.
     pub(crate) fn keep(&mut self, heard: &Heard) -> bool {
         let news = heard.vehicle == self.vehicle && self.sample.is_none_or(|kept| heard.stamp_s > kept.stamp_s);
         if news {
@@ -87,7 +87,7 @@ impl Newest {
         news
     }
 
-    /// The sample with its age at `now_s`, which is not below 0.
+    /// The sample, with its age at `now_s`, at least 0.
     pub(crate) fn at(&self, now_s: f64) -> Option<(Heard, f64)> {
         self.sample.map(|sample| (sample, (now_s - sample.stamp_s).max(0.0)))
     }

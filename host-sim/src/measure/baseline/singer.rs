@@ -1,5 +1,5 @@
 //! Singer's manoeuvre model: the newest sample's acceleration fades as `a·e^(-t/T)` with `T` = 1.5 s, integrated
-//! exactly, until the speed is 0; there the vehicle stays.
+//! exactly, until the speed is 0. Then the vehicle stays.
 
 use super::{Baseline, Estimate, Newest};
 use crate::measure::heard::Heard;
@@ -14,7 +14,7 @@ pub struct Singer {
 }
 
 impl Singer {
-    /// For that vehicle.
+    /// The method for the vehicle `target`.
     #[must_use]
     pub fn new(target: usize) -> Self {
         Self { newest: Newest::of(target) }
@@ -22,7 +22,7 @@ impl Singer {
 }
 
 /// The motion after `time_s`: with `s(t) = 1 - e^(-t/T)`, speed `v + a T s(t)` and position `r + v t + a T (t - T s(t))`.
-/// It stops where `s(t) = -v/(a T)`, if ever, which is at `t = -T ln(1 + v/(a T))`.
+/// The vehicle stops where `s(t) = -v/(a T)`, if ever, which is at `t = -T ln(1 + v/(a T))`.
 fn after(position_m: f64, speed_mps: f64, acceleration_mps2: f64, time_s: f64) -> Estimate {
     let speed_mps = speed_mps.max(0.0);
     let gain_mps = acceleration_mps2 * FADING_S;

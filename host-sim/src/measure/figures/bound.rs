@@ -1,4 +1,5 @@
-//! What was certain of the targets: a trace enters, how often it was not so and how much it said leave.
+//! The bounds of the targets: a trace enters; how often a target was outside its bound, and how wide the bounds were,
+//! leave.
 
 use holdover::model::bound::AccelerationRange;
 use holdover::parameters::RECOVERY_SAMPLES;
@@ -8,19 +9,19 @@ use crate::input::scenario::Scenario;
 use crate::measure::metrics::{SETTLED_FROM_S, percentile_abs};
 use crate::sim::world::{Bounds, Tick, Trace};
 
-/// What was certain of the targets.
+/// The figures of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BoundFigures {
-    /// Ticks of all units at which the target was outside its bound, in position or in speed. There must not be one.
+    /// Ticks of all units at which the target was outside its bound, in position or in speed. There must be none.
     pub violations: usize,
     /// Median over time of the width of the measured vehicle's bound, from the lowest to the highest position.
     pub median_width_m: Option<f64>,
-    /// Ticks at which a recorded leader was outside its bound because the recording has just changed its speed as no road
-    /// vehicle can, and a bound is of vehicles only. They are no violations.
+    /// Ticks at which a recorded leader was outside its bound after the recording changed its speed more than any road
+    /// vehicle can. A bound holds for vehicles only, so these ticks are not violations.
     pub beyond_limits: usize,
 }
 
-/// What is certain of the measured vehicle, over time, from when errors count on.
+/// The bound of the measured vehicle over time, from the time on from which errors count.
 pub fn bounds(trace: &Trace) -> impl Iterator<Item = (f64, Option<Bounds>)> + '_ {
     let seen = &trace.vehicles[trace.measured.by];
     let bound = |tick: &Tick| tick.target.and_then(|target| target.bound);
@@ -44,7 +45,7 @@ impl BoundFigures {
     }
 }
 
-/// The ticks at which a vehicle was outside the bound that its follower's unit told.
+/// The ticks at which a vehicle was outside the bound that its follower's unit sent.
 fn outside(trace: &Trace, target: usize) -> Vec<usize> {
     let ticks = trace.vehicles[target].iter().zip(&trace.vehicles[target + 1]).enumerate();
     let is_outside = |(truth, seen): (&Tick, &Tick)| {
@@ -54,8 +55,8 @@ fn outside(trace: &Trace, target: usize) -> Vec<usize> {
     ticks.filter(|(_, pair)| is_outside(*pair)).map(|(tick, _)| tick).collect()
 }
 
-/// How many of these ticks follow on a change of the recorded leader's speed that no road vehicle is capable of: so soon
-/// that the unit cannot have heard enough to believe the leader anew.
+/// The number of these ticks that follow a change of the recorded leader's speed that no road vehicle is capable of, so
+/// soon that the unit cannot yet have received enough samples to accept the leader's motion again.
 fn impossible(scenario: &Scenario, trace: &Trace, outside: &[usize]) -> usize {
     if scenario.leader.motion.is_none() {
         return 0;

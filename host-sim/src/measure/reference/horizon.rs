@@ -2,26 +2,26 @@
 
 use super::{Ahead, Parameters, PositionRule, State, actuated, demand_follow, demand_lead, faded, limited};
 
-/// What a vehicle's motion depends on.
+/// The role of a vehicle.
 #[derive(Clone, Copy, Debug)]
 pub enum Role<'a> {
-    /// Nobody is ahead: Algorithm 2.
+    /// The vehicle has no predecessor: Algorithm 2.
     Leader,
-    /// A horizon on the same time grid is ahead, by a vehicle of that length: Algorithm 4.
+    /// The vehicle follows a predecessor whose horizon is on the same time grid: Algorithm 4.
     Follower {
-        /// That horizon, its states as [`horizon`] returns them.
+        /// The horizon of the predecessor: its states as [`horizon`] returns them.
         ahead: &'a [State],
         /// `l_{n-1}`.
         length_m: f64,
     },
-    /// It published no law: its acceleration fades.
+    /// The vehicle published no driving parameters: its acceleration fades.
     Silent,
 }
 
 /// The states at `t, t+1, …, t+steps`; the first is the initial one.
 ///
 /// # Panics
-/// If the horizon ahead is shorter.
+/// If the horizon of the predecessor is shorter.
 #[must_use]
 pub fn horizon(
     initial: State,
@@ -52,7 +52,7 @@ pub fn horizon(
     states
 }
 
-/// The horizons of a whole string, leader first, each follower on the horizon of the vehicle before it.
+/// The horizons of a whole string, leader first. Each follower uses the horizon of the vehicle ahead.
 #[must_use]
 pub fn chain(vehicles: &[(State, Parameters)], step_s: f64, steps: usize, rule: PositionRule) -> Vec<Vec<State>> {
     let mut horizons: Vec<Vec<State>> = Vec::with_capacity(vehicles.len());

@@ -1,10 +1,10 @@
-//! The discrete equations of the core in float64, the reference that the fixed-point core is held against: a state and
-//! the parameters of a law enter, the state one step later leaves. [`horizon`] strings steps to horizons and chains.
+//! The discrete equations of the core in float64, as the reference for the fixed-point core: a state and the parameters
+//! of a law enter; the state one step later leaves. [`horizon`] strings steps to horizons and chains.
 //!
-//! Written from the equations, not from the core. One step of length `h`, from `t+k-1` to `t+k`:
+//! It is written from the equations, not from the core. One step of length `h`, from `t+k-1` to `t+k`:
 //!
-//! 1. the demand `u` of the law: [`demand_lead`] (Algorithm 2), [`demand_follow`] (Algorithm 4), or 0 for a vehicle that
-//!    published no law;
+//! 1. the demand `u` of the law: [`demand_lead`] (Algorithm 2), [`demand_follow`] (Algorithm 4), or 0 for a vehicle
+//!    that published no driving parameters;
 //! 2. [`limited`]: the controller's limits on acceleration and jerk;
 //! 3. [`actuated`]: the actuator lag solved exactly, the speed not below 0, the position (Algorithm 3).
 
@@ -16,7 +16,7 @@ use crate::measure::heard::{Heard, HeardParameters};
 pub const LEADER_ACCELERATION_MPS2: f64 = 0.73;
 /// `σ` of Algorithm 2.
 pub const FREE_EXPONENT: i32 = 4;
-/// Below this `v_∞`, in m/s, a leader stops: Algorithm 2 divides by it.
+/// Below this `v_∞`, in m/s, a leader stops, because Algorithm 2 divides by `v_∞`.
 pub const STOPPING_TARGET_SPEED_MPS: f64 = 0.1;
 /// Time constant with which the acceleration of a vehicle without a law fades.
 pub const FADING_S: f64 = 2.0;
@@ -48,13 +48,13 @@ pub struct Ahead {
 /// The law that a vehicle drives by; limits are magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
-    /// Bumper to bumper, `l`.
+    /// Length, bumper to bumper, `l`.
     pub length_m: f64,
-    /// Distance kept at standstill, `s_0`.
+    /// Standstill distance, `s_0`.
     pub standstill_m: f64,
-    /// Speed wanted on a free road, `v_∞`.
+    /// Target speed on a free road, `v_∞`.
     pub target_speed_mps: f64,
-    /// Speed with which it catches up, `v_c`; infinite: as fast as the law has it.
+    /// Largest speed while catching up, `v_c`; infinite: limited by the law only.
     pub catch_up_mps: f64,
     /// Desired time gap, `t_g`.
     pub time_gap_s: f64,
@@ -62,7 +62,7 @@ pub struct Parameters {
     pub gain: f64,
     /// Damping `γ`.
     pub damping_s: f64,
-    /// Time constant of the actuators, `T`; 0: none.
+    /// Time constant of the actuators, `T`; 0: no lag.
     pub lag_s: f64,
     /// Largest acceleration demanded.
     pub acceleration_mps2: f64,
@@ -75,7 +75,7 @@ pub struct Parameters {
 /// How a step moves the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PositionRule {
-    /// `r + (v(t+k-1) + v(t+k)) h/2`: our reading of Algorithm 3.
+    /// `r + (v(t+k-1) + v(t+k)) h/2`: this project's reading of Algorithm 3.
     Trapezoid,
     /// `r + v(t+k-1) h`: eq. 9 as printed.
     Euler,
@@ -111,8 +111,8 @@ impl From<&HeardParameters> for Parameters {
 }
 
 impl Parameters {
-    /// The same law as the paper has it: no standstill distance, no lag, no limits. (The limits are out of reach but
-    /// finite, because a leader told to stop demands its braking limit.)
+    /// The same law as in the paper: no standstill distance, no lag, no limits. The limits are finite but never
+    /// reached: they have to be finite because a leader that is told to stop demands its braking limit.
     #[must_use]
     pub fn as_printed(self) -> Self {
         let unlimited = 1e9;
@@ -128,7 +128,7 @@ impl Parameters {
     }
 }
 
-/// Eq. 8, as a demand: `a_max [1 - (v/v_∞)^σ]`, and no harder braking than the law's.
+/// Eq. 8, as a demand: `a_max [1 - (v/v_∞)^σ]`, limited to the law's hardest braking.
 #[must_use]
 pub fn demand_lead(state: &State, law: &Parameters) -> f64 {
     if law.target_speed_mps < STOPPING_TARGET_SPEED_MPS {
@@ -155,8 +155,8 @@ pub fn demand_follow(state: &State, ahead: &Ahead, law: &Parameters, step_s: f64
 }
 
 /// The demand within the law's limits on acceleration and, from the last demand on, on jerk. Where the two ranges do
-/// not meet, the higher of their lower ends counts: a demand below the braking limit returns to it at once, one above the
-/// acceleration limit comes down at the jerk limit.
+/// not meet, the higher of their lower ends counts. So a demand below the braking limit returns to it at once, and a
+/// demand above the acceleration limit decreases at the jerk limit.
 #[must_use]
 pub fn limited(demand_mps2: f64, last_demand_mps2: f64, law: &Parameters, step_s: f64) -> f64 {
     let change = law.jerk_mps3 * step_s;
@@ -184,8 +184,8 @@ pub fn actuated(state: &State, demand_mps2: f64, lag_s: f64, step_s: f64, rule: 
     State { position_m: state.position_m + way_m, speed_mps, acceleration_mps2, demand_mps2 }
 }
 
-/// The state after a step of a vehicle without a law: its acceleration fades as `e^(-t/2 s)`, which is a lag of 2 s
-/// towards a demand of 0.
+/// The state after a step of a vehicle without driving parameters: its acceleration fades as `e^(-t/2 s)`, which is a
+/// lag of 2 s towards a demand of 0.
 #[must_use]
 pub fn faded(state: &State, step_s: f64, rule: PositionRule) -> State {
     actuated(state, 0.0, FADING_S, step_s, rule)

@@ -1,4 +1,4 @@
-//! The reference against what can be derived with pen and paper.
+//! The reference against results that were derived by hand.
 
 use super::horizon::{Role, chain, horizon};
 use super::*;

@@ -7,10 +7,10 @@ use crate::report::{
     plot::{Axis, Bars, Chart, Figure, Guide, Interval, Layer, Series, Tone, cumulative},
 };
 
-/// An age of 0 has no place on a logarithmic axis.
+/// Least age on the logarithmic axis, which has no place for 0.
 const LEAST_AGE_S: f64 = 1e-3;
 
-/// Ours is shown once more, without the methods whose errors are this many times larger.
+/// The unit's curve is shown once more, without the methods whose errors are this many times larger.
 const ENLARGED_FROM: f64 = 4.0;
 
 impl EvaluateReport {
@@ -41,7 +41,7 @@ impl EvaluateReport {
             Chart { description: caption.clone(), shades, ..Chart::new(title, x, y) }
         };
         let mut errors = chart(&title, Axis::linear("position error", "m").including(0.0), drive.silences.clone());
-        // Ours on top.
+        // The unit's line lies on top.
         let line = |series: &Series| {
             Layer::line(Series { name: spoken(&series.name), ..series.clone() }, self.tone(&series.name))
         };
@@ -74,7 +74,7 @@ impl EvaluateReport {
         chart.guides = vec![Guide { at: 99.0, label: "99 %".into() }, Guide { at: 50.0, label: "half".into() }];
         let staircase = |method: &Method| {
             let mut steps = cumulative(&method.errors, least);
-            // Beyond its largest error a method is complete; the line says so up to the edge.
+            // Beyond its largest error the distribution of a method is complete. The line continues to the edge.
             steps.extend(steps.last().map(|last| (most, last.1)));
             Layer::line(Series::new(spoken(&method.name), thinned(steps)), self.tone(&method.name))
         };
@@ -106,13 +106,13 @@ impl EvaluateReport {
     }
 }
 
-/// Whether the first of the series, which is ours, cannot be read on the axis that this one needs.
+/// Whether the unit's series, the first one, is too small to be read on the axis that this series needs.
 fn dwarfs(series: &Series, all: &[Series]) -> bool {
     let largest = |series: &Series| max_abs(&series.values()).unwrap_or(0.0);
     all.first().is_some_and(|ours| largest(series) > ENLARGED_FROM * largest(ours))
 }
 
-/// Whole decades around the positive ones of `values`, five of them at the most, ending with the largest.
+/// Whole decades around the positive values, five at the most, ending with that of the largest value.
 fn decades(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let positive = values.filter(|value| *value > 0.0 && value.is_finite());
     let (Some(low), Some(high)) = (positive.clone().reduce(f64::min), positive.reduce(f64::max)) else {
@@ -123,8 +123,8 @@ fn decades(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     (10f64.powf(first), 10f64.powf(last))
 }
 
-/// A staircase of a few thousand steps at the most: what lies within a tenth of a percent of the last point kept, and
-/// within a hundredth of a decade, cannot be seen.
+/// A staircase of a few thousand steps at the most. Points within a tenth of a percent of the last point kept and
+/// within a hundredth of a decade are dropped, because they cannot be seen.
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     let last = points.len().saturating_sub(1);

@@ -9,7 +9,7 @@ use super::{
     plot::{Interval, Series, Tone},
 };
 
-/// One way to estimate.
+/// A method of estimation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Method {
     /// Its name.
@@ -28,7 +28,7 @@ pub struct Method {
     pub errors: Vec<f64>,
 }
 
-/// What the classes are.
+/// The kind of the classes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Classes {
     /// Ages of the newest sample.
@@ -48,32 +48,32 @@ pub struct Drive {
     pub errors: Vec<Series>,
     /// Age of the newest sample over time; empty in silences.
     pub age: Series,
-    /// When nothing arrived.
+    /// The times in which no message arrived.
     pub silences: Vec<Interval>,
-    /// Each message: when it was sent and its delay in seconds; `None` if it was lost. Empty in silences.
+    /// For each message its time of sending, and its delay in seconds; `None` if it was lost. Empty in silences.
     pub messages: Vec<(f64, Option<f64>)>,
 }
 
-/// Everything that the page of one evaluation shows. Times are in seconds of the recordings.
+/// The content of the page. Times are in seconds of the recordings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateReport {
     /// The page's title.
     pub title: String,
     /// What was evaluated: names and values.
     pub facts: Vec<(String, String)>,
-    /// The command line that makes this page again.
+    /// The command line that repeats this.
     pub command: String,
-    /// What the classes are.
+    /// The kind of the classes.
     pub classes: Classes,
-    /// Their names and how many comparisons each has.
+    /// The names of the classes, and the number of comparisons in each.
     pub class_names: Vec<(String, usize)>,
-    /// The methods, ours first.
+    /// The methods; the unit is first.
     pub methods: Vec<Method>,
     /// The drives.
     pub drives: Vec<Drive>,
 }
 
-/// No page shows more drives than this one by one.
+/// The largest number of drives that a page shows individually.
 const MOST_DRIVES: usize = 6;
 
 impl EvaluateReport {
@@ -104,7 +104,7 @@ impl EvaluateReport {
         page.finish()
     }
 
-    /// The drive during which most was sent: all of them use the same link from its beginning.
+    /// The drive during which most messages were sent. All drives use the same link from its beginning.
     fn longest_link(&self) -> Option<&Drive> {
         self.drives.iter().filter(|drive| !drive.messages.is_empty()).max_by_key(|drive| drive.messages.len())
     }
@@ -149,7 +149,7 @@ impl EvaluateReport {
     fn tone(&self, name: &str) -> Tone {
         match (name, self.methods.iter().position(|method| method.name == name)) {
             ("paper", _) => Tone::Paper,
-            // The fifth of the further colours is a blue, too near to ours.
+            // The fifth of the other colours is a blue that is too similar to that of the unit.
             (_, Some(5)) => Tone::Other(6),
             (_, Some(0)) => Tone::Ours,
             (_, Some(index)) => Tone::Other(index - 1),
@@ -167,7 +167,7 @@ fn number(value: Option<f64>, strong: bool) -> Cell {
     if strong { Cell::strong(spelled) } else { Cell::number(spelled) }
 }
 
-/// A method's name as prose has it.
+/// A method's name in prose.
 fn spoken(name: &str) -> String {
     match name {
         "paper" => "literal paper".into(),

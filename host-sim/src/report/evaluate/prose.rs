@@ -1,10 +1,10 @@
-//! The captions of an evaluation's report: figures enter, a sentence or two with their numbers leave.
+//! The captions of an evaluation's report: figures enter; a sentence or two with their numbers leave.
 
 use super::{Classes, Drive, EvaluateReport, Method, spoken};
 use crate::report::markup::{count, quantity, significant};
 
 impl EvaluateReport {
-    /// Ours beside the best of the others, by that figure.
+    /// The unit beside the best of the other methods, by this figure.
     fn compare(&self, figure: impl Fn(&Method) -> Option<f64>) -> Option<String> {
         let ours = figure(self.methods.first()?)?;
         let others = self.methods.iter().skip(1).filter_map(|method| Some((method, figure(method)?)));

@@ -1,4 +1,4 @@
-//! Grouped bars: for each group a number of each method enters, bars side by side leave.
+//! Grouped bars: for each group, one number per method enters; bars side by side leave.
 
 use super::{
     Figure, Tone, Width,
@@ -13,17 +13,17 @@ use super::{
 pub struct Bars {
     /// What the figure shows, for a screen reader.
     pub title: String,
-    /// What one sees in it, for a screen reader.
+    /// A description of what it shows, for a screen reader.
     pub description: String,
-    /// What the groups are, with its unit.
+    /// The meaning of the groups, with the unit.
     pub x_label: String,
-    /// The axis up. Linear bars stand on 0; logarithmic ones on the decade below the smallest value.
+    /// The vertical axis. Linear bars start at 0, logarithmic bars at the decade below the smallest value.
     pub y: Axis,
     /// Height of the frame in pixels.
     pub height: f64,
     /// The names of the groups.
     pub groups: Vec<String>,
-    /// `(name, tone, a value for each group)`; an absent value (an empty class) leaves its place empty.
+    /// `(name, tone, a value for each group)`. A value that is absent (an empty class) leaves a gap.
     pub methods: Vec<(String, Tone, Vec<Option<f64>>)>,
 }
 
@@ -32,7 +32,7 @@ impl Bars {
         self.methods.iter().flat_map(|(_, _, values)| values.iter().take(self.groups.len()).flatten().copied())
     }
 
-    /// The axis that the bars stand on, so that their lengths can be compared.
+    /// The axis on which the bars stand, so that their lengths can be compared.
     fn grounded(&self) -> Axis {
         let smallest = self.values().filter(|&value| self.y.draws(value)).reduce(f64::min);
         let decade = smallest.filter(|smallest| *smallest > 0.0).map(|smallest| (smallest / 1.5).log10().floor());

@@ -8,28 +8,28 @@ use super::{
     svg::{Anchor, Area, Svg},
 };
 
-/// More labels than this at the ends of lines cannot be told apart; a legend takes their place.
+/// The most labels at the ends of lines. More cannot be told apart, so a legend replaces them.
 const MOST_END_LABELS: usize = 9;
 
-/// A horizontal line at a value that means something: a limit, a quantile.
+/// A horizontal line at a meaningful value: a limit, a quantile.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
     /// The value on the y axis.
     pub at: f64,
-    /// What it is.
+    /// Its meaning.
     pub label: String,
 }
 
-/// Layers over two numeric axes; later layers lie on top, those of the ego above all.
+/// Layers over two numeric axes. Later layers lie on top, and those of the ego above all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
     /// What the figure shows, for a screen reader.
     pub title: String,
-    /// What one sees in it, for a screen reader.
+    /// A description of what it shows, for a screen reader.
     pub description: String,
-    /// The axis across.
+    /// The horizontal axis.
     pub x: Axis,
-    /// The axis up.
+    /// The vertical axis.
     pub y: Axis,
     /// Height of the frame in pixels.
     pub height: f64,
@@ -39,7 +39,7 @@ pub struct Chart {
     pub guides: Vec<Guide>,
     /// The data.
     pub layers: Vec<Layer>,
-    /// All names stand in the legend, as for lines that end in the middle.
+    /// Whether all names are in the legend, as for lines that end in the middle.
     pub listed: bool,
 }
 
@@ -73,7 +73,7 @@ impl Chart {
         (x, y)
     }
 
-    /// Lines are labelled where they end if there is room; everything else, or everything, stands in the legend.
+    /// Whether lines are labelled at their ends, which they are if there is room. All other names are in the legend.
     fn labels_ends(&self, width: Width) -> bool {
         let lines = self.layers.iter().filter(|l| l.entry().swatch == Swatch::Line && !l.entry().name.is_empty());
         !self.listed && width == Width::Wide && lines.count() <= MOST_END_LABELS
@@ -105,12 +105,12 @@ impl Figure for Chart {
         frame::draw_shades(&mut svg, &self.shades, &self.x, &x, area);
         frame::draw_y_axis(&mut svg, &self.y, &y_ticks, area, legend.height() + 12.0);
         frame::draw_x_axis(&mut svg, &self.x, &x, area);
-        // Half a dot wider than the frame, so that marks on its edges stay whole.
+        // Half a dot wider than the frame, so that marks on its edges are not cut.
         svg.clipped(Area { left: area.left - 3.0, right: area.right + 3.0, ..area }, |svg| {
             for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
                 svg.line("guide", (area.left, y.at(guide.at)), (area.right, y.at(guide.at)));
             }
-            // A stable order: the vehicle under study last, all else as given.
+            // A stable order: the vehicle under study last, all others as given.
             let mut layers: Vec<&Layer> = self.layers.iter().collect();
             layers.sort_by_key(|layer| layer.entry().tone == Tone::Ego);
             layers.into_iter().for_each(|layer| layer.draw(svg, self.axes(), &x, &y, area));

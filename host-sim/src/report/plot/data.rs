@@ -3,15 +3,15 @@
 /// A bin `[from, to)` of a histogram; the last one includes its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
-    /// Where it begins.
+    /// Lower end.
     pub from: f64,
-    /// Where it ends.
+    /// Upper end.
     pub to: f64,
-    /// How many values fall into it.
+    /// Number of values in it.
     pub count: usize,
 }
 
-/// The empirical distribution of the finite magnitudes of `values` as a staircase of `(magnitude, share in percent)`.
+/// The empirical distribution of the finite magnitudes of `values`, as a staircase of `(magnitude, percentage)`.
 /// Magnitudes below `least` are drawn at `least`, because a logarithmic axis has no place for 0.
 pub fn cumulative(values: &[f64], least: f64) -> Vec<(f64, f64)> {
     let mut magnitudes: Vec<f64> = values.iter().map(|value| value.abs()).filter(|m| m.is_finite()).collect();
@@ -24,8 +24,8 @@ pub fn cumulative(values: &[f64], least: f64) -> Vec<(f64, f64)> {
     magnitudes.iter().enumerate().flat_map(step).collect()
 }
 
-/// The finite ones of `values` in `count` bins of equal width from the smallest to the largest; none without values. A
-/// constant makes a single bin around itself.
+/// A histogram of the finite values, in `count` bins of equal width from the smallest to the largest; empty without
+/// values. If all values are equal, there is a single bin around them.
 pub fn histogram(values: &[f64], count: usize) -> Vec<Bin> {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (Some(low), Some(high)) = (finite().reduce(f64::min), finite().reduce(f64::max)) else { return Vec::new() };

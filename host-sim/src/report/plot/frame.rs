@@ -1,4 +1,4 @@
-//! What surrounds the data: axes, grid, shades. Mappings and areas in pixels enter, shapes leave.
+//! The frame around the data: axes, grid, shades. Mappings and areas in pixels enter, shapes leave.
 
 use super::{
     Interval, Width,
@@ -17,14 +17,14 @@ pub(super) const X_SPACING: f64 = 62.0;
 /// Pixels between ticks of a y axis.
 pub(super) const Y_SPACING: f64 = 40.0;
 
-/// The room left of the frame for labels like `names`: tick labels, names of rows. Wide figures have at least a common
-/// margin, so that the frames of figures over the same time stand in line on the page.
+/// The margin left of the frame for labels like `names`: tick labels, names of rows. Wide figures have a common least
+/// margin, so that figures over the same time are aligned on the page.
 pub(super) fn left_margin<'a>(names: impl IntoIterator<Item = &'a str>, width: Width) -> f64 {
     let least = if width == Width::Wide { 68.0 } else { 34.0 };
     (names.into_iter().map(text_width).fold(0.0, f64::max) + 11.0).max(least)
 }
 
-/// The room right of the frame; for labels that need more than the common margin, `needed`.
+/// The margin right of the frame; `needed` for labels that need more than the common margin.
 pub(super) fn right_margin(needed: f64, width: Width) -> f64 {
     let least = if width == Width::Wide { 108.0 } else { 12.0 };
     needed.max(least)
@@ -35,12 +35,12 @@ pub(super) fn labels(ticks: &[Tick]) -> impl Iterator<Item = &str> {
     ticks.iter().filter_map(|tick| tick.label.as_deref())
 }
 
-/// Whether any shade has a label, so that a row is needed for it.
+/// The height of the row for the labels of shades; 0 if no shade has a label.
 pub(super) fn shade_row(shades: &[Interval]) -> f64 {
     if shades.iter().any(|shade| !shade.label.is_empty()) { SHADE_ROW } else { 0.0 }
 }
 
-/// Shades with their labels above `area`; a label that would touch the one before it is left out.
+/// Draws shades with their labels above `area`. A label that would touch the one before it is left out.
 pub(super) fn draw_shades(svg: &mut Svg, shades: &[Interval], axis: &Axis, x: &Mapping, area: Area) {
     let mut labelled_to = f64::NEG_INFINITY;
     for shade in shades.iter().filter(|shade| axis.draws(shade.from) && axis.draws(shade.to)) {
@@ -58,7 +58,7 @@ pub(super) fn draw_shades(svg: &mut Svg, shades: &[Interval], axis: &Axis, x: &M
     }
 }
 
-/// Grid, tick labels and title of an x axis below `area`.
+/// Draws grid, tick labels and title of an x axis below `area`.
 pub(super) fn draw_x_axis(svg: &mut Svg, axis: &Axis, x: &Mapping, area: Area) {
     for tick in x.ticks(X_SPACING) {
         let class = if tick.label.is_some() { "grid" } else { "grid minor" };
@@ -72,7 +72,7 @@ pub(super) fn draw_x_axis(svg: &mut Svg, axis: &Axis, x: &Mapping, area: Area) {
     svg.text("title", Anchor::End, (area.right, area.bottom + 33.0), &axis.label());
 }
 
-/// Grid, tick labels and, above the frame, title of a y axis left of `area`.
+/// Draws grid, tick labels and, above the frame, the title of a y axis left of `area`.
 pub(super) fn draw_y_axis(svg: &mut Svg, axis: &Axis, ticks: &[Tick], area: Area, title_at: f64) {
     for tick in ticks {
         let class = if tick.label.is_some() { "grid" } else { "grid minor" };

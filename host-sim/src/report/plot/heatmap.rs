@@ -1,4 +1,4 @@
-//! A heat map: rows of shades enter, a grid of cells leaves, the darker the more.
+//! A heat map: rows of shades enter; a grid of cells leaves. A larger value is darker.
 
 use super::{
     Figure, Width,
@@ -8,9 +8,9 @@ use super::{
 /// A cell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shade {
-    /// From 0 to 1.
+    /// Depth of the shade, from 0 to 1.
     pub share: f64,
-    /// What stands in it.
+    /// Its text.
     pub label: String,
 }
 
@@ -19,11 +19,11 @@ pub struct Shade {
 pub struct HeatMap {
     /// What the figure shows, for a screen reader.
     pub title: String,
-    /// What one sees in it, for a screen reader.
+    /// A description of what it shows, for a screen reader.
     pub description: String,
-    /// The names across, from the left.
+    /// The names of the columns, from the left.
     pub columns: Vec<String>,
-    /// The names down, from the top.
+    /// The names of the rows, from the top.
     pub rows: Vec<String>,
     /// The rows of cells.
     pub shades: Vec<Vec<Shade>>,
@@ -32,7 +32,7 @@ pub struct HeatMap {
 const ROW: f64 = 22.0;
 const LEFT: f64 = 58.0;
 const TOP: f64 = 20.0;
-/// Depths of shade that are told apart.
+/// Number of depths of shade.
 const DEPTHS: f64 = 8.0;
 
 impl Figure for HeatMap {

@@ -8,10 +8,10 @@ use super::{
     svg::{Area, Svg},
 };
 
-/// One thing drawn in a chart. A layer without a name stands in no legend.
+/// One item of a chart. A layer without a name has no entry in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Layer {
-    /// A line through the points in their order; `marked` puts a dot on each, for series of few points.
+    /// A line through the points in their order. `marked` adds a dot at each point, for series of few points.
     Line {
         /// The points.
         series: Series,
@@ -36,11 +36,11 @@ pub enum Layer {
         /// Its meaning.
         tone: Tone,
     },
-    /// A short stroke at the foot of the frame for each x: events.
+    /// A short stroke at the bottom of the frame for each x: events.
     Rug {
         /// Its name.
         name: String,
-        /// Where the events are.
+        /// The x of each event.
         at: Vec<f64>,
         /// Its meaning.
         tone: Tone,
@@ -73,7 +73,7 @@ impl Layer {
         Entry { name: name.clone(), tone, swatch }
     }
 
-    /// The coordinates of every mark, with what is no coordinate (a rug has no y) absent.
+    /// The coordinates of every mark; a mark without a y, as in a rug, has `None`.
     fn coordinates(&self) -> Vec<(f64, Option<f64>)> {
         match self {
             Self::Line { series, .. } | Self::Dots { series, .. } => {
@@ -89,7 +89,7 @@ impl Layer {
         }
     }
 
-    /// Widens the extents by what this layer can show on the axes.
+    /// Widens the extents by the values of this layer that the axes can show.
     pub(super) fn cover(&self, axes: (&Axis, &Axis), x: &mut Extent, y: &mut Extent) {
         for (across, up) in self.coordinates() {
             if axes.0.draws(across) && up.is_none_or(|up| axes.1.draws(up)) {
@@ -104,7 +104,7 @@ impl Layer {
         self.coordinates().iter().filter(|coordinate| !drawn(coordinate)).count()
     }
 
-    /// Where a line ends, for the label there.
+    /// The end of a line, for the label there.
     pub(super) fn end(&self, axes: (&Axis, &Axis), x: &Mapping, y: &Mapping) -> Option<Point> {
         let Self::Line { series, .. } = self else { return None };
         let last = series.points.iter().rev().find(|(across, up)| axes.0.draws(*across) && axes.1.draws(*up))?;
@@ -153,7 +153,7 @@ impl Layer {
     }
 }
 
-/// `value` in half pixels: strokes nearer than that are one.
+/// `value` in half pixels. Strokes that are nearer to one another than that count as one.
 fn half(value: f64) -> i64 {
     (value * 2.0).round() as i64
 }

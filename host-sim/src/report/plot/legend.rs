@@ -1,4 +1,4 @@
-//! Names for what is drawn: entries enter, a legend in rows above the frame or labels at the ends of lines leave.
+//! The names of drawn items: entries enter; a legend in rows above the frame, or labels at the ends of lines, leave.
 
 use super::{
     Tone,
@@ -13,7 +13,7 @@ const BETWEEN: f64 = 16.0;
 const LABEL_PITCH: f64 = TEXT_HEIGHT + 2.0;
 const LABEL_OFFSET: f64 = 12.0;
 const LABEL_MOST: f64 = 150.0;
-/// Labels are bold, which makes them so many times as wide.
+/// Factor on the width of labels, because they are bold.
 const BOLD: f64 = 1.1;
 
 /// How an entry shows its tone.
@@ -26,7 +26,7 @@ pub(super) enum Swatch {
     Stroke,
 }
 
-/// A name and what it names.
+/// A name, and the item that it names.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
     pub name: String,
@@ -41,7 +41,8 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// Lays `entries` out from `left` to `right`, leaving nameless ones out; a row breaks where the next one does not fit.
+    /// Lays out `entries` from `left` to `right`, without those that have no name. A new row begins where an entry does
+    /// not fit.
     pub fn new(entries: Vec<Entry>, left: f64, right: f64) -> Self {
         let (mut x, mut rows) = (left, 0);
         let mut placed = Vec::new();
@@ -80,7 +81,7 @@ impl Legend {
     }
 }
 
-/// `text` cut to about `width` pixels, with an ellipsis where something is missing.
+/// `text`, cut to about `width` pixels, with an ellipsis if it was cut.
 pub(super) fn shortened(text: &str, width: f64) -> String {
     if text_width(text) <= width {
         return text.into();
@@ -95,7 +96,7 @@ pub(super) fn label_margin<'a>(names: impl IntoIterator<Item = &'a str>) -> f64 
     if widest > 0.0 { BOLD * widest + LABEL_OFFSET + 4.0 } else { 0.0 }
 }
 
-/// Labels lines at their ends, right of `area`: each as near to its line as the others allow.
+/// Labels lines at their ends, right of `area`. Each label is as near to its line as the others allow.
 pub(super) fn label_ends(svg: &mut Svg, area: Area, mut ends: Vec<(Point, Entry)>) {
     ends.sort_by(|a, b| a.0.1.total_cmp(&b.0.1));
     let desired: Vec<f64> = ends.iter().map(|end| end.0.1.clamp(area.top + 4.0, area.bottom - 2.0)).collect();
@@ -112,7 +113,8 @@ pub(super) fn label_ends(svg: &mut Svg, area: Area, mut ends: Vec<(Point, Entry)
     }
 }
 
-/// Moves ascending positions apart until they are a label's height from each other, within `[top, bottom]` if they fit.
+/// Moves ascending positions apart until they are a label's height from one another, within `[top, bottom]` if they
+/// fit.
 fn spread(desired: &[f64], top: f64, bottom: f64) -> Vec<f64> {
     let mut placed: Vec<f64> = Vec::with_capacity(desired.len());
     for &desired in desired {

@@ -1,7 +1,7 @@
-//! Figures as inline SVG: named data enter, one `<svg>` element leaves, at one of two widths.
+//! Figures as inline SVG: named data enter; one `<svg>` element leaves, at one of two widths.
 //!
-//! A page shows the wide drawing on a screen or on paper and the narrow one on a phone, so that letters keep their size.
-//! Colour, weight and dashes come from classes that the page's style gives a light and a dark meaning.
+//! A page shows the wide drawing on a screen or on paper, and the narrow one on a phone, so that the letters keep their
+//! size. Colour, weight and dashes come from classes, which the page's style defines for a light and a dark appearance.
 //!
 //! | figure | for |
 //! |---|---|
@@ -9,8 +9,8 @@
 //! | [`Strip`] | categories over time, a row for each subject |
 //! | [`Bars`] | numbers of several methods side by side, in groups |
 //!
-//! A value that is not finite (or not positive, on a logarithmic axis) is never drawn: it interrupts a line, and
-//! [`Figure::undrawable`] counts it so that the page can say so.
+//! A value that is not finite (or not positive, on a logarithmic axis) is never drawn. It interrupts a line, and
+//! [`Figure::undrawable`] counts it, so that the page can report it.
 
 mod bars;
 mod chart;
@@ -35,7 +35,7 @@ pub use strip::{Category, Strip, StripRow};
 /// A named series of `(x, y)` points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
-    /// What a legend or label calls it.
+    /// Its name in a legend or label.
     pub name: String,
     /// The points; lines follow their order.
     pub points: Vec<(f64, f64)>,
@@ -60,7 +60,7 @@ pub struct Interval {
     pub from: f64,
     /// Where it ends.
     pub to: f64,
-    /// What it is; stands above the frame where there is room.
+    /// Its name, shown above the frame where there is room.
     pub label: String,
 }
 
@@ -71,29 +71,29 @@ impl Interval {
     }
 }
 
-/// What a mark stands for; the page's style decides what that looks like.
+/// The meaning of a mark. The page's style decides how it looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
     /// The vehicle under study: dark red, dashed.
     Ego,
-    /// This project's result.
+    /// The unit's result.
     Ours,
     /// The literal paper's result.
     Paper,
-    /// One of seven further colours that stay apart for colour-blind readers; repeats from there on.
+    /// One of seven other colours that colour-blind readers can tell apart. The colours repeat after that.
     Other(usize),
     /// Regular operation.
     Calm,
-    /// Operation on what is remembered.
+    /// Operation on an estimate.
     Alert,
     /// Something lost or failed.
     Alarm,
-    /// Nothing going on.
+    /// No operation.
     Idle,
 }
 
 impl Tone {
-    /// The class that the page's style knows this tone by.
+    /// The class of this tone in the page's style.
     pub fn class(self) -> &'static str {
         const OTHERS: [&str; 7] = ["o0", "o1", "o2", "o3", "o4", "o5", "o6"];
         match self {
@@ -109,7 +109,7 @@ impl Tone {
     }
 }
 
-/// The width that a figure is drawn for.
+/// The width of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
     /// A screen or a printed page.
@@ -136,11 +136,11 @@ impl Width {
     }
 }
 
-/// Anything that can be drawn.
+/// A figure that can be drawn.
 pub trait Figure {
-    /// The `<svg>` element at `width`. `id` has to be unique on the page; it starts every id inside.
+    /// The `<svg>` element at `width`. `id` has to be unique on the page; every id inside starts with it.
     fn draw(&self, id: &str, width: Width) -> String;
 
-    /// How many values cannot be drawn.
+    /// The number of values that cannot be drawn.
     fn undrawable(&self) -> usize;
 }

@@ -1,7 +1,7 @@
-//! Path data: points in pixels enter, SVG path data that look the same with far fewer points leave.
+//! Path data: points in pixels enter; SVG path data that look the same with far fewer points leave.
 //!
 //! A line keeps the first, lowest, highest and last point of each pixel column, so that no spike is lost however long
-//! the series is, then drops what lies within a tenth of a pixel of the straight line between its neighbours.
+//! the series is. Then points within a tenth of a pixel of the straight line between their neighbours are dropped.
 
 use super::svg::pixel;
 
@@ -10,7 +10,7 @@ pub(super) type Point = (f64, f64);
 
 const TOLERANCE: f64 = 0.1;
 
-/// An open line through each run of points; `None` parts runs. A run of one point becomes a dot.
+/// An open line through each run of points; `None` separates runs. A run of one point becomes a dot.
 pub(super) fn line(points: impl IntoIterator<Item = Option<Point>>) -> String {
     let mut data = String::new();
     for run in runs(points) {
@@ -44,7 +44,7 @@ pub(super) fn band(points: impl IntoIterator<Item = Option<(f64, f64, f64)>>) ->
     data
 }
 
-/// A dot at each point, on a grid coarse enough that many points still make a short path.
+/// A dot at each point, on a coarse grid, so that many points still make a short path.
 pub(super) fn dots(points: impl IntoIterator<Item = Point>) -> String {
     let points: Vec<Point> = points.into_iter().collect();
     let grid = if points.len() > 8000 { 2.0 } else { 0.5 };
@@ -80,7 +80,7 @@ fn append(data: &mut String, points: &[Point]) {
     }
 }
 
-/// First, lowest, highest and last point of each stay in a pixel column, in their order.
+/// The first, lowest, highest and last point of each stay in a pixel column, in their order.
 fn columns(points: &[Point]) -> Vec<Point> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {

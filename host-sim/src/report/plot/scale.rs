@@ -1,7 +1,7 @@
-//! Axes: a description and the extent of the data enter, a mapping to pixels with ticks leaves.
+//! Axes: a description and the extent of the data enter; a mapping to pixels, with ticks, leaves.
 
-/// A value beyond this cannot be drawn (nor, on a logarithmic axis, one below its reciprocal): differences and quotients
-/// of two values that can be drawn still have to be finite.
+/// A value beyond this cannot be drawn, and on a logarithmic axis neither can a value below its reciprocal. So
+/// differences and quotients of two drawn values are finite.
 const DRAWABLE_BELOW: f64 = 1e100;
 
 /// The values that some data cover.
@@ -35,17 +35,17 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A linear axis over whatever the data cover.
+    /// A linear axis over the range of the data.
     pub fn linear(title: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { title: title.into(), unit: unit.into(), logarithmic: false, range: None, including: None }
     }
 
-    /// A logarithmic axis, base 10; what is not positive cannot be drawn on it.
+    /// A logarithmic axis, base 10, on which only positive values can be drawn.
     pub fn logarithmic(title: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { logarithmic: true, ..Self::linear(title, unit) }
     }
 
-    /// The same axis over exactly `[low, high]`; ignored unless both can be drawn and are in this order.
+    /// The same axis over exactly `[low, high]`. These are ignored unless both can be drawn and are in this order.
     pub fn over(mut self, low: f64, high: f64) -> Self {
         self.range = (self.draws(low) && self.draws(high) && low < high).then_some((low, high));
         self
@@ -57,12 +57,12 @@ impl Axis {
         self
     }
 
-    /// Title and unit as they stand at the axis: `gap (m)`.
+    /// Title and unit as shown at the axis: `gap (m)`.
     pub fn label(&self) -> String {
         if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) }
     }
 
-    /// Whether equal steps here are equal factors.
+    /// Whether equal distances on this axis are equal factors.
     pub fn is_logarithmic(&self) -> bool {
         self.logarithmic
     }
@@ -72,7 +72,7 @@ impl Axis {
         value.abs() < DRAWABLE_BELOW && (!self.logarithmic || value > DRAWABLE_BELOW.recip())
     }
 
-    /// The mapping of the axis onto `[from, to]` pixels, with `margin` (a share of the span) around the data.
+    /// The mapping of the axis onto `[from, to]` pixels, with `margin` (a fraction of the span) around the data.
     pub(super) fn fit(&self, data: Extent, (from, to): (f64, f64), margin: f64) -> Mapping {
         let (low, high) = self.range.unwrap_or_else(|| self.spread(data, margin));
         let (low, high) = (self.measure(low), self.measure(high));
@@ -87,11 +87,11 @@ impl Axis {
             return if self.logarithmic { (0.1, 10.0) } else { (0.0, 1.0) };
         }
         let (low, high) = (self.measure(data.low), self.measure(data.high));
-        // A constant still needs a span, and one that its ticks can resolve.
+        // A constant also needs a span, and one that its ticks can resolve.
         let widest = low.abs().max(high.abs());
         let least = if self.logarithmic { 0.5 } else { (widest * 1e-6).max(1e-9) };
         let spare = if high - low < least { least.max(widest * 0.1) } else { (high - low) * margin };
-        // An end that is the included value itself is an edge of meaning, such as 0: no margin beyond it.
+        // An end that is the included value itself is a meaningful edge, such as 0. There is no margin beyond it.
         let edge = |end: f64| self.including.is_some_and(|value| self.measure(value) == end) && high - low >= least;
         let low = if edge(low) { low } else { low - spare };
         let high = if edge(high) { high } else { high + spare };
@@ -103,14 +103,14 @@ impl Axis {
     }
 }
 
-/// A mark on an axis, in pixels; minor ones carry no label.
+/// A mark on an axis, in pixels. Minor marks have no label.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tick {
     pub at: f64,
     pub label: Option<String>,
 }
 
-/// Values to pixels.
+/// The mapping of values to pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mapping {
     logarithmic: bool,
@@ -121,7 +121,8 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// The pixel of `value`, which the axis has to be able to draw. Far outside it stops short of what SVG can hold.
+    /// The pixel of `value`, which the axis has to be able to draw. Far outside the axis, the pixel is limited to what
+    /// SVG can hold.
     pub fn at(&self, value: f64) -> f64 {
         let measured = if self.logarithmic { value.log10() } else { value };
         self.at_measured(measured)

@@ -1,4 +1,4 @@
-//! A strip of categories over time: for each subject its changes enter, coloured spans leave.
+//! A strip of categories over time: the changes of each subject enter, coloured spans leave.
 
 use super::{
     Figure, Interval, Tone, Width,
@@ -11,13 +11,13 @@ use super::{
 const ROW: f64 = 26.0;
 const ROW_LABEL_MOST: f64 = 110.0;
 
-/// No span is drawn narrower than this, so that a short one is still seen.
+/// Least width of a span in pixels, so that a short one is still visible.
 const NARROWEST: f64 = 0.8;
 
 /// A category with its meaning.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Category {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its meaning.
     pub tone: Tone,
@@ -28,8 +28,8 @@ pub struct Category {
 pub struct StripRow {
     /// The subject.
     pub name: String,
-    /// `(from, index into the strip's categories)`, in order; each lasts until the next change, the last one until the
-    /// end of the strip. Changes to the same category, as a sample per tick makes them, count as one.
+    /// `(from, index into the strip's categories)`, in order. Each holds until the next change, the last one until the
+    /// end of the strip. Successive entries with the same category, as in a sample per tick, count as one.
     pub changes: Vec<(f64, usize)>,
 }
 
@@ -38,15 +38,16 @@ pub struct StripRow {
 pub struct Strip {
     /// What the figure shows, for a screen reader.
     pub title: String,
-    /// What one sees in it, for a screen reader.
+    /// A description of what it shows, for a screen reader.
     pub description: String,
-    /// The axis across.
+    /// The horizontal axis.
     pub x: Axis,
-    /// Where the last spans end.
+    /// The end of the last spans.
     pub end: f64,
     /// Shaded intervals of x, in order.
     pub shades: Vec<Interval>,
-    /// The categories, from the most ordinary to the most severe: where spans are too narrow to see, the severe wins.
+    /// The categories, from the most ordinary to the most severe. Where spans are too narrow to be drawn apart, the
+    /// more severe one is drawn.
     pub categories: Vec<Category>,
     /// The subjects, from top to bottom.
     pub rows: Vec<StripRow>,

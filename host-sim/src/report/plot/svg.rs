@@ -1,4 +1,4 @@
-//! The SVG writer: shapes in pixels enter, one element with title and description leaves.
+//! The SVG writer: shapes in pixels enter; one element with title and description leaves.
 
 use std::fmt::Write;
 
@@ -7,12 +7,12 @@ use crate::report::markup::escape;
 /// Height of a line of text in a figure, in pixels.
 pub(super) const TEXT_HEIGHT: f64 = 12.0;
 
-/// The width that `text` takes at most, in pixels; fonts differ, so this leans to the wide side.
+/// An upper estimate of the width of `text`, in pixels, because fonts differ.
 pub(super) fn text_width(text: &str) -> f64 {
     7.0 * text.chars().count() as f64
 }
 
-/// Where a text's own coordinate lies.
+/// The position of a text relative to its own coordinate.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -49,13 +49,13 @@ impl Area {
     }
 }
 
-/// An SVG element that grows shape by shape.
+/// An SVG element that is built shape by shape.
 pub(super) struct Svg {
     id: String,
     body: String,
 }
 
-/// `value` in pixels to a tenth, as short as it can be spelled.
+/// `value` in pixels to a tenth, in its shortest form.
 pub(super) fn pixel(value: f64) -> String {
     let tenths = (value * 10.0).round() as i64;
     match (tenths / 10, (tenths % 10).abs()) {
@@ -71,7 +71,7 @@ impl Svg {
         Self { id: escape(id), body: String::new() }
     }
 
-    // Writing to a String cannot fail, so the results of `write!` below carry nothing.
+    // Writing to a String cannot fail, so the results of `write!` below are ignored.
 
     pub fn rectangle(&mut self, class: &str, area: Area) {
         let (x, y) = (pixel(area.left), pixel(area.top));
@@ -97,7 +97,7 @@ impl Svg {
         let _ = writeln!(self.body, r#"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
     }
 
-    /// Draws what `content` draws, cut off at the edge of `area`.
+    /// Draws `content`, cut off at the edge of `area`.
     pub fn clipped(&mut self, area: Area, content: impl FnOnce(&mut Self)) {
         let id = &self.id;
         let _ = write!(self.body, r#"<clipPath id="{id}-clip">"#);
@@ -107,7 +107,7 @@ impl Svg {
         self.body.push_str("</g>\n");
     }
 
-    /// The finished element of `width` by `height` pixels, with the name and description that a screen reader speaks.
+    /// The finished element of `width` by `height` pixels, with the title and the description for a screen reader.
     pub fn finish(self, width: f64, height: f64, title: &str, description: &str) -> String {
         let Self { id, body } = self;
         let (width, height) = (pixel(width), pixel(height));

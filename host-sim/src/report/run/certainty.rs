@@ -1,5 +1,5 @@
-//! The figures of what is certain and of what it costs: the bound around the estimate, the command and what the envelope
-//! made of it enter; two figures with their captions leave onto the page.
+//! The figures of the bound and of the envelope: the bound around the estimate enters, and the command with the
+//! envelope's changes; two figures with their captions leave onto the page.
 
 use super::{
     BoundSample, RunReport,
@@ -11,13 +11,14 @@ use crate::report::markup::{count, quantity};
 use crate::report::page::Page;
 use crate::report::plot::{Axis, Guide, Layer, Series, Tone};
 
-/// The panel that shows the usual width is cut off at this many times the usual distance from the estimate to an end.
+/// The enlarged panel is cut off at this many times the usual distance from the estimate to an end of the bound.
 const CUT_AT: f64 = 4.0;
 
-/// The panel goes on a little beyond that, so that the outermost ticks keep clear of the axis's title.
+/// The panel goes on slightly beyond that, so that the outermost ticks keep clear of the axis's title.
 const BEYOND: f64 = 1.15;
 
-/// Samples further apart than this many times the usual time between two are not joined: nothing was certain between.
+/// Samples that are further apart than this many times the usual interval are not joined, because there was no bound
+/// between them.
 const JOINED_WITHIN: f64 = 1.5;
 
 impl RunReport {
@@ -53,7 +54,7 @@ impl RunReport {
         layers
     }
 
-    /// Where the enlarged panel ends, if the whole of the bound leaves the usual width too small to be read.
+    /// The end of the enlarged panel; `None` if the usual width can be read in the panel of the whole bound.
     fn cut_m(&self) -> Option<f64> {
         let ends = |sample: &BoundSample| sample.highest_m.max(-sample.lowest_m);
         let ends: Vec<f64> = self.bound.iter().map(ends).filter(|end| end.is_finite()).collect();

@@ -5,14 +5,14 @@ use crate::measure::metrics::{SETTLED_FROM_S, errors_since, max_abs};
 use crate::report::page::Page;
 use crate::report::plot::{Axis, Category, Chart, Guide, Interval, Layer, Series, Strip, StripRow, Tone, cumulative};
 
-/// The paper's own bound on its error, in metres.
+/// The error that the paper claims not to exceed, in metres.
 const PAPER_BOUND_M: f64 = 0.5;
 
-/// Ours gets a panel of its own if it is this many times smaller than what the first panel has to show.
+/// The unit's error gets a panel of its own if it is this many times smaller than the range of the first panel.
 const ZOOM_FROM: f64 = 4.0;
 
 impl RunReport {
-    /// The time that all figures share, from the first to the last sample of anything.
+    /// The time axis of all figures, from the first to the last sample of any series.
     pub(super) fn span(&self) -> (f64, f64) {
         let series = self.trajectories.iter().chain([&self.error_ours, &self.error_paper]);
         let series = series.chain(&self.speeds).chain(&self.gaps).flat_map(|series| &series.points);
@@ -34,7 +34,7 @@ impl RunReport {
         Chart { description, shades, ..Chart::new(title, self.time(), y) }
     }
 
-    /// The colour of the vehicle called `name`: the ego has its own.
+    /// The colour of the vehicle called `name`. The ego has its own.
     fn tone(&self, name: &str) -> Tone {
         match self.trajectories.iter().position(|vehicle| vehicle.name == name) {
             Some(index) if index == self.ego => Tone::Ego,
@@ -88,7 +88,7 @@ impl RunReport {
         page.figure(title, &caption, &[&both, &zoomed]);
     }
 
-    /// Whether our error is too small to be read on the axis that the paper's bound and its error need.
+    /// Whether the unit's error is too small to be read on the axis that the paper's bound and error need.
     pub(super) fn zooms_on_ours(&self) -> bool {
         let largest = |series: &Series| max_abs(&finite(series)).unwrap_or(0.0);
         let ours = largest(&self.error_ours);
@@ -108,7 +108,7 @@ impl RunReport {
         chart.guides = vec![Guide { at: 99.0, label: "99 %".into() }, Guide { at: 50.0, label: "half".into() }];
         let staircase = |name: &str, values: &[f64]| {
             let mut steps = cumulative(values, least);
-            // Beyond its largest error a method is complete; the line says so up to the edge.
+            // Beyond its largest error the distribution of a method is complete. The line continues to the edge.
             steps.extend(steps.last().map(|last| (most, last.1)));
             Series::new(name, steps)
         };
@@ -162,7 +162,7 @@ impl RunReport {
     }
 }
 
-/// How severe a mode is, and its colour. A mode is known by its first word.
+/// The severity of a mode, and its colour. A mode is identified by its first word.
 fn severity(mode: &str) -> (u8, Tone) {
     let word: String = mode.chars().take_while(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
     match word.as_str() {
@@ -175,15 +175,15 @@ fn severity(mode: &str) -> (u8, Tone) {
     }
 }
 
-/// `axis` down to 0 where the series come near it, so that the distance from a collision or a stop can be read off; where
-/// they stay far from it that distance is plain, and the room is better spent on what differs.
+/// `axis` down to 0 if the series come near 0, so that the distance from a collision or a stop can be read. If they
+/// stay far from 0, that distance is obvious, and the axis shows the differences instead.
 fn grounded(axis: Axis, series: &[Series]) -> Axis {
     let values = || series.iter().flat_map(finite);
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if low < high * 0.6 { axis.including(0.0) } else { axis }
 }
 
-/// Whole decades around the positive ones of `values`, six of them at the most, ending with the largest.
+/// Whole decades around the positive values, six at the most, ending with that of the largest value.
 fn decades(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let positive = values.filter(|value| *value > 0.0);
     let (Some(low), Some(high)) = (positive.clone().reduce(f64::min), positive.reduce(f64::max)) else {

@@ -10,26 +10,26 @@ use super::{
     plot::{Interval, Series},
 };
 
-/// Whether the run passed, and why or why not.
+/// Whether the run passed, with the reasons.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Verdict {
     /// Whether every limit was met.
     pub passed: bool,
-    /// A sentence for each thing that decided it.
+    /// One sentence per reason.
     pub reasons: Vec<String>,
 }
 
 /// A limit on a figure of merit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Limit {
-    /// Meets it: this or less.
+    /// Met by this value or less.
     AtMost(f64),
-    /// Meets it: this or more.
+    /// Met by this value or more.
     AtLeast(f64),
 }
 
 impl Limit {
-    /// Whether `value` meets the limit; what is not a number meets none.
+    /// Whether `value` meets the limit. A value that is not a number meets no limit.
     pub fn is_met_by(self, value: f64) -> bool {
         match self {
             Self::AtMost(limit) => value <= limit,
@@ -41,15 +41,15 @@ impl Limit {
 /// One figure of merit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SummaryRow {
-    /// What is measured.
+    /// The name of the figure.
     pub metric: String,
-    /// Our value; `None` where there is nothing to measure.
+    /// The unit's value; `None` where there is no measurement.
     pub ours: Option<f64>,
     /// The literal paper's value on the same messages; `None` where it has none.
     pub paper: Option<f64>,
     /// The unit; empty for a plain count.
     pub unit: String,
-    /// The limit on our value.
+    /// The limit on the unit's value.
     pub limit: Option<Limit>,
 }
 
@@ -58,26 +58,26 @@ pub struct SummaryRow {
 pub struct ModeTrack {
     /// The vehicle's name, as in the trajectories.
     pub vehicle: String,
-    /// `(from_s, mode)` in order of time, each until the next; repeated modes, as a sample per tick has them, count as
-    /// one. `standby`, `cooperative`, `holdover`, `fallback` and `fault` (with or without more after the word) have
-    /// colours of their own.
+    /// `(from_s, mode)` in order of time; each holds until the next. Repeated modes, as in a sample per tick, count as
+    /// one. `standby`, `cooperative`, `holdover`, `fallback` and `fault` have their own colours, with or without more
+    /// text after the word.
     pub changes: Vec<(f64, String)>,
 }
 
-/// What is certain of the ego's position at one time, in metres from our estimate of it: behind is negative.
+/// The bound of the ego's position at one time, in metres relative to the unit's estimate; behind it is negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundSample {
-    /// When.
+    /// Time.
     pub at_s: f64,
-    /// As far back as it can be.
+    /// Lowest possible position.
     pub lowest_m: f64,
-    /// Where it is.
+    /// True position.
     pub truth_m: f64,
-    /// As far ahead as it can be.
+    /// Highest possible position.
     pub highest_m: f64,
 }
 
-/// How the estimating vehicle is driven.
+/// The command and the acceleration of the estimating vehicle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drive {
     /// Its name, as in the trajectories.
@@ -92,17 +92,17 @@ pub struct Drive {
     pub limited_s: Vec<f64>,
 }
 
-/// Everything that the page of one run shows. Vehicles are known by name: a series of `gaps` or `speeds` belongs to the
-/// trajectory of the same name. Times are in seconds of the run.
+/// The content of the page. Vehicles are identified by name: a series of `gaps` or `speeds` belongs to the trajectory
+/// of the same name. Times are in seconds of the run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunReport {
     /// The page's title.
     pub title: String,
-    /// What kind of run it was: names and values.
+    /// The settings of the run: names and values.
     pub facts: Vec<(String, String)>,
     /// The verdict.
     pub verdict: Verdict,
-    /// The command line that makes this run again.
+    /// The command line that repeats this run.
     pub command: String,
     /// The figures of merit.
     pub summary: Vec<SummaryRow>,
@@ -110,27 +110,27 @@ pub struct RunReport {
     pub trajectories: Vec<Series>,
     /// Index of the ego in `trajectories`.
     pub ego: usize,
-    /// Our error of the ego's position as its follower estimates it, in metres.
+    /// The unit's error: that of the ego's position as its follower estimates it, in metres.
     pub error_ours: Series,
-    /// The literal paper's, on the same messages.
+    /// The literal paper's error, on the same messages.
     pub error_paper: Series,
-    /// What is certain of the ego's position, where anything is.
+    /// The bound of the ego's position, at the times at which there is one.
     pub bound: Vec<BoundSample>,
-    /// How the vehicle that estimates is driven.
+    /// The command and the acceleration of the estimating vehicle.
     pub drive: Drive,
-    /// When the ego's link was silent by design.
+    /// The times in which the scenario silences the ego's link.
     pub silences: Vec<Interval>,
-    /// Each message sent over the ego's link: when, and its delay in seconds; `None` if it was lost.
+    /// For each message over the ego's link its time, and its delay in seconds; `None` if it was lost.
     pub channel: Vec<(f64, Option<f64>)>,
     /// Speed over time of each vehicle, in m/s.
     pub speeds: Vec<Series>,
-    /// Bumper gap to the vehicle ahead over time, in metres, of each vehicle but the leader.
+    /// Bumper gap to the vehicle ahead over time, in metres, for each vehicle except the leader.
     pub gaps: Vec<Series>,
     /// Modes over time.
     pub modes: Vec<ModeTrack>,
-    /// Refused input by cause.
+    /// Refusals by cause.
     pub refusals: Vec<(String, u64)>,
-    /// Anything else that the reader has to know.
+    /// Further notes for the reader.
     pub notes: Vec<String>,
 }
 
@@ -167,7 +167,7 @@ impl RunReport {
 
     fn list_refusals(&self, page: &mut Page) {
         let mut refusals: Vec<&(String, u64)> = self.refusals.iter().filter(|refusal| refusal.1 > 0).collect();
-        // The most frequent first; equal ones keep the order they came in.
+        // The most frequent cause comes first. Equal counts keep their order.
         refusals.sort_by_key(|refusal| std::cmp::Reverse(refusal.1));
         if refusals.is_empty() {
             page.paragraph("No frame was refused.");
@@ -201,7 +201,7 @@ fn summary_cells(row: &SummaryRow) -> Vec<Cell> {
     vec![Cell::text(row.metric.clone()), Cell::strong(spelled(row.ours)), Cell::number(spelled(row.paper)), unit, limit]
 }
 
-/// A whole number without a unit is a count; anything else is a measurement with three digits that count.
+/// A whole number without a unit is a count. Any other value is a measurement with three significant digits.
 fn significant_or_count(value: f64, unit: &str) -> String {
     if unit.is_empty() && value.fract() == 0.0 && (0.0..1e15).contains(&value) {
         count(value as u64)

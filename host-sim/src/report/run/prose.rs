@@ -1,4 +1,4 @@
-//! The captions of a run's report: series enter, a sentence or two with their numbers leave.
+//! The captions of a run's report: series enter; a sentence or two with their numbers leave.
 
 use super::RunReport;
 use crate::measure::metrics::{SETTLED_FROM_S, error_statistics_since, percentile_abs};
@@ -12,7 +12,7 @@ impl RunReport {
         self.trajectories.get(self.ego).map_or("the ego", |ego| ego.name.as_str())
     }
 
-    /// What prose calls the vehicle of this name.
+    /// The vehicle's name in prose.
     pub(super) fn call(&self, name: &str) -> String {
         match name.chars().next() {
             _ if name == self.ego_name() => "the ego".into(),
@@ -21,7 +21,8 @@ impl RunReport {
         }
     }
 
-    /// "Shaded: silence, 4–8 s." for the end of a caption; the first few silences by their times, many by their number.
+    /// "Shaded: silence, 4–8 s." for the end of a caption. A few silences are given by their times, many by their
+    /// number.
     pub(super) fn say_shades(&self) -> String {
         let times = |s: &super::Interval| format!("{}–{} s", plain(s.from), plain(s.to));
         match self.silences.as_slice() {
@@ -172,7 +173,7 @@ fn settled(series: &Series) -> crate::measure::metrics::ErrorStatistics {
     error_statistics_since(&points, SETTLED_FROM_S)
 }
 
-/// First and last point of a series that are finite.
+/// The first and the last finite point of a series.
 fn ends(series: &Series) -> Option<((f64, f64), (f64, f64))> {
     let mut finite = series.points.iter().copied().filter(|point| point.0.is_finite() && point.1.is_finite());
     let first = finite.next()?;
@@ -185,7 +186,7 @@ fn lowest(series: &[Series]) -> Option<(&str, f64, f64)> {
     samples.filter(|sample| sample.2.is_finite()).min_by(|a, b| a.2.total_cmp(&b.2))
 }
 
-/// A time to hundredths, without zeros that say nothing.
+/// A time to hundredths, without trailing zeros.
 pub(super) fn plain(seconds: f64) -> String {
     let spelled = format!("{seconds:.2}");
     spelled.trim_end_matches('0').trim_end_matches('.').into()

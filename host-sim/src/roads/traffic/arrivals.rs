@@ -1,5 +1,5 @@
-//! Who appears in a corridor, and when: trips whose time has come enter; vehicles on the roads, whose units know their surroundings,
-//! leave.
+//! The arrivals in a corridor: trips whose time has come enter; vehicles on the roads leave, with units that know their
+//! surroundings.
 
 use std::io;
 
@@ -24,21 +24,21 @@ use crate::sim::sensors::Sensors;
 use crate::sim::vehicle::Vehicle;
 use crate::sim::world::{WARM_UP_S, clock_offset, warm_up_ticks};
 
-/// How well every vehicle knows its own motion, as it publishes it.
+/// Accuracy of every vehicle's own motion, as measured and published.
 const ACCURACY: Accuracy = Accuracy { position_m: 0.05, speed_mps: 0.02 };
 
-/// A vehicle has heard whoever is near for so long before it appears, in seconds: from somewhere it has come.
+/// Before it appears, a vehicle has heard the stations near by for this time, in seconds, as if it had driven up.
 pub(super) const LISTENING_S: f64 = 1.0;
 
-/// Braking that a newcomer may need behind a slower vehicle, in m/s², is not more than this.
+/// Hardest braking that a newcomer may need behind a slower vehicle, in m/s².
 const ENTRY_BRAKING_MPS2: f64 = 2.0;
 
-/// Nobody appears nearer than this, in metres, behind a vehicle that it has not heard for the last [`LISTENING_S`], or will not
-/// for the next [`HEARD_S`].
+/// No vehicle appears nearer than this, in metres, behind a vehicle that was silent in the last [`LISTENING_S`] or will
+/// be silent in the next [`HEARD_S`].
 const UNHEARD_M: f64 = 100.0;
 
 impl Traffic<'_> {
-    /// Those whose time has come appear, if there is room.
+    /// Lets the vehicles appear whose time has come, if there is room.
     pub(super) fn admit(&mut self, at_s: f64) -> io::Result<()> {
         while let Some(trip) = self.trips.get(self.next).filter(|trip| trip.at_s <= at_s) {
             self.waiting[trip.road].push_back(self.next);
@@ -56,9 +56,10 @@ impl Traffic<'_> {
         Ok(())
     }
 
-    /// Whether the one ahead is as far away as the newcomer would keep it, and braking down to its speed takes; and, if it is near,
-    /// has not been silent just before, nor is to fall silent at once. Who comes up behind somebody has long heard of it; one
-    /// that appears out of nothing has not.
+    /// Whether there is room for a newcomer. The gap to the vehicle ahead has to be the newcomer's following distance,
+    /// plus the distance for braking down to that vehicle's speed. If the vehicle ahead is near, it must not have been
+    /// silent just before, nor fall silent at once: a vehicle that drives up behind it would have heard it long ago,
+    /// but a newcomer that has just appeared has not.
     fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
@@ -74,7 +75,7 @@ impl Traffic<'_> {
         gap_m >= traffic.standstill_m + v * traffic.time_gap_s + braking_m
     }
 
-    /// Puts into the air what a vehicle has heard before it appeared there.
+    /// Puts into the air the messages that a vehicle heard before it appeared at `here`.
     fn overhear(&mut self, index: usize, here: Point) {
         for (aired_s, from, there, message) in &self.aired {
             if Shift::between(here, *there).length_m() <= self.conditions.radio.range_m {
@@ -150,7 +151,7 @@ mod tests {
     use crate::roads::experiment::Experiment;
     use crate::roads::watch::{Sighting, Watch};
 
-    /// When the second one appeared.
+    /// Time at which the second vehicle appeared.
     #[derive(Default)]
     struct Second {
         from_s: Option<f64>,
@@ -166,8 +167,8 @@ mod tests {
         fn left(&mut self, _: f64, _: usize) {}
     }
 
-    /// Two on one road, each with its arrival and when it falls silent once it is there: when the second one appears, and for
-    /// how long it is silent in the next 9 s.
+    /// Two vehicles on one road, each with its arrival time and the time until its silence after it appears. The
+    /// result: when the second vehicle appears, and for how long it is silent in the next 9 s.
     fn second_appears(first: (f64, f64), second: (f64, f64)) -> (f64, f64) {
         let experiment = Experiment::new(example::corridor());
         let trip = |(at_s, dark_after_s)| Trip {
@@ -193,9 +194,9 @@ mod tests {
     #[test]
     fn nobody_appears_near_behind_a_vehicle_that_it_has_not_heard() {
         let silent_later = 60.0;
-        // It has room, and both have been on the air.
+        // There is room, and both vehicles have been on the air.
         assert_eq!(second_appears((0.0, silent_later), (3.0, silent_later)), (3.0, 0.0));
-        // The one ahead is silent from 2 s to 6 s.
+        // The vehicle ahead is silent from 2 s to 6 s.
         let (appears_s, _) = second_appears((0.0, 2.0), (4.0, silent_later));
         assert!((7.0..7.02).contains(&appears_s), "{appears_s}");
     }

@@ -1,5 +1,5 @@
-//! Who leaves a corridor: vehicles at the end of their way enter; those who have left drive on by sight, stay on the air until
-//! everybody whom they could matter to has heard of it, and vanish.
+//! The departures from a corridor: vehicles at the end of their way enter. Having left, they drive on by sight, and
+//! stay on the air until every vehicle that they could matter to has heard that they left. Then they vanish.
 
 use std::io;
 
@@ -13,14 +13,15 @@ use crate::roads::network::RUN_OUT_M;
 use crate::roads::watch::{Sighting, Watch};
 use crate::sim::vehicle::Vehicle;
 
-/// They stay on the air until everybody who minds them could hear them for so long since they left, in seconds. As everyone falls silent once, that
-/// is by two silences later.
+/// A vehicle that has left stays on the air until every vehicle that depends on it could hear it for this time since it
+/// left, in seconds. Every vehicle falls silent once, so this takes at most two silences longer.
 const HEARD_OF_S: f64 = 2.0;
 
 impl Traffic<'_> {
-    /// Who has left and has lost whom it follows drives on by sight: the one ahead of it vanishes without a word, and for all that
-    /// is known it stands there. Each would wait for that, and all behind it, back onto the way. With the envelope everyone who
-    /// has left does, as what is certain of the one ahead counts then.
+    /// Drives by sight the vehicles that have left and have lost their target. The target vanishes without a message,
+    /// and as far as the unit knows it may stand there. So each such unit would wait for it, and all vehicles behind
+    /// would wait too, back onto the way. With the envelope, all vehicles that have left drive by sight, because the
+    /// envelope goes by the bound of the vehicle ahead.
     pub(super) fn run_out(&mut self) {
         let is_lost = |vehicle: &Vehicle| matches!(vehicle.unit.mode(), Mode::Fallback { .. });
         let by_sight = |traveller: &Traveller| {
@@ -39,7 +40,7 @@ impl Traffic<'_> {
         }
     }
 
-    /// Those who have driven to the end of their way leave, and vanish a little later.
+    /// Marks the vehicles that have reached the end of their way as having left. Removes them a little later.
     pub(super) fn dismiss(
         &mut self,
         at_s: f64,
@@ -69,7 +70,8 @@ impl Traffic<'_> {
         Ok(())
     }
 
-    /// Whether everyone who is on his way to the last intersection of one that has left could hear it for long enough since.
+    /// Whether every vehicle on its way to the last intersection of a vehicle that has left could hear that vehicle for
+    /// long enough since.
     fn is_heard_of(&self, at_s: f64, gone: &Traveller) -> bool {
         let Some(left_s) = gone.left_s else { return false };
         let last = self.network.lanes[self.trips[gone.trip].road].stops.last().map(|stop| stop.intersection);
@@ -82,7 +84,7 @@ impl Traffic<'_> {
     }
 }
 
-/// For how much of that time neither of the two was silent; at least.
+/// Time within `since` in which neither vehicle was silent; a lower bound.
 fn heard_s(since: &Window, one: &Window, other: &Window) -> f64 {
     let silent_s = |dark: &Window| (dark.to_s.min(since.to_s) - dark.from_s.max(since.from_s)).max(0.0);
     since.to_s - since.from_s - silent_s(one) - silent_s(other)

@@ -1,34 +1,34 @@
-//! What vehicles are called on the air: who appears and who vanishes enters; a number that nobody else has leaves.
+//! The station numbers on the air: vehicles that appear and vanish enter; a number that no other vehicle has leaves.
 //!
-//! A unit's bus has room for 255 stations, and a unit that hears two by one name takes them for one. So a number is given
-//! again only when whoever had it has long vanished; while all are taken nobody appears.
+//! A unit's bus has room for 255 stations, and a unit that hears two vehicles with one number takes them for one. So a
+//! number is used again only when its last vehicle has long vanished. While all numbers are in use, no vehicle appears.
 
-/// Numbers that there are.
+/// How many numbers there are.
 const NUMBERS: usize = 255;
 
-/// A number rests for so long after its vehicle has vanished, in seconds: nobody remembers that one any more.
+/// A number rests for this time after its vehicle has vanished, in seconds. By then no unit remembers that vehicle.
 const RESTS_S: f64 = 60.0;
 
-/// The numbers.
+/// The station numbers.
 pub(super) struct Numbers {
-    /// From when on each is free.
+    /// For each number, the time from which it is free.
     free_s: [f64; NUMBERS],
 }
 
 impl Numbers {
-    /// All of them are free.
+    /// All numbers are free.
     pub(super) const fn new() -> Self {
         Self { free_s: [f64::NEG_INFINITY; NUMBERS] }
     }
 
-    /// The number for a vehicle that appears now: the first free one from its trip's on. `None`: all are taken.
+    /// The number for a vehicle that appears now: the first free one, counted from its trip on. `None`: all are in use.
     pub(super) fn take(&mut self, at_s: f64, trip: usize) -> Option<usize> {
         let number = (0..NUMBERS).map(|step| (trip + step) % NUMBERS).find(|number| self.free_s[*number] <= at_s)?;
         self.free_s[number] = f64::INFINITY;
         Some(number)
     }
 
-    /// A vehicle has vanished.
+    /// Frees the number of a vehicle that has vanished.
     pub(super) fn give_back(&mut self, at_s: f64, number: usize) {
         self.free_s[number] = at_s + RESTS_S;
     }

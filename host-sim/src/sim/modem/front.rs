@@ -1,7 +1,7 @@
-//! Who is foremost on each leg: what the stations said last of their places enters, the nearest two of each leg leave.
+//! The foremost stations of each leg: the places that the stations sent last enter, the nearest two of each leg leave.
 //!
-//! A rank asks how many are nearer than a station, and never needs more than whether there are none, one or more of them. The nearest two
-//! answer that, so a message costs one look at all stations and not one for each of them.
+//! A rank depends on whether no station, one station or several stations are nearer than the station in question. The
+//! nearest two of each leg answer that. So a message costs one pass over all stations, not one pass per station.
 
 use super::Placed;
 use super::relevance::{Across, Course, Foremost, LEADERS};
@@ -9,7 +9,7 @@ use super::relevance::{Across, Course, Foremost, LEADERS};
 /// Legs that a route can name.
 const LEGS: usize = 8;
 
-/// The two least ways of those seen, in metres.
+/// The two shortest distances of those added, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Nearest([f64; LEADERS]);
 
@@ -25,14 +25,14 @@ impl Nearest {
         }
     }
 
-    /// The nearer of those before that way, and whether it is the only one; `None`: nobody is.
+    /// The shortest distance below `way_m`, and whether it is the only one below. `None`: none is below.
     fn before(&self, way_m: f64) -> Option<(f64, bool)> {
         let [first, second] = self.0;
         (first < way_m).then_some((first, second >= way_m))
     }
 }
 
-/// The foremost stations.
+/// The foremost stations ahead of the unit and on the crossing legs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Front {
     ahead: Nearest,
@@ -41,7 +41,7 @@ pub(super) struct Front {
 }
 
 impl Front {
-    /// Of all those places, for a unit on that way.
+    /// The foremost of the stations at `places`, for a unit on the way `course`.
     pub fn of(course: &Course, places: &[Placed]) -> Self {
         let mut front = Self { ahead: Nearest::NOBODY, across: [Nearest::NOBODY; LEGS], newest_s: f64::NEG_INFINITY };
         for placed in places {
@@ -59,12 +59,12 @@ impl Front {
         front
     }
 
-    /// When anybody was heard last.
+    /// Time at which a station was last heard.
     pub fn newest_s(&self) -> f64 {
         self.newest_s
     }
 
-    /// What a station is to the unit.
+    /// The role of a station for the unit.
     pub fn foremost(&self, course: &Course, placed: &Placed) -> Foremost {
         match course.across(&placed.route) {
             _ if self.leads(course, placed) => Foremost::Ahead,
@@ -74,13 +74,13 @@ impl Front {
         }
     }
 
-    /// Whether nobody comes into the unit's next conflict area before that one by the same leg.
+    /// Whether no other station on the same leg enters the unit's next conflict area before this one.
     pub fn is_first(&self, one: Across) -> bool {
         self.before(one).is_none()
     }
 
-    /// Whether a station is the next one of its leg into the unit's next conflict area, by what each said last; or the second, where the first
-    /// is there soon.
+    /// Whether a station is the next one of its leg to enter the unit's next conflict area, by the last messages. The
+    /// second station counts too if the first one is about to enter.
     fn enters_next(&self, one: Across) -> bool {
         self.before(one).is_none_or(|(way_m, is_only)| is_only && Across { way_m, ..one }.enters_soon())
     }
@@ -89,8 +89,8 @@ impl Front {
         self.across.get(usize::from(one.leg))?.before(one.way_m)
     }
 
-    /// Whether a station is one of the nearest two ahead on the unit's own leg, by what each said last: who is silent has not
-    /// passed anybody.
+    /// Whether a station is one of the nearest two ahead on the unit's own leg, by the last messages. A silent station
+    /// counts with its last place, because vehicles do not overtake on a leg.
     fn leads(&self, course: &Course, placed: &Placed) -> bool {
         placed.ahead_m(course).is_some_and(|ahead_m| self.ahead.before(ahead_m).is_none_or(|(_, is_only)| is_only))
     }

@@ -1,17 +1,24 @@
-//! A vehicle's V2X modem: the unit's `Own*` frames enter and a message for the channel leaves; messages from the channel
-//! enter and `Peer*` frames on the vehicle's own bus leave, with that bus's own counters.
+//! A vehicle's V2X modem. The unit's `Own*` frames enter, and a message for the channel leaves. Messages from the
+//! channel enter, and `Peer*` frames leave on the vehicle's own bus, with the counters of that bus.
 //!
-//! *Slots:* a station keeps its slot while nobody takes it. One without a slot gets a free one. If there is none, it takes
-//! that of the least relevant station ([`Rank`]), if it is more relevant itself; or if it is as relevant and that station has
-//! been silent for [`SLOT_REUSE_S`]. Otherwise it is not relayed, and counted. So a station in use is never pushed out by a
-//! less relevant one; whom the unit follows finds the last free slot kept for it and is not pushed out at all, even by a
-//! silence. A slot that changes hands rests until nothing has been said in it for [`SLOT_REUSE_S`], because before that the
-//! unit takes the new station for a mistake. A station that cannot matter is not relayed even if there is room;
-//! but one in a slot that ceases to matter is until the unit has heard that. So is one that was put out of its slot, while nobody
-//! else has spoken there: to the unit it is still where it was, and may be waited for.
+//! *Slots:* a station keeps its slot while no other station takes it. A station without a slot gets a free one. If no
+//! slot is free, it takes the slot of the least relevant station ([`Rank`]), provided that it is itself more relevant.
+//! If it is equally relevant, it takes that slot only once the other station has been silent for [`SLOT_REUSE_S`].
+//! Otherwise it is not relayed, and the message is counted. So a less relevant station never takes the slot of a
+//! station that is in use.
 //!
-//! *Driving parameters* are relayed when a station gets its slot (on a route with its first messages), when they change, and otherwise
-//! every [`PARAMETERS_EVERY_S`], so that all of them fit the bus.
+//! The last free slot is kept for the station that the unit follows. That station never loses its slot, not even by a
+//! silence.
+//!
+//! A slot that changes hands rests until nothing has been relayed in it for [`SLOT_REUSE_S`], because until then the
+//! unit takes the new station for an error.
+//!
+//! An irrelevant station is not relayed, even if a slot is free. A station in a slot that becomes irrelevant is still
+//! relayed until the unit has heard that. So is a station that lost its slot, as long as no other station has used that
+//! slot: the unit still has it at its last place, and may be waiting for it.
+//!
+//! *Driving parameters* are relayed when a station gets its slot (on a route with its first messages) and when they
+//! change. Otherwise they are relayed every [`PARAMETERS_EVERY_S`], so that those of all stations fit the bus.
 
 use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::route::Route;
@@ -27,7 +34,7 @@ pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
 pub use transmitter::{Transmitter, V2xMessage};
 pub use unserved::UNSERVED_EVERY_S;
 
-/// Slots of a simulated unit: whoever is on the corridor's roads at once finds one.
+/// Slots of a simulated unit: enough for every station that is on the corridor's roads at once.
 pub const PEERS: usize = 16;
 
 /// Slots of the firmware.
@@ -36,27 +43,28 @@ pub const ECU_PEERS: usize = 8;
 /// A station that has been silent for this long may lose its slot.
 pub const SLOT_REUSE_S: f64 = 2.0;
 
-/// What a station that ceases to matter says is relayed so often still.
+/// Number of messages that are still relayed of a station that has become irrelevant.
 const NEWS: u8 = 4;
 
-/// On a route a slot's first driving parameters are relayed with each message, so many of them, because the unit trusts an identifier from its
-/// second frame on, and a vehicle may fall silent before half a second has gone by.
+/// On a route, the first driving parameters of a slot are relayed with each message, this many times. The unit trusts
+/// an identifier from its second frame on, and a vehicle may fall silent within half a second.
 const FIRST_PARAMETERS: u8 = 3;
 
-/// A station that has not been relayed for longer than this has paused.
+/// A station that has not been relayed for longer than this, in seconds, counts as having paused.
 const PAUSE_S: f64 = 0.45;
 
-/// Where a station said it was is forgotten after so long, if it has no slot.
+/// The last place of a station without a slot is forgotten after this time, in seconds.
 const FORGOTTEN_S: f64 = 10.0;
 
-/// A station that does not say how long it is may be so long, in metres.
+/// Length assumed for a station that does not publish its own, in metres.
 const LONGEST_M: f64 = 20.0;
 
-/// Who has said where it is within so long is on the air.
+/// A station that has sent its place within this time, in seconds, counts as on the air.
 const HEARD_S: f64 = 1.0;
 
-/// On a route nobody is relayed before the modem has listened for so long, so that it knows who matters most: a slot that was given
-/// to the wrong station rests for longer than that before it can be another one's. Everyone says where it is five times a second.
+/// On a route no station is relayed before the modem has listened for this time, in seconds. By then the modem knows
+/// which stations are the most relevant, because every vehicle sends its place five times a second. A slot that was
+/// given to the wrong station would rest for longer than this before another station could use it.
 const LISTENS_S: f64 = 0.6;
 
 /// Time between two relays of driving parameters that do not change.
@@ -66,20 +74,20 @@ pub const PARAMETERS_EVERY_S: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 struct Tenant {
     station: StationHash,
-    /// When it was relayed last, or whoever had the slot before.
+    /// Time at which this station, or the one that had the slot before, was last relayed.
     relayed_s: f64,
-    /// Nothing is relayed before.
+    /// Nothing is relayed before this time.
     from_s: f64,
-    /// Whether it has been relayed.
+    /// Whether the station has been relayed.
     relayed: bool,
     /// How many of its driving parameters have been relayed, up to [`FIRST_PARAMETERS`].
     parameter_messages: u8,
-    /// How often it has been relayed since it ceased to matter.
+    /// How often the station has been relayed since it became irrelevant.
     gone: u8,
     parameters: Option<(DrivingParameters, f64)>,
 }
 
-/// Where a station was when it said so.
+/// The place that a station sent last.
 #[derive(Clone, Copy, Debug)]
 struct Placed {
     station: StationHash,
@@ -87,13 +95,13 @@ struct Placed {
     speed_mps: f64,
     length_m: f64,
     at_s: f64,
-    /// Whether it was ahead of the unit on its leg then. Nobody passes there: it still is, though the unit may have driven past that
-    /// place since.
+    /// Whether the station was ahead of the unit on the unit's leg at that time. It still is, because vehicles do not
+    /// overtake there, even if the unit has driven past that place since.
     is_ahead: bool,
 }
 
 impl Placed {
-    /// How far ahead of the unit on its leg it was when it said that, if it is ahead.
+    /// Distance by which that place is ahead of the unit on the unit's leg; `None` if the station is not ahead.
     fn ahead_m(&self, course: &Course) -> Option<f64> {
         course.on_leg(&self.route).filter(|_| self.is_ahead)
     }
@@ -104,21 +112,21 @@ impl Placed {
 pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
-    /// Who was in a free slot last: to the unit it still is.
+    /// The last station of each free slot: the unit still has it there.
     left: Vec<Option<Tenant>>,
-    /// From when on a free slot may be used.
+    /// Time from which a free slot may be used.
     rested_s: Vec<f64>,
-    /// Whether anything has been said in a slot.
+    /// Whether anything has been relayed in a slot.
     is_begun: Vec<bool>,
     places: Vec<Placed>,
     course: Course,
     turned_away: u64,
-    /// When it heard the first message.
+    /// Time of the first message that the modem heard.
     begun_s: Option<f64>,
 }
 
 impl Relay {
-    /// On a bus whose catalogue starts at `base`.
+    /// A modem on a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
@@ -127,13 +135,13 @@ impl Relay {
         Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
     }
 
-    /// Limits it to the slots that the unit has, if nothing has been heard yet.
+    /// Limits the modem to the unit's number of slots. It has to be called before the first message is heard.
     pub fn limit(&mut self, slots: usize) {
         self.slots.truncate(slots);
         self.left.truncate(slots);
     }
 
-    /// Lets it know the unit's way.
+    /// Tells the modem the unit's way.
     pub fn set_out(&mut self, course: Course) {
         self.course = course;
     }
@@ -143,7 +151,7 @@ impl Relay {
         self.course.take(said);
     }
 
-    /// Messages that found no slot.
+    /// Number of messages that found no slot.
     #[must_use]
     pub fn turned_away(&self) -> u64 {
         self.turned_away
@@ -165,7 +173,8 @@ impl Relay {
         };
         let says_where = message.route.is_some() || !self.course.is_on_route();
         match &mut self.slots[slot] {
-            // After a pause it has to say first where it is, or the unit would take it where it was.
+            // After a pause the place has to come first, or else the unit would take the station to be at its last
+            // place.
             Some(tenant) if !says_where && (!tenant.relayed || at_s - tenant.relayed_s > PAUSE_S) => return,
             Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
                 tenant.relayed_s = at_s;
@@ -174,7 +183,7 @@ impl Relay {
             }
             _ => return,
         }
-        // The unit puts positions on its own axis by the route, so that has to be there first.
+        // The unit needs the route first, because it converts positions to its own axis by the route.
         let mut said: Vec<Said> = message.route.map(Said::Route).into_iter().collect();
         said.push(Said::Motion(message.motion));
         if let Some(parameters) =
@@ -184,7 +193,8 @@ impl Relay {
         }
         said.extend(message.horizon.map(Said::Horizon));
         self.dismiss(slot, at_s);
-        // The unit trusts an identifier from its second frame on; a station's first message may be its last one before a silence.
+        // Twice, because the unit trusts an identifier from its second frame on, and the first message may be the last
+        // before a silence.
         let times = if std::mem::replace(&mut self.is_begun[slot], true) { 1 } else { 2 };
         for said in std::iter::repeat_n(said, times).flatten() {
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
@@ -192,14 +202,14 @@ impl Relay {
         }
     }
 
-    /// Whether a station that matters no more is in a slot and has not said so: who was silent while it left would otherwise be
-    /// waited for, because the unit last heard of it on its way.
+    /// Whether an irrelevant station has a slot, and the unit has not yet heard that the station has left. Otherwise
+    /// the unit would wait for a station that was silent while it left, because the unit last heard of it on its way.
     fn has_to_say_so(&self, station: StationHash) -> bool {
         let known = self.slots.iter().chain(&self.left).flatten();
         known.into_iter().any(|tenant| tenant.station == station && tenant.gone < NEWS)
     }
 
-    /// Frees the slot of a station that matters no more, once it has said so.
+    /// Frees the slot of a station that has become irrelevant, once the unit has heard that.
     fn dismiss(&mut self, slot: usize, at_s: f64) {
         if self.slots[slot].is_some_and(|tenant| tenant.gone >= NEWS) {
             self.left[slot] = self.slots[slot].take();
@@ -207,7 +217,8 @@ impl Relay {
         }
     }
 
-    /// Takes note of where a station says it is; what is older than a silence that a slot outlives is forgotten.
+    /// Records the place that a station sends. The modem forgets places that are older than any silence that a slot
+    /// outlives.
     fn place(&mut self, at_s: f64, message: &V2xMessage) {
         let Some(route) = message.route else { return };
         let station = message.motion.station;
@@ -260,16 +271,18 @@ impl Relay {
         Some(slot)
     }
 
-    /// Whether so few of those that are heard matter more than one of that rank that there is a slot for it too, beside the one in
-    /// reserve: or else it would be in the way of somebody who matters more and is heard next.
+    /// Whether a station of this rank is relevant enough for a slot, besides the slot in reserve: few enough of the
+    /// stations on the air are more relevant. Otherwise it would take the slot from a more relevant station that is
+    /// heard next.
     fn is_among_the_first(&self, rank: Rank, at_s: f64, front: &Front) -> bool {
         let heard = self.places.iter().filter(|placed| at_s - placed.at_s < HEARD_S);
         let mut first = heard.filter(|placed| self.rank_of(placed, at_s, front) < rank);
         self.slots.len().checked_sub(2).is_some_and(|others| first.nth(others).is_none())
     }
 
-    /// On a route one slot is held in reserve and rests, so that whoever comes up near by is heard at once: the last free one is
-    /// taken only by a station that puts a less relevant one out of its slot. Whether there is room then.
+    /// Whether there is a slot for a station of this rank. On a route one slot is kept in reserve and rests, so that a
+    /// station that comes near is relayed at once. So the last free slot is given only to a station that displaces a
+    /// less relevant station from its slot.
     fn makes_room(&mut self, rank: Rank, at_s: f64, front: &Front) -> bool {
         if self.slots.iter().filter(|tenant| tenant.is_none()).count() != 1 {
             return true;
@@ -280,14 +293,14 @@ impl Relay {
         true
     }
 
-    /// Whether whom the unit follows has not been heard yet.
+    /// Whether the station that the unit follows has not been heard yet.
     fn awaits(&self) -> bool {
         let followed = self.course.followed();
         followed.is_some_and(|followed| !self.slots.iter().flatten().any(|tenant| tenant.station == followed))
     }
 
-    /// The slot of the least relevant station, of several the one silent for longest, if one of that rank may have it; and
-    /// from when on.
+    /// The slot of the least relevant station, and the time from which it may be used; `None` if a station of this rank
+    /// may not have it. Of several least relevant stations, the one that has been silent for longest.
     fn least_relevant(&self, rank: Rank, at_s: f64, front: &Front) -> Option<(usize, f64)> {
         let tenants = self.slots.iter().enumerate().filter_map(|(slot, tenant)| Some((slot, (*tenant)?)));
         let ranked = tenants.map(|(slot, tenant)| (slot, self.rank(tenant.station, at_s, front), tenant.relayed_s));
@@ -298,7 +311,7 @@ impl Relay {
         is_free.then_some((slot, rested_s))
     }
 
-    /// How much a station matters now, if it has gone on at its speed.
+    /// The rank of a station now, if it has kept its speed since its last message.
     fn rank(&self, station: StationHash, at_s: f64, front: &Front) -> Rank {
         match self.places.iter().find(|placed| placed.station == station) {
             Some(placed) => self.rank_of(placed, at_s, front),
@@ -312,7 +325,8 @@ impl Relay {
         self.course.rank(placed.station, route, self.steps_to(placed.station), foremost)
     }
 
-    /// How many steps up the chain of those who follow one another, from whom the unit follows, a station is.
+    /// The number of steps from the unit's target up the chain of vehicles that follow one another, to this station.
+    /// `None`: the station is not on that chain.
     fn steps_to(&self, station: StationHash) -> Option<usize> {
         let mut next = self.course.followed()?;
         for steps in 0..=PEERS {

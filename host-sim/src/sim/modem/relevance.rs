@@ -1,120 +1,132 @@
-//! How much a station matters to the unit: what the unit says of itself and what the station says enter, a rank leaves.
+//! The relevance of a station to the unit: what the unit sends of itself and what the station sends enter, a rank
+//! leaves. The ranks, the most relevant first:
 //!
-//! First comes whom the unit says it follows. On a route, next are the two nearest ahead on the unit's own leg by what they
-//! said last, wherever they are: it must not run into them, and if one of them is silent the other need not be the nearest. Then
-//! those in the conflict area that the unit comes to next, or just about to enter or to leave it; and of each leg that crosses the
-//! unit's the next one into it, or also the one after it, where the first is there soon: nobody passes on a leg, so those behind come after
-//! it. Of both only who arrived no later than the unit: everyone else lets it pass.
+//! - The station that the unit says it follows.
+//! - On a route: the two stations nearest ahead on the unit's own leg by their last messages, wherever they are now.
+//!   The unit must not run into them. If one of them is silent, the other need not be the nearest.
+//! - Stations in the conflict area that the unit reaches next, and stations that are about to enter or to leave it.
+//! - Of each leg that crosses the unit's leg, the next station to enter that area. If it is about to enter, the one
+//!   after it too. Vehicles do not overtake on a leg, so the stations behind come later.
+//! - Stations at an intersection that the unit has still to cross. The unit's nearest intersection comes first; there,
+//!   stations ahead of the unit come before stations behind it. Of those ahead, a station that is leaving comes first,
+//!   because the unit may be waiting for that; then the nearest.
+//! - The station that the unit's target follows, the one that this station follows, and so on along the chain: the unit
+//!   predicts its target by them.
+//! - All other stations.
 //!
-//! Then come the stations that name an intersection which the unit has still to cross: the one that it comes to first before the
-//! next one, there those ahead before those behind, of those ahead first who are leaving it, because the unit may be waiting for
-//! that, and otherwise the nearest. Then those whom the one followed follows, and so on along the chain, because a unit predicts its target by
-//! them; then everyone else. For a unit on a route, a station that names no intersection of the way that is left, or that
-//! has long crossed and does not lead, does not matter at all: the unit could not tell where on its lane it is.
+//! Of the stations in and before the conflict area, only those count that arrived no later than the unit; a station
+//! that arrived later lets the unit pass.
+//!
+//! For a unit on a route, some stations are irrelevant: those that name no intersection on the unit's remaining way,
+//! and those that crossed long ago and do not lead. The unit could not tell where on its lane they are.
 
 use holdover::coordination::Arrival;
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
 
-/// A station that has crossed matters until it is so far beyond, in metres: a bus has then left any
-/// conflict area.
+/// A station that has crossed stays relevant up to this distance beyond the crossing point, in metres. At this distance
+/// even a bus has left any conflict area.
 const CLEAR_M: f64 = 40.0;
 
-/// How much a station matters; the less, the more.
+/// The ranks, from the most relevant to the least relevant.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub enum Rank {
-    /// The unit follows it.
+    /// The unit follows the station.
     Followed,
-    /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
+    /// The station is one of the [`LEADERS`] just ahead on the unit's own leg.
     Leads,
-    /// It is in the conflict area that the unit comes to next, or just about to enter or to leave it.
+    /// The station is in the conflict area that the unit reaches next, or about to enter or to leave it.
     Inside,
-    /// It is the next one into that area, of all on its leg, or the second where the first is there soon.
+    /// The station is the next one of its leg to enter that area, or the second one while the first is about to enter.
     Enters,
-    /// It comes to an intersection that the unit comes to.
+    /// The station comes to an intersection that the unit will also cross.
     Meets {
-        /// How many intersections the unit crosses before that one.
+        /// Number of intersections that the unit crosses before that one.
         after: usize,
-        /// It is farther from the crossing point than the unit.
+        /// The station is farther from the crossing point than the unit.
         behind: bool,
-        /// It has not reached the crossing point, or comes by the unit's own leg.
+        /// The station has not reached the crossing point, or comes by the unit's own leg.
         arriving: bool,
-        /// By how many metres they differ.
+        /// Difference of the two distances to the crossing point, in metres.
         apart_m: f64,
     },
-    /// The unit's target follows it, or the one that that one follows, and so on: so many steps.
+    /// The station is this many steps up the chain: the unit's target follows it, or follows a vehicle that follows it,
+    /// and so on.
     OnChain(usize),
-    /// Nothing is known of it that would matter.
+    /// Nothing is known that would make the station relevant.
     Other,
-    /// It cannot matter.
+    /// The station cannot matter to the unit.
     Irrelevant,
 }
 
-/// So far beyond the crossing point, in metres, the rear of most vehicles has left the conflict area.
+/// At this distance beyond the crossing point, in metres, the rear of most vehicles has left the conflict area.
 const LEFT_M: f64 = 16.0;
 
-/// Who is so near the crossing point, in metres, is in the conflict area or cannot keep out of it: the next one on its leg may be
-/// right behind it.
+/// A station that is nearer to the crossing point than this, in metres, is in the conflict area, or can no longer stop
+/// before it. The next station on its leg may be right behind it.
 const ENTERED_M: f64 = 5.0;
 
-/// Who is nearer to it than this is in there within a second or two.
+/// A station that is nearer to the crossing point than this, in metres, enters the area within a second or two.
 const SOON_M: f64 = 15.0;
 
-/// Who is farther from it than this, in metres, cannot be there before the unit has passed: it takes 5 s from a stand, and nobody is faster
-/// than 16 m/s in a town.
+/// A station that is farther from the crossing point than this, in metres, cannot be there before the unit has passed.
+/// The unit needs 5 s from standstill, and no vehicle is faster than 16 m/s in a town.
 const NEAR_M: f64 = 80.0;
 
-/// Whether a station is the first of all that the unit could meet next.
+/// The role of a station among those that the unit could meet next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Foremost {
-    /// It is one of the [`LEADERS`] just ahead on the unit's own leg.
+    /// The station is one of the [`LEADERS`] just ahead on the unit's own leg.
     Ahead,
-    /// It is the next one of another leg into the next conflict area: nobody behind it there comes into the area before it.
+    /// The station is the next one of a crossing leg to enter the next conflict area. No station behind it on that leg
+    /// enters first.
     Across,
-    /// It is in that area.
+    /// The station is in that area.
     Inside,
     /// None of these.
     No,
 }
 
-/// A station that comes by a leg that crosses the unit's to the intersection which the unit comes to next, arrived there before it, and has
-/// not left it.
+/// A station on a crossing leg of the intersection that the unit reaches next. It arrived there no later than the unit
+/// and has not left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Across {
-    /// Its leg.
+    /// Leg of the station.
     pub leg: u8,
-    /// Its way to the crossing point when it said that, in metres.
+    /// Distance from the station to the crossing point by its last message, in metres.
     pub way_m: f64,
 }
 
 impl Across {
-    /// Whether it has entered the conflict area.
+    /// Whether the station has entered the conflict area.
     #[must_use]
     pub fn has_entered(self) -> bool {
         self.way_m <= ENTERED_M
     }
 
-    /// Whether it is going to enter so soon that the one behind it matters as much.
+    /// Whether the station will enter so soon that the one behind it is as relevant.
     #[must_use]
     pub fn enters_soon(self) -> bool {
         self.way_m <= SOON_M
     }
 
-    /// Whether it is so near that it may be there before the unit has passed.
+    /// Whether the station is so near that it may be there before the unit has passed.
     #[must_use]
     pub fn is_near(self) -> bool {
         self.way_m <= NEAR_M
     }
 }
 
-/// So many of those ahead on the unit's own leg matter before all but the one followed.
+/// Number of stations just ahead on the unit's own leg that come first after the target.
 pub const LEADERS: usize = 2;
 
-/// A station takes another one's slot only if it is nearer by so many metres, lest two take turns.
+/// A station takes another station's slot only if it is nearer by this distance, in metres. This keeps two stations
+/// from taking turns.
 const NEARER_M: f64 = 20.0;
 
 impl Rank {
-    /// Whether a station of this rank takes the slot of one of that rank. One that is leaving is soon gone anyway.
+    /// Whether a station of this rank takes the slot of a station of rank `other`. A station that is leaving keeps its
+    /// slot, because it will soon be gone.
     #[must_use]
     pub fn displaces(self, other: Self) -> bool {
         match (self, other) {
@@ -130,35 +142,35 @@ impl Rank {
 /// An intersection ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {
-    /// Its number in messages.
+    /// Number of the intersection in messages.
     pub id: u8,
-    /// The unit's leg there.
+    /// Leg of the unit there.
     pub leg: u8,
     /// The legs whose ways cross the unit's: bit `n` is leg `n`.
     pub crossed: u8,
-    /// The way to it from where the unit sets out, in metres.
+    /// Distance to it from where the unit sets out, in metres.
     pub at_m: f64,
 }
 
-/// What the unit says of itself.
+/// What the unit sends of itself.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
     /// The intersections of the unit's way.
     crossings: Vec<Ahead>,
     route: Option<Route>,
-    /// Whom the driver told it to follow.
+    /// The station that the driver told the unit to follow.
     told: Option<StationHash>,
     followed: Option<StationHash>,
 }
 
 impl Course {
-    /// A way through those intersections.
+    /// The course of a unit whose way leads through these intersections.
     #[must_use]
     pub fn through(crossings: Vec<Ahead>) -> Self {
         Self { crossings, ..Self::default() }
     }
 
-    /// The way of a string, behind that station.
+    /// The course of a unit in a string, behind `station`.
     #[must_use]
     pub fn behind(station: StationHash) -> Self {
         Self { told: Some(station), followed: Some(station), ..Self::default() }
@@ -171,7 +183,8 @@ impl Course {
             Said::DrivingParameters(parameters) => {
                 self.followed = match parameters.predecessor {
                     Predecessor::Station(station) => Some(station),
-                    // Who waits for a first message names nobody, and has to hear whom it waits for.
+                    // A unit that waits for the first message of its target names no target, but it has to hear that
+                    // target.
                     Predecessor::None | Predecessor::Unknown => self.told,
                 }
             }
@@ -179,20 +192,21 @@ impl Course {
         }
     }
 
-    /// Whether the unit is on a way through intersections.
+    /// Whether the unit's way leads through intersections.
     #[must_use]
     pub fn is_on_route(&self) -> bool {
         !self.crossings.is_empty()
     }
 
-    /// Whom the unit says it follows.
+    /// The station that the unit says it follows.
     #[must_use]
     pub fn followed(&self) -> Option<StationHash> {
         self.followed
     }
 
-    /// The rank of a station that is now on that route, if it says so, and that many steps up the chain, if it is there; and
-    /// whether it is foremost.
+    /// The rank of a station. `route` is its route and its present distance to the crossing point, if it publishes a
+    /// route. `steps` is its number of steps up the chain, if it is on it. `foremost` is its role at the next
+    /// intersection.
     #[must_use]
     pub fn rank(
         &self,
@@ -218,8 +232,8 @@ impl Course {
         meets.unwrap_or(if chain == Rank::Other { Rank::Irrelevant } else { chain })
     }
 
-    /// A station that comes by a leg that crosses the unit's to the intersection which the unit comes to next, arrived there before it,
-    /// and has not left it.
+    /// The station, if it is on a crossing leg of the intersection that the unit reaches next, arrived there no later
+    /// than the unit, and has not left.
     #[must_use]
     pub fn across(&self, other: &Route) -> Option<Across> {
         let next = self.next()?;
@@ -230,8 +244,8 @@ impl Course {
         (is_crossing && across.way_m > -LEFT_M).then_some(across)
     }
 
-    /// Whether a station at the same intersection arrived there no later than the unit. One that arrived later lets the unit pass: it
-    /// knows of it, or else that it does not know of everybody.
+    /// Whether a station at the same intersection arrived there no later than the unit. A station that arrived later
+    /// lets the unit pass: it knows of the unit, or it knows that it does not know of every station.
     #[must_use]
     pub fn comes_before(&self, other: &Route) -> bool {
         self.route.is_none_or(|own| {
@@ -239,27 +253,27 @@ impl Course {
         })
     }
 
-    /// The intersection that the unit comes to next.
+    /// The intersection that the unit reaches next.
     #[must_use]
     pub fn next(&self) -> Option<Ahead> {
         self.crossings.get(self.here()?).copied()
     }
 
-    /// The way from where the unit said it was to the crossing point of that intersection, in metres.
+    /// Distance from the unit's last published place to the crossing point of that intersection, in metres.
     #[must_use]
     pub fn way_m(&self) -> Option<f64> {
         Some(self.route?.distance.get().to_num())
     }
 
-    /// How far ahead of where the unit said it is now, on its own leg, a station was when it said that; less than nothing where the
-    /// unit has driven past that place since.
+    /// Distance by which the last place of a station is ahead of the unit's last place, on the unit's own leg, in
+    /// metres. Negative if the unit has driven past that place since.
     #[must_use]
     pub fn on_leg(&self, other: &Route) -> Option<f64> {
         let (there, own_m) = self.way_to(other.intersection)?;
         (self.crossings[there].leg == other.leg).then(|| own_m - other.distance.get().to_num::<f64>())
     }
 
-    /// The place on the unit's way, and the way there, of an intersection that it has still to cross.
+    /// An intersection that the unit has still to cross: its index on the unit's way, and the distance to it.
     fn way_to(&self, intersection: u8) -> Option<(usize, f64)> {
         let here = self.here()?;
         let here_m = self.route.map_or(self.crossings[0].at_m, |own| own.distance.get().to_num());
@@ -271,7 +285,8 @@ impl Course {
         self.crossings.iter().position(|named| named.id == id)
     }
 
-    /// The intersection that the unit comes to next. Before it says where it is, it is where it set out.
+    /// Index of the intersection that the unit reaches next. Before the unit has published its place, it is at the
+    /// start of its way.
     fn here(&self) -> Option<usize> {
         if self.crossings.is_empty() { None } else { self.route.map_or(Some(0), |own| self.place(own.intersection)) }
     }
@@ -280,8 +295,8 @@ impl Course {
         let here = self.here()?;
         let (there, own_m) = self.way_to(other.intersection)?;
         let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
-        // By what it said: the unit waits for one that is silent, wherever that may have gone meanwhile. On the unit's own leg
-        // nobody waits: who is beyond the crossing point matters as one that leads, or not at all.
+        // By its last message, because the unit waits for a silent station, wherever that station has gone since. On
+        // its own leg the unit waits for no station: one beyond the crossing point matters only if it leads.
         let has_gone = other.distance.get().to_num::<f64>() < -CLEAR_M;
         let (behind, arriving) = (way_m > own_m, way_m >= 0.0 || is_on_lane);
         (!has_gone).then(|| Rank::Meets { after: there - here, behind, arriving, apart_m: (way_m - own_m).abs() })

@@ -1,4 +1,4 @@
-//! The modem alone: messages enter, and what a unit decodes from what is relayed is held against the rules.
+//! The modem alone: messages enter, and what a unit decodes from the relayed frames is checked against the rules.
 
 use super::*;
 use holdover::time::{Instant, Stamp};
@@ -44,7 +44,7 @@ fn parameters(target_speed: i32) -> DrivingParameters {
     }
 }
 
-/// The slots and stations of the motions, and how many driving parameters, that a unit decodes from what is relayed.
+/// What a unit decodes from the relayed frames: slot and station of each motion, and the number of driving parameters.
 struct Unit {
     relay: Relay,
     receiver: Receiver<PEERS>,
@@ -100,7 +100,7 @@ fn the_station_silent_for_longest_makes_room_when_it_has_been_for_two_seconds() 
     }
     assert_eq!(unit.hear(2.009, &message(99, None)).0, []);
     assert_eq!(unit.hear(2.01, &message(99, None)).0, [(0, 99)]);
-    // The one that lost its slot is a new station now.
+    // The station that lost its slot counts as a new station now.
     assert_eq!(unit.hear(2.02, &message(1, None)).0, [(1, 1)]);
 }
 

@@ -6,20 +6,20 @@ use holdover::wire::horizon::Knots;
 use holdover::wire::motion::Motion;
 use holdover::wire::route::Route;
 
-/// What one vehicle broadcasts at once.
+/// One broadcast of a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct V2xMessage {
-    /// Its state.
+    /// Its motion.
     pub motion: Motion,
-    /// How it drives; `None` if it does not say.
+    /// Its driving parameters; `None` if it does not publish them now.
     pub parameters: Option<DrivingParameters>,
-    /// Its horizon from that state, if it computed one.
+    /// Its horizon from that motion on, if it computed one.
     pub horizon: Option<Knots>,
-    /// Where it is on its route, if it has one.
+    /// Its place on its route, if it has one.
     pub route: Option<Route>,
 }
 
-/// What the unit said since the last broadcast.
+/// The messages that the unit sent since the last broadcast.
 #[derive(Clone, Debug, Default)]
 pub struct Transmitter {
     motion: Option<Motion>,
@@ -40,7 +40,8 @@ impl Transmitter {
         }
     }
 
-    /// What is to be broadcast now, if the unit has said where it is. Driving parameters hold until the next ones.
+    /// The message to broadcast now; `None` if the unit has not sent its motion. Driving parameters hold until the next
+    /// ones.
     pub fn broadcast(&mut self) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);

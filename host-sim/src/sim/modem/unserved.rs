@@ -1,4 +1,5 @@
-//! What the modem tells its unit of those for whom it has no slot: who is heard and who is relayed enters, the message leaves.
+//! What the modem tells its unit of stations without a slot: the stations heard and those relayed enter, the message
+//! leaves.
 
 use holdover::units::Distance;
 use holdover::wire::unserved::Unserved;
@@ -10,7 +11,7 @@ use super::{HEARD_S, Placed, Rank, Relay};
 pub const UNSERVED_EVERY_S: f64 = 0.2;
 
 impl Relay {
-    /// What there is to tell: on a route alone.
+    /// The message for the unit. Only a unit on a route gets one.
     #[must_use]
     pub fn unserved(&self, at_s: f64) -> Option<Unserved> {
         let next = self.course.next()?;
@@ -28,7 +29,8 @@ impl Relay {
         })
     }
 
-    /// Whether a station that the unit could meet has no slot. A modem that hears nobody any more goes by what it heard last.
+    /// Whether a station that the unit could meet has no slot. A modem that hears no station any more goes by the last
+    /// messages.
     fn is_unserved(&self, placed: &Placed, at_s: f64, front: &Front) -> bool {
         let is_relayed = self.slots.iter().flatten().any(|tenant| tenant.station == placed.station && tenant.relayed);
         let matters = || {
@@ -38,7 +40,7 @@ impl Relay {
         front.newest_s() - placed.at_s < HEARD_S && !is_relayed && matters()
     }
 
-    /// Whether a station is in the unit's next conflict area, or the next one of its leg to come there.
+    /// Whether a station is in the unit's next conflict area, or is near and the next one of its leg to enter.
     fn is_in_the_way(&self, placed: &Placed, front: &Front) -> bool {
         let Some(one) = self.course.across(&placed.route) else { return false };
         one.has_entered() || one.is_near() && front.is_first(one)

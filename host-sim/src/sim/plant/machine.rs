@@ -1,5 +1,5 @@
-//! What eq. 1 takes of a vehicle and of its road: the kind of vehicle and how the real one differs from it enter, the
-//! parameters in SI units leave, and the forces that they make.
+//! The vehicle model of eq. 1: the kind of vehicle, and how the real vehicle differs from it, enter; the parameters in
+//! SI units, and the forces that follow from them, leave.
 
 use holdover::model::Body;
 
@@ -21,24 +21,24 @@ pub struct Machine {
     pub friction: f64,
     /// `d_m`.
     pub mechanical_n: f64,
-    /// Largest force of the engine from standstill on.
+    /// Largest force of the engine, from standstill on.
     pub engine_force_n: f64,
     /// Largest power of the engine, which limits the force at speed.
     pub engine_power_w: f64,
-    /// Share of both that can be had.
+    /// Fraction of engine force and power that is available.
     pub throttle: f64,
     /// Largest brake torque.
     pub brake_limit_nm: f64,
-    /// Time constant of engine and brakes; 0 for none.
+    /// Time constant of engine and brakes; 0 for no lag.
     pub lag_s: f64,
     /// Sine of the road's angle.
     pub slope: f64,
-    /// Wind against the vehicle.
+    /// Head wind.
     pub headwind_mps: f64,
 }
 
 impl Machine {
-    /// A vehicle of that kind, but for the differences, with actuators of that time constant.
+    /// A vehicle of a kind, with these differences, and actuators with this time constant.
     #[must_use]
     pub fn new(kind: Kind, lag_s: f64, difference: &Difference) -> Self {
         let Body { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n } = kind.body();
@@ -58,13 +58,13 @@ impl Machine {
         }
     }
 
-    /// The largest force that the engine can have at a speed.
+    /// The largest force of the engine at a speed.
     #[must_use]
     pub fn engine_limit_n(&self, speed_mps: f64) -> f64 {
         self.throttle * (self.engine_power_w / speed_mps.max(0.0)).min(self.engine_force_n)
     }
 
-    /// What resists a motion at that speed, or one that is about to begin.
+    /// The resistance to a motion at this speed, or to one that is about to begin.
     #[must_use]
     pub fn resistance_n(&self, speed_mps: f64) -> f64 {
         let through_air = speed_mps + self.headwind_mps;

@@ -1,12 +1,11 @@
-//! What the plant makes of efforts, against closed forms, against eq. 1 integrated in far smaller steps, and behind the
-//! core's inversion.
+//! The plant against closed forms, against eq. 1 integrated in far smaller steps, and behind the core's inversion.
 
 use holdover::units::{Acceleration, Speed};
 
 use super::*;
 use crate::input::kind::{Difference, Kind};
 
-/// No resistance and no limit that matters.
+/// A vehicle without resistance, and with limits that do not matter.
 fn frictionless(lag_s: f64) -> Machine {
     let (drag, friction, mechanical_n) = (0.0, 0.0, 0.0);
     let kind = Machine::new(Kind::Car, lag_s, &Difference::NONE);
@@ -83,8 +82,8 @@ fn the_whole_of_eq_1_agrees_with_steps_of_ten_microseconds() {
     }
 }
 
-/// The largest difference between the acceleration reached and the demand behind a first-order lag, over a demand that
-/// goes up and down by 0.6 m/s² in 12 s, which is within every kind's power.
+/// The largest difference between the acceleration reached and the demand behind a first-order lag. The demand swings
+/// by 0.6 m/s² with a period of 12 s, which is within the power of every kind.
 fn off_from_the_lag(kind: Kind, difference: &Difference) -> f64 {
     let lag_s = kind.lag_s();
     let mut plant = Plant::cruising(Machine::new(kind, lag_s, difference), 0.0, 15.0);
@@ -102,7 +101,7 @@ fn off_from_the_lag(kind: Kind, difference: &Difference) -> f64 {
 
 #[test]
 fn with_true_parameters_the_acceleration_reached_is_the_demand_behind_the_lag() {
-    // What is left is the change of the resistance while the actuators lag: little more than 1 % of the demand.
+    // The remainder is the change of resistance while the actuators lag: little more than 1 % of the demand.
     for kind in Kind::ALL {
         let worst = off_from_the_lag(kind, &Difference::NONE);
         assert!(worst < 0.01, "{kind:?}: {worst}");

@@ -1,7 +1,8 @@
-//! The actuators of a vehicle whose unit is outside of the simulation: commands with the times at which they arrived enter,
-//! what the body is really told to do in a span of time leaves.
+//! The actuators of a vehicle whose unit is outside of the simulation: commands with their times of arrival enter, the
+//! commands in force during a span of time leave.
 //!
-//! *Their own watchdog:* without a command for [`COMMAND_TIMEOUT_S`] they brake, as an actuator has to that has lost its
+//! *Watchdog:* without a command for [`COMMAND_TIMEOUT_S`] they brake, as an actuator has to when it has lost its
+//! master. A command in mode standby is not to be used, so it counts as no command.
 //! master. A command in mode standby is not to be used, so it counts as none.
 
 use std::collections::VecDeque;
@@ -10,15 +11,15 @@ use holdover::wire::command::Effort;
 
 /// The timeout of the command, as in the catalogue, in seconds.
 pub const COMMAND_TIMEOUT_S: f64 = 0.05;
-/// What they do without one, in m/s²: braking that nobody behind is surprised by.
+/// Acceleration without a command, in m/s²: braking that surprises no vehicle behind.
 pub const WITHOUT_COMMAND_MPS2: f64 = -2.0;
 
 /// The actuators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Actuators {
-    /// In force, and since when.
+    /// The effort in force, and the time from which it is in force.
     current: Option<(f64, Effort)>,
-    /// Arrived, and not in force yet.
+    /// Commands that have arrived and are not in force yet.
     coming: VecDeque<(f64, Effort)>,
 }
 
@@ -28,7 +29,8 @@ impl Actuators {
         self.coming.push_back((at_s, effort));
     }
 
-    /// What is in force from `from_s` to `to_s`, as pieces of a command, `None` where there is none, and its length in seconds.
+    /// The commands in force from `from_s` to `to_s`: for each piece the command, `None` where there is none, and its
+    /// length in seconds.
     pub fn pieces(&mut self, from_s: f64, to_s: f64) -> Vec<(Option<Effort>, f64)> {
         let mut pieces = Vec::new();
         let mut at_s = from_s;
@@ -43,7 +45,7 @@ impl Actuators {
         }
     }
 
-    /// One span without a new command.
+    /// Adds one span without a new command.
     fn hold(&self, pieces: &mut Vec<(Option<Effort>, f64)>, from_s: f64, to_s: f64) {
         let since_s = self.current.map_or(f64::NEG_INFINITY, |(since_s, _)| since_s);
         let until_s = (since_s + COMMAND_TIMEOUT_S).clamp(from_s, to_s);
@@ -57,7 +59,7 @@ impl Actuators {
 mod tests {
     use super::*;
 
-    /// Newtons and microseconds; 0 N stands for no command.
+    /// The pieces in newtons and microseconds; 0 N stands for no command.
     fn rounded(pieces: &[(Option<Effort>, f64)]) -> Vec<(u16, i32)> {
         let newtons = |effort: &Option<Effort>| match effort {
             Some(Effort::Force(newtons)) => *newtons,

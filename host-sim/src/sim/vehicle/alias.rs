@@ -1,22 +1,23 @@
-//! Other names for two stations: a device has the station that it was built with, and the simulation has another one for
-//! that vehicle. On the device's own bus the two trade names; what enters by one name leaves by the other.
+//! Exchanged names of two stations. A device has the station that it was built with, and the simulation has another
+//! station for that vehicle. So on the device's own bus two stations exchange their names. A station enters by one name
+//! and leaves by the other.
 
 use holdover::wire::{Predecessor, StationHash};
 
 use crate::sim::modem::V2xMessage;
 
-/// The two that trade names; by default nobody does.
+/// The two stations that exchange their names; by default none do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Alias(Option<(StationHash, StationHash)>);
 
 impl Alias {
-    /// `a` is called `b`, and `b` is called `a`.
+    /// Station `a` is called `b`, and station `b` is called `a`.
     #[must_use]
     pub fn between(a: StationHash, b: StationHash) -> Self {
         Self((a != b).then_some((a, b)))
     }
 
-    /// The other name of a station; its own if it has none. Twice is back again.
+    /// The other name of a station; its own name if it has no other. Applied twice, this gives the first name again.
     #[must_use]
     pub fn of(self, station: StationHash) -> StationHash {
         match self.0 {

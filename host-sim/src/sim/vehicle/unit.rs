@@ -1,7 +1,8 @@
-//! The simulated unit: the same core as on the ECU, with room for more peers and longer horizons. A configuration enters,
-//! a unit that is started leaves.
+//! The simulated unit: the same core as on the ECU, with room for more peers and longer horizons. A configuration
+//! enters, a started unit leaves.
 //!
-//! Its 170 kB lie on the heap from the beginning, and whoever owns it holds a pointer: a worker thread has 2 MiB of stack.
+//! Its 170 kB lie on the heap from the beginning, and its owner holds a pointer, because a worker thread has only 2 MiB
+//! of stack.
 
 use std::ops::{Deref, DerefMut};
 
@@ -17,7 +18,7 @@ type Core = OnboardUnit<PEERS, SAMPLES, STEPS>;
 pub struct Unit(Box<Core>);
 
 impl Unit {
-    /// A unit that is started.
+    /// A started unit.
     ///
     /// # Errors
     /// The first value of the configuration that is out of its documented range.
@@ -27,8 +28,9 @@ impl Unit {
         Ok(unit)
     }
 
-    /// The room comes first and the value, a constant, is copied into it, so that it need not lie on the stack meanwhile.
-    #[inline(never)] // if it lies there after all, then not in the caller's frame
+    /// An idle unit. Its room on the heap is allocated first, and a constant is copied into it, so that the value need
+    /// not lie on the stack.
+    #[inline(never)] // if the value lies on the stack after all, it is not in the caller's frame
     fn idle() -> Self {
         Self(Box::write(Box::new_uninit(), const { Core::idle() }))
     }

@@ -1,4 +1,4 @@
-//! The time before a vehicle appears: what is in the air enters, and a unit that knows its surroundings leaves.
+//! The time before a vehicle appears: the messages in the air enter, a unit that knows its surroundings leaves.
 
 use std::io;
 
@@ -10,23 +10,23 @@ use crate::sim::air::Arrived;
 const ENGAGED_S: f64 = 0.25;
 
 impl Vehicle {
-    /// The sensors and the time base speak in a tick before the vehicle appears. It drives at constant speed, and will be at
-    /// `there_m` after `before_s`.
+    /// Sensors and time base send in a tick before the vehicle appears. The vehicle drives at constant speed and will
+    /// be at `there_m` after `before_s`.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn approach(&mut self, there_m: f64, (at_s, before_s): (f64, f64), period_s: f64) -> io::Result<()> {
         self.plant.position_m = there_m - self.plant.speed_mps * before_s;
         self.speak(at_s, period_s, None)
     }
 
-    /// The ticks before the vehicle appears, as every real unit knows them: the unit has power and ticks, its time base and
-    /// its sensors speak, and it hears what arrives from the others. The driver drives at constant speed, and engages the
-    /// unit only a moment before the end. The last of these ticks is the one before `until_s`; the vehicle is then where it
-    /// was.
+    /// The ticks before the vehicle appears. As in every real vehicle, the unit is powered and ticks, its time base and
+    /// its sensors send, and it hears the messages of the others. The driver drives at constant speed, and engages the
+    /// unit only a moment before the end. The last of these ticks is the one before `until_s`. The vehicle is then back
+    /// at its place.
     ///
     /// # Errors
-    /// The bus's.
+    /// Errors of the bus.
     pub fn warm_up(
         &mut self,
         until_s: f64,

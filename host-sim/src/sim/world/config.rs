@@ -1,4 +1,4 @@
-//! What a scenario says of one vehicle: its index enters; its body, and the configuration of its unit, leave.
+//! One vehicle of a scenario: its index enters; its body and the configuration of its unit leave.
 
 use holdover::Config;
 use holdover::config::Envelope;
@@ -34,17 +34,17 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.link.period = duration(1.0 / scenario.message_rate_hz);
     config.prediction.step = duration(scenario.step_s);
     config.prediction.horizon = horizon(HORIZON_S, scenario.step_s);
-    // Nobody brakes harder than it publishes.
+    // No vehicle brakes harder than it publishes.
     let capable = config.limits.emergency_braking;
     config.envelope =
         scenario.envelope.limits().map(|limits| Envelope { braking: limits.braking.min(capable), ..limits });
     config
 }
 
-/// How far ahead the units look.
+/// How far the units predict, in seconds.
 pub const HORIZON_S: f64 = 3.9;
 
-/// A horizon of this length, or as many whole steps as come to at least that, within the capacity.
+/// A horizon of at least this length in whole steps, within the capacity.
 #[must_use]
 #[allow(clippy::cast_precision_loss)]
 pub fn horizon(horizon_s: f64, step_s: f64) -> Duration {

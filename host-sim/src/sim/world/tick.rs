@@ -1,5 +1,5 @@
-//! One tick of one vehicle, for the trace: the vehicle enters; its true motion, its command and what its unit believes of
-//! its target leave. The belief is what stands on the bus.
+//! One tick of one vehicle, for the trace: the vehicle enters; its true motion, its command and its unit's estimate of
+//! the target leave. The estimate is the one on the bus.
 
 use holdover::units::Speed;
 use holdover::wire::command::ModeCode;
@@ -11,71 +11,71 @@ use crate::sim::vehicle::Vehicle;
 /// One tick of one vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// True front bumper.
+    /// True position of the front bumper.
     pub position_m: f64,
     /// True speed.
     pub speed_mps: f64,
     /// True acceleration.
     pub acceleration_mps2: f64,
-    /// What its unit commanded.
+    /// Acceleration that its unit commanded.
     pub command_mps2: f64,
-    /// Whether the envelope changed that.
+    /// Whether the envelope changed that command.
     pub limited: bool,
     /// Its unit's mode.
     pub mode: ModeCode,
-    /// Where its unit believes its target is.
+    /// Its unit's estimate of the target.
     pub target: Option<TargetBelief>,
 }
 
-/// What a unit believes of its target.
+/// A unit's estimate of its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TargetBelief {
     /// Front bumper.
     pub position_m: f64,
     /// Speed.
     pub speed_mps: f64,
-    /// Age of the newest sample it rests on.
+    /// Age of the newest sample that it is based on.
     pub age_s: f64,
-    /// What is certain; `None`: nothing, or more than the message can say.
+    /// The bound; `None`: there is none, or it exceeds the range of the message.
     pub bound: Option<Bounds>,
 }
 
-/// Both ends of what is certain of a target.
+/// Both ends of the bound of a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// As far back as it can be.
+    /// Lowest possible position.
     pub lowest_position_m: f64,
-    /// As far ahead.
+    /// Highest possible position.
     pub highest_position_m: f64,
-    /// As slow.
+    /// Lowest possible speed.
     pub lowest_speed_mps: f64,
-    /// As fast.
+    /// Highest possible speed.
     pub highest_speed_mps: f64,
 }
 
 impl Bounds {
-    /// Whether a vehicle with this motion is inside.
+    /// Whether a vehicle with this motion is inside the bound.
     #[must_use]
     pub fn hold(&self, position_m: f64, speed_mps: f64) -> bool {
         (self.lowest_position_m..=self.highest_position_m).contains(&position_m)
             && (self.lowest_speed_mps..=self.highest_speed_mps).contains(&speed_mps)
     }
 
-    /// From the lowest to the highest position.
+    /// Width of the range of positions.
     #[must_use]
     pub fn width_m(&self) -> f64 {
         self.highest_position_m - self.lowest_position_m
     }
 }
 
-/// Hardest changes of speed of any road vehicle, in m/s²: braking and acceleration.
+/// Hardest braking and acceleration of any road vehicle, in m/s².
 const WORST_MPS2: (f64, f64) = (12.0, 8.0);
 
 impl Tick {
-    /// Of a vehicle after its unit's tick.
+    /// The tick of a vehicle, after its unit's tick.
     pub(super) fn of(vehicle: &Vehicle, at_s: f64, period_s: f64) -> Self {
-        // A unit outside ticks by a clock of its own: what it said last it said of an instant between its message before
-        // and that one.
+        // A unit outside ticks by its own clock. Its last estimate is of an instant between its message before that and
+        // that message.
         let since_s = at_s - vehicle.estimate_s();
         let apart_s = if since_s < 1e-6 { (0.0, 0.0) } else { (since_s, since_s + period_s) };
         let belief = |estimate| TargetBelief::of(estimate, vehicle.plant.position_m).carried(apart_s);
@@ -92,7 +92,7 @@ impl Tick {
 }
 
 impl TargetBelief {
-    /// As it stands on the bus of a vehicle that is near `near_m`.
+    /// The estimate on the bus of a vehicle that is near `near_m`.
     #[must_use]
     pub fn of(estimate: &TargetEstimate, near_m: f64) -> Self {
         let mps = |speed: Speed| speed.get().to_num::<f64>();
@@ -108,7 +108,7 @@ impl TargetBelief {
         Self { position_m, speed_mps, age_s, bound }
     }
 
-    /// The same belief later, by a time that is known to lie between these two.
+    /// The same estimate later, by a time that is known to lie between these two.
     fn carried(self, (least_s, most_s): (f64, f64)) -> Self {
         let (braking, accelerating) = WORST_MPS2;
         let carried = |bound: Bounds| Bounds {
@@ -142,7 +142,7 @@ mod tests {
         let later = belief.carried((0.01, 0.02));
         assert!((later.position_m - 10.1).abs() < 1e-9);
         let bound = later.bound.unwrap();
-        // Where a vehicle can be that drove at 9 to 11 m/s and braked or accelerated at its hardest for 10 to 20 ms.
+        // The places of a vehicle that drove at 9 to 11 m/s and braked or accelerated at its hardest for 10 to 20 ms.
         assert!(bound.lowest_position_m < 9.9 + 0.09 && bound.highest_position_m > 10.1 + 0.22);
         assert!(bound.width_m() < 0.4);
     }

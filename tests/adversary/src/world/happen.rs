@@ -1,4 +1,4 @@
-//! What happens to a world: an event enters and changes it, and what is said that no station said is put on the bus.
+//! The events of a world: an event enters and changes the world; messages that no station sent are put on the bus.
 
 use super::World;
 use crate::peer::{Limits, Motion};
@@ -42,7 +42,7 @@ impl World<'_> {
         }
     }
 
-    /// Frames that no sender of the catalogue sent: wrong lengths, wrong checksums, identifiers of nobody.
+    /// Frames that no sender of the catalogue sent: wrong lengths, wrong checksums, identifiers that no sender has.
     fn garbage(&mut self, now: f64, count: u32) {
         let command = BOOK.command.id;
         for number in 0..count {
@@ -50,7 +50,7 @@ impl World<'_> {
             let length = if number % 5 == 4 { (bits >> 60) as u8 % 8 } else { 8 };
             let id = command - 2 + (self.random.bits() % 192) as u16;
             let frame = Can { id, data: bits.to_le_bytes(), length };
-            // One in 256 has a checksum that fits: that one would be a forgery.
+            // One in 256 has a valid checksum. That frame would be a forgery, so it is not sent.
             if !BOOK.is_intact(&frame) {
                 self.ego.put(now + 1e-5 * f64::from(number), &frame);
             }
@@ -73,7 +73,8 @@ impl World<'_> {
         self.follow = self.nearest().map_or(0, |nearest| nearest.station);
     }
 
-    /// Whether a message is held back. The one that overtakes it with the same tag finds the other half of it on the bus.
+    /// Whether a message is held back. The message that overtakes it, with the same tag, finds its other half on the
+    /// bus.
     pub(super) fn is_overtaken(&mut self, at: f64, number: usize, slot: u8, motion: &Motion) -> bool {
         let Some((_, half, held)) = self.overtaken.filter(|(peer, ..)| *peer == number) else { return false };
         let Some(held) = held else {
@@ -94,9 +95,9 @@ impl World<'_> {
         false
     }
 
-    /// Copies, forgeries and another station's words, just after a message of that peer.
+    /// Sends copies, forgeries and motions of another station, just after a message of this peer.
     pub(super) fn misuse(&mut self, at: f64, number: usize, slot: u8, motion: &Motion, is_taken: bool) {
-        // What is false contradicts what is certain: it waits for an honest motion that was taken.
+        // A false motion has to contradict the bound, so it waits for an honest motion that was accepted.
         let is_seen_false = |off: f64| off == 0.0 || is_taken;
         if let Some((_, count, off)) = self.copies.filter(|(peer, _, off)| *peer == number && is_seen_false(*off)) {
             self.copies = None;

@@ -1,11 +1,13 @@
-//! Algorithms 2 to 4 of the paper as printed: a sample and, for a follower, the horizon of its predecessor enter, a
+//! Algorithms 2 to 4 of the paper as printed: a sample enters, and for a follower the horizon of its predecessor; a
 //! horizon of speeds and positions leaves.
 //!
-//! Readings: eq. 13 gets the `δt` that it lacks (`κ = α k δt`); it has `ṽ_n(t+k)` on both sides, so it is solved for it,
-//! with `r̃_n(t+k)` from eq. 9. In eq. 11 `v̇` is per second, the difference to the next step of the predecessor's horizon
-//! over `δt`, 0 at its end. Eq. 12 starts from `r̃_{n-1}(t+k-τ)`. There is no lag, no limit on acceleration or jerk, and no
-//! standstill distance. Two things are added so that results stay finite: a speed is not below 0 (eq. 8 far above `v_∞`
-//! with `δt` = 1 s would otherwise reverse and run away), and `v_∞` is not below 0.1 m/s.
+//! Readings. Eq. 13 gets the `δt` that it lacks (`κ = α k δt`). It has `ṽ_n(t+k)` on both sides, so it is solved for
+//! that, with `r̃_n(t+k)` from eq. 9. In eq. 11 `v̇` is per second: the difference to the next step of the
+//! predecessor's horizon over `δt`, and 0 at its end. Eq. 12 starts from `r̃_{n-1}(t+k-τ)`. There is no lag, no limit
+//! on acceleration or jerk, and no standstill distance.
+//!
+//! Two limits are added so that results stay finite. A speed is not below 0: eq. 8 far above `v_∞` with `δt` = 1 s
+//! would otherwise reverse and diverge. `v_∞` is not below 0.1 m/s.
 
 use super::super::Estimate;
 use crate::measure::heard::{Heard, HeardParameters};
@@ -25,7 +27,7 @@ pub struct Horizon {
     motion: Vec<Estimate>,
 }
 
-/// What a follower knows of the vehicle ahead.
+/// The predecessor, as a follower knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Preceding<'a> {
     /// Its horizon.
@@ -79,7 +81,7 @@ impl Horizon {
         Self { anchor_s: sample.stamp_s, step_s, motion }
     }
 
-    /// The motion at an instant: that of the nearest step, held before the first and past the last.
+    /// The motion at an instant: that of the nearest step. Before the first and after the last step, that step holds.
     #[must_use]
     pub fn at(&self, at_s: f64) -> Estimate {
         self.motion[self.nearest(at_s)]

@@ -1,23 +1,24 @@
-//! The literal paper as a baseline: plain state messages of the chain `0..=j` enter, the target's motion read from its
-//! horizon leaves. This file is Algorithm 1 (whose horizon is computed when), [`horizon`] is Algorithms 2 to 4.
+//! The literal paper as a baseline: plain messages of the chain `0..=j` enter; the target's motion leaves, read from
+//! its horizon. This file is Algorithm 1 (whose horizon is computed when). [`horizon`] is Algorithms 2 to 4.
 //!
-//! The paper leaves much open. What is printed is kept; where it does not say, the readings are these:
+//! The paper leaves much open. Printed text is followed; where the paper does not say, the readings are these:
 //!
-//! - **Time step.** Messages are read once per `δt`, at its multiples: one that arrives between two reads is read at the
-//!   later one. Of one vehicle's messages read together, the one with the newest stamp counts; one that is not newer
-//!   than what was read before does not count.
+//! - **Time step.** Messages are read once per `δt`, at its multiples. A message that arrives between two reads is read
+//!   at the later one. Of the messages of one vehicle that are read together, the one with the newest stamp counts. A
+//!   message that is not newer than those read before does not count.
 //! - **Connected.** Vehicle `n` is connected at a time step if a message of it counts in this step. Then its horizon is
-//!   computed anew, from that message and from the horizon that its predecessor has at this step (front vehicle
-//!   first). Otherwise `Ṽ_n(t) = Ṽ_n(t-1)`: the horizon held keeps its own time anchor, so its index advances with time.
-//! - **Anchor.** A horizon starts at the stamp of the message that it was computed from, and reaches 5 s.
-//! - **Reading.** At an instant, the nearest step counts (no interpolation); past the end the last value, before the
-//!   anchor the first.
-//! - **Delay.** `τ` of a vehicle is arrival minus stamp of its last counted message, not below 0, one value for a whole
+//!   computed anew, from that message and from the horizon that its predecessor has at this step (front vehicle first).
+//!   Otherwise `Ṽ_n(t) = Ṽ_n(t-1)`: the horizon keeps its own time anchor, so its index advances with time.
+//! - **Anchor.** A horizon starts at the stamp of the message that it was computed from, and is 5 s long.
+//! - **Reading.** At an instant, the nearest step counts (no interpolation). After the end the last value counts,
+//!   before the anchor the first.
+//! - **Delay.** `τ` of a vehicle is arrival minus stamp of its last counted message, not below 0: one value for a whole
 //!   horizon.
-//! - **Chain.** Who follows whom is what the driving parameters say. Whoever leads, names nobody, names a vehicle not heard yet, or
-//!   would close the chain to a ring, is index 0: Algorithm 2 with `v_∞` from its own driving parameters, 13.4 m/s without one.
-//! - **Parameters** are those of the vehicle's own driving parameters; what it said last holds until it says something else. The
-//!   length of a predecessor that has said nothing is 4.8 m. `α` = 1; there is no standstill distance.
+//! - **Chain.** The driving parameters say which vehicle follows which. A vehicle is index 0 if it leads, names no
+//!   predecessor, names a vehicle that has not been heard yet, or would close the chain to a ring. Index 0 uses
+//!   Algorithm 2 with `v_∞` from its own driving parameters, or 13.4 m/s without them.
+//! - **Parameters** are those of the vehicle's own driving parameters; the last message holds until the next one. A
+//!   predecessor that has sent none is taken to be 4.8 m long. `α` = 1; there is no standstill distance.
 
 pub mod horizon;
 
@@ -26,24 +27,24 @@ use crate::measure::heard::{Heard, HeardParameters};
 use horizon::{Horizon, Preceding};
 use std::collections::BTreeMap;
 
-/// How far a horizon reaches.
+/// Length of a horizon.
 pub const HORIZON_S: f64 = 5.0;
-/// `v_∞` of a vehicle that published none.
+/// `v_∞` of a vehicle that did not publish it.
 pub const UNPUBLISHED_TARGET_SPEED_MPS: f64 = 13.4;
-/// `l` of a vehicle that published none.
+/// `l` of a vehicle that did not publish it.
 pub const UNPUBLISHED_LENGTH_M: f64 = 4.8;
 
-/// A time this small share of a step before a multiple of `δt` is that multiple: times are sums and products of
-/// decimal fractions, which float64 holds only nearly.
+/// A time this small fraction of a step before a multiple of `δt` counts as that multiple. Times are sums and products
+/// of decimal fractions, which float64 holds only approximately.
 const SAME_STEP: f64 = 1e-7;
 
-/// What is known of one vehicle.
+/// What has been received of one vehicle.
 #[derive(Clone, Debug)]
 struct Track {
     sample: Heard,
     parameters: Option<HeardParameters>,
     horizon: Option<Horizon>,
-    /// The sample has not entered the horizon yet.
+    /// Whether there is a sample that has not entered the horizon yet.
     connected: bool,
 }
 
@@ -53,13 +54,14 @@ pub struct Paper {
     target: usize,
     step_s: f64,
     steps: usize,
-    /// Arrived but not read: the multiple of `δt` at which it will be, and the message, in the order of arrival.
+    /// Messages that have arrived and have not been read: the multiple of `δt` at which each will be read, and the
+    /// message, in the order of arrival.
     unread: Vec<(i64, Heard)>,
     tracks: BTreeMap<usize, Track>,
 }
 
 impl Paper {
-    /// For that vehicle with the prediction step `δt`, which must be positive.
+    /// The method for the vehicle `target`, with the prediction step `δt`, which must be positive.
     #[must_use]
     pub fn new(target: usize, step_s: f64) -> Self {
         assert!(step_s > 0.0, "the prediction step is {step_s} s, which is not a step");
@@ -67,7 +69,7 @@ impl Paper {
         Self { target, step_s, steps, unread: Vec::new(), tracks: BTreeMap::new() }
     }
 
-    /// Reads, step by step, what is due at `now_s`.
+    /// Reads, step by step, the messages that are due at `now_s`.
     fn read_until(&mut self, now_s: f64) {
         let now = (now_s / self.step_s + SAME_STEP).floor() as i64;
         while let Some(step) = self.unread.iter().map(|&(step, _)| step).min().filter(|&step| step <= now) {
@@ -79,7 +81,7 @@ impl Paper {
         }
     }
 
-    /// Algorithm 1, its loop over `n = 0..=j`.
+    /// Algorithm 1: its loop over `n = 0..=j`.
     fn estimate_chain(&mut self) {
         let mut predecessor = None;
         for vehicle in self.chain() {
@@ -95,7 +97,7 @@ impl Paper {
         }
     }
 
-    /// The vehicles from index 0 to the target; empty before the target was heard.
+    /// The vehicles from index 0 to the target; empty before the first message of the target.
     fn chain(&self) -> Vec<usize> {
         let mut chain = Vec::new();
         let mut next = Some(self.target);

@@ -1,4 +1,4 @@
-//! Whom the modem says that it has no slot for: stations on two streets that cross are heard by a modem with too few slots.
+//! What a modem with too few slots reports of the stations without a slot, on two streets that cross.
 
 use super::*;
 use crate::sim::modem::{Ahead, Course, V2xMessage};
@@ -8,7 +8,7 @@ use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{BaseId, Predecessor, Said, StationHash};
 
-/// The unit's own number, leg and way to the crossing point; and when it arrived.
+/// The unit's own number, leg, distance to the crossing point, and arrival.
 const OWN: (u8, u8, i32, u32) = (1, 0, 100, 1_000);
 
 fn route((_, leg, metres, arrival): (u8, u8, i32, u32)) -> Route {
@@ -38,8 +38,8 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
     V2xMessage { motion, parameters: None, horizon: None, route: Some(route(said)) }
 }
 
-/// A modem with so many slots, one of them in reserve, that has heard those stations for a second, each with its number, leg, way and
-/// arrival.
+/// A modem with this many slots, one of them in reserve, that has heard those stations for a second. Each station has
+/// its number, leg, distance to the crossing point and arrival.
 fn heard(slots: usize, stations: &[(u8, u8, i32, u32)]) -> Relay {
     let mut relay = Relay::new(BaseId::DEFAULT);
     relay.limit(slots);
@@ -59,7 +59,7 @@ fn told(slots: usize, stations: &[(u8, u8, i32, u32)]) -> (u8, Option<i32>, u8) 
     (unserved.legs, unserved.ahead.map(|ahead| ahead.to_mm()), unserved.stations)
 }
 
-/// Ahead on the unit's own leg, with a slot.
+/// A station ahead on the unit's own leg, with a slot.
 const AHEAD: (u8, u8, i32, u32) = (2, 0, 60, 900);
 
 #[test]
@@ -70,7 +70,7 @@ fn with_a_slot_for_everybody_there_is_nobody_to_tell_of() {
 #[test]
 fn the_next_one_of_a_crossing_leg_without_a_slot_is_told_by_its_leg() {
     assert_eq!(told(2, &[AHEAD, (3, 1, 50, 950)]), (0b10, None, 1));
-    // In the conflict area, or just behind it.
+    // One station in the conflict area, and one just behind that area.
     assert_eq!(told(2, &[AHEAD, (3, 1, 3, 950)]).0, 0b10);
     assert_eq!(told(2, &[AHEAD, (3, 1, -10, 950)]).0, 0b10);
 }
@@ -80,13 +80,13 @@ fn who_arrived_later_or_is_far_or_has_left_bars_no_leg() {
     for other in [(3, 1, 50, 1_050), (3, 1, 85, 950), (3, 1, -17, 950)] {
         assert_eq!(told(2, &[AHEAD, other]).0, 0, "{other:?}");
     }
-    // Behind one that has a slot and comes first.
+    // A station behind one that has a slot and enters first.
     assert_eq!(told(3, &[AHEAD, (3, 1, 20, 950), (4, 1, 50, 960)]).0, 0);
 }
 
 #[test]
 fn the_nearest_one_ahead_without_a_slot_is_told_by_its_rear_bumper() {
-    // Nobody said how long it is: 20 m.
+    // No station publishes its length, so it is taken as 20 m.
     assert_eq!(told(2, &[AHEAD, (3, 0, 30, 800), (4, 0, 10, 700)]), (0, Some(50_000), 2));
 }
 
