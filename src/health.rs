@@ -184,9 +184,15 @@ impl Cause {
 }
 
 /// How often each cause has been met since start; each count stops at its maximum.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Health {
     counts: [u32; Cause::ALL.len()],
+}
+
+impl Default for Health {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Health {
