@@ -130,8 +130,8 @@ step_package() {
     fi
     contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
     for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
-        memory.x src/lib.rs src/main.rs src/board/mod.rs \
-        src/board/zynqmp_r5/link.x; do
+        src/lib.rs src/main.rs src/board/mod.rs \
+        src/board/stm32f405/memory.x src/board/zynqmp_r5/link.x; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
     if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then

@@ -1,9 +1,12 @@
 //! The documents: every link between them leads to a file and a heading that are there, and the two that are read first stay
-//! short.
+//! short. What they state of the bus is what the catalogue makes of it.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use holdover::wire::catalogue::Line;
+use holdover::wire::load::load_ppm;
 
 /// All Markdown files below a folder.
 fn markdown_in(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -69,4 +72,14 @@ fn the_two_documents_that_are_read_first_have_at_most_two_hundred_lines() {
         let lines = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap().lines().count();
         assert!(lines <= 200, "{name}: {lines} lines");
     }
+}
+
+#[test]
+fn the_load_of_the_bus_is_the_one_that_the_catalogue_makes() {
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/INTEGRATION.md")).unwrap();
+    let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
+    let percent = |counted: fn(&Line) -> bool| f64::from(load_ppm(500_000, 8, counted)) / 10_000.0;
+    let (all, peers) = (percent(|_| true), percent(Line::is_per_slot));
+    let stated = format!("at most {all:.1} % of the bus, the peers' messages {peers:.1} %");
+    assert!(page.contains(&stated), "docs/INTEGRATION.md does not say: {stated}");
 }

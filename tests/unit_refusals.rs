@@ -9,6 +9,7 @@ use holdover::health::Cause;
 use holdover::time::{Duration, Instant, Stamp};
 use holdover::units::Acceleration;
 use holdover::wire::bits::Payload;
+use holdover::wire::catalogue::{BLOCK, find};
 use holdover::wire::motion::WirePosition;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Frame, Message, Said, StationHash};
@@ -361,7 +362,7 @@ fn frames_of_others_are_ignored_and_change_nothing() {
     let (mut unit, mut traffic) = settled();
     let mut untouched = unit.clone();
     let own = [0x02, 0x0A, 0x0B, 0x10, 0x11, 0x12, 0x13, 0x14, 0x15, 0x18];
-    let unused = [0x03, 0x0C, 0x19, 0x3F, 0x46, 0x47, 0xBE, 0xBF];
+    let unused = (0..BLOCK).filter(|offset| find(*offset).is_none());
     let inside = own.into_iter().chain(unused).map(|offset| 0x480 + offset);
     for id in (0..0x480).chain(0x540..0x800).chain(inside).map(standard).chain([extended(0), extended(0x484)]) {
         for data in [vec![], vec![0; 8], vec![0xFF; 8]] {

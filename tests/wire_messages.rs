@@ -209,7 +209,7 @@ fn frames_that_are_not_ours_to_read_are_told_apart_from_bad_ones() {
     let mut heard = |frame: Odd| receiver.receive(Instant::ZERO, &frame);
     assert_eq!(heard(odd(id(0x47F), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x540), false, 8)), Ok(Received::Foreign));
-    assert_eq!(heard(odd(id(0x483), false, 8)), Ok(Received::Foreign), "an identifier without a line");
+    assert_eq!(heard(odd(id(0x53F), false, 8)), Ok(Received::Foreign), "an identifier without a line");
     assert_eq!(heard(odd(id(0x482), false, 8)), Ok(Received::Foreign), "the unit's own command");
     assert_eq!(heard(odd(Id::Extended(ExtendedId::new(0x480).unwrap()), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x480), true, 8)), Err(Cause::Length));

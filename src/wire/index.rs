@@ -158,7 +158,9 @@ const CONTENTS: usize = OTHERS + 3 * ABOUTS;
 static BY_CONTENT: [u8; CONTENTS] = {
     let (mut places, mut line) = ([NOWHERE; CONTENTS], 0);
     while line < LINES {
-        places[number(CATALOGUE[line].content)] = line as u8;
+        let number = number(CATALOGUE[line].content);
+        assert!(places[number] == NOWHERE, "each content has its own number, and `OTHERS` counts them");
+        places[number] = line as u8;
         line += 1;
     }
     places
@@ -270,6 +272,7 @@ mod tests {
             assert_eq!(find_content(line.content).map(|(place, _)| place), Some(place));
         }
         assert!(find_content(Content::Said(Speaker::Ego, super::super::catalogue::About::DrivingParameters)).is_none());
-        assert!((0x46..0x48).chain([0x03, 0x3F]).all(|offset| place_of(offset).is_none()));
+        let is_free = |offset: &u16| CATALOGUE.iter().all(|line| line.offset != *offset);
+        assert!((0..PEERS_OFFSET + SLOT_STRIDE).filter(is_free).all(|offset| place_of(offset).is_none()));
     }
 }

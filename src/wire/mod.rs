@@ -5,6 +5,7 @@
 //! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
 
 mod assembly;
+mod base_id;
 pub mod bits;
 pub mod catalogue;
 pub mod command;
