@@ -20,7 +20,7 @@ struct Truth {
 
 impl Truth {
     fn random(random: &mut Random, (acceleration, braking): (f64, f64), until: i64) -> Self {
-        let mut body = Body { position: random.between(-16_000.0, 16_000.0), speed: random.extreme(0.0, TOP) };
+        let mut body = Body { position: random.between(-6_000.0, 6_000.0), speed: random.extreme(0.0, TOP) };
         let (mut at, mut pieces) = (-1_000_000, Vec::new());
         while at < until {
             let a = match random.below(6) {
