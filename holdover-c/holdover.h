@@ -99,6 +99,8 @@ enum holdover_status_t
   HOLDOVER_CONFIG_BODY = -47,
   // A limit of the envelope is zero, or it brakes harder than emergency braking.
   HOLDOVER_CONFIG_ENVELOPE = -48,
+  // `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
+  HOLDOVER_CONFIG_CATCH_UP = -49,
   // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
   HOLDOVER_REFUSED_LENGTH = -64,
   // The E2E checksum does not fit.
@@ -163,6 +165,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_RANGE_DISAGREES = -94,
   // A horizon that its sender cannot drive.
   HOLDOVER_REFUSED_UNREACHABLE = -95,
+  // Not a refusal of a frame: the driver's request stopped coming while the unit drove.
+  HOLDOVER_REFUSED_REQUEST_LOST = -96,
+  // Not a refusal of a frame: an `EgoMotion` of another station than the unit's own.
+  HOLDOVER_REFUSED_EGO_STATION = -97,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -236,6 +242,8 @@ enum holdover_cause_t
   HOLDOVER_CAUSE_EGO_STALE = 5,
   // What the range sensor sees and what is heard of the target exclude one another.
   HOLDOVER_CAUSE_RANGE_DISAGREES = 6,
+  // The driver's request has stopped coming: the unit hands back.
+  HOLDOVER_CAUSE_REQUEST_LOST = 7,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -287,6 +295,9 @@ typedef struct holdover_law_t {
   uint32_t free_road_acceleration_mm_s2;
   // Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.
   uint32_t target_speed_mm_s;
+  // Share by which the ego may exceed that speed to catch up with the vehicle that it follows, in thousandths: 0 (the speed is
+  // a cap) to 750 by 50.
+  uint32_t catch_up_milli;
   // Speed never demanded beyond, in mm/s.
   uint32_t max_speed_mm_s;
 } holdover_law_t;
@@ -343,6 +354,8 @@ typedef struct holdover_link_t {
   uint32_t holdover_us;
   // Age up to which the own motion is usable; in us.
   uint32_t ego_timeout_us;
+  // Age up to which the request of the driver holds, in us.
+  uint32_t request_timeout_us;
   // Age up to which a time synchronisation holds; in us.
   uint32_t sync_timeout_us;
   // Delay assumed while there is no synchronisation; in us.

@@ -71,12 +71,7 @@ fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
                 Some(name) => Reading::Name(name),
                 None => Reading::Value(raw as f64 * signal.factor + signal.offset),
             };
-            let knot = if message.name.ends_with("Horizon") && signal.name != "Tag" {
-                part.map_or(String::new(), |part| part.to_string())
-            } else {
-                String::new()
-            };
-            let before = readings.insert(format!("{}{knot}", signal.name), reading.clone());
+            let before = readings.insert(signal.name.clone(), reading.clone());
             assert!(before.is_none_or(|before| before == reading), "{} differs between frames", signal.name);
         }
     }
@@ -145,6 +140,7 @@ fn expected_of_said(said: &Said) -> Expected {
             .value("Gain", si!(i.gain))
             .value("Damping", si!(i.damping))
             .value("Lag", si!(i.lag))
+            .value("CatchUp", si!(i.catch_up))
             .value("AccelerationLimit", si!(i.limits.acceleration))
             .value("BrakingLimit", si!(i.limits.braking))
             .value("JerkLimit", si!(i.limits.jerk))
@@ -222,10 +218,26 @@ fn expected_of(message: &Message) -> Expected {
             .name("Cause", s.cause.name())
             .value("Count", s.count)
             .name("Mode", mode(s.mode))
-            .value("Detail", s.detail)
+            .either("Detail", detail(s.detail).is_none().then_some(s.detail.into()), detail(s.detail).unwrap_or(""))
             .name("Synchronised", if s.synchronised { "GNSS time known" } else { "no GNSS time" })
-            .value("LinksOn", s.links_on),
+            .value("LinksOn", s.links_on)
+            .value("InterfaceVersion", s.interface),
     }
+}
+
+/// What the file calls the cause of a fallback or a fault.
+fn detail(number: u8) -> Option<&'static str> {
+    Some(match number {
+        0 => "none",
+        1 => "not associated",
+        2 => "never heard",
+        3 => "silent",
+        4 => "range disagrees",
+        5 => "request lost",
+        16 => "ego missing",
+        17 => "ego stale",
+        _ => return None,
+    })
 }
 
 /// The messages of the file that carry it.

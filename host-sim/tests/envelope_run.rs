@@ -49,7 +49,7 @@ fn without_being_asked_the_envelope_is_not_engaged_and_the_bound_is_told() {
     assert_eq!(results["bound"]["violations"], 0);
     assert_eq!(results["bound"]["beyond_limits"], 0);
     let width_m = results["bound"]["median_width_m"].as_f64().unwrap();
-    assert!((0.1..0.4).contains(&width_m), "{width_m}");
+    assert!((0.1..0.5).contains(&width_m), "{width_m}");
     assert_eq!(results["envelope"], serde_json::json!({"engaged": false, "limited_share": 0.0}));
 }
 
@@ -102,7 +102,7 @@ fn a_range_sensor_keeps_the_bound_narrow_through_a_silence() {
         silent.map(|tick| tick["highest_position_m"] - tick["lowest_position_m"]).fold(0.0, f64::max)
     };
     let (without, with) = (with(""), with("range_sensor = true\n"));
-    assert!(without > 20.0 && with < 1.0, "{without} {with}");
+    assert!(without > 20.0 && with < 1.8, "{without} {with}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::bits::Payload;
 use super::field::Field;
+use super::meaning::meaning;
 use crate::units::Acceleration;
 
 /// What brings the demanded acceleration about.
@@ -36,15 +37,19 @@ pub enum ModeCode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Command {
-    /// Demanded acceleration; ±16.382 m/s² by 2 mm/s².
+    #[doc = meaning!(command_acceleration)]
+    ///
+    /// ±16.382 m/s² by 2 mm/s².
     pub acceleration: Acceleration,
     /// The effort that brings it about by the configured vehicle model.
     pub effort: Effort,
-    /// In which mode it was computed.
+    #[doc = meaning!(mode)]
     pub mode: ModeCode,
-    /// Whether the envelope changed it.
+    #[doc = meaning!(limited)]
     pub limited: bool,
-    /// Counts periods; modulo 64.
+    #[doc = meaning!(tick)]
+    ///
+    /// Modulo 64.
     pub tick: u8,
 }
 

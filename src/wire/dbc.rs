@@ -5,7 +5,8 @@ use core::fmt::{Display, Formatter, Result};
 
 use super::Slot;
 use super::catalogue::{BaseId, CATALOGUE, Line, Node, SLOTS, data_id};
-use super::field::{Field, Place};
+use super::field::{Field, Place, TAG};
+use super::meaning;
 
 /// The DBC of a bus.
 #[derive(Clone, Copy, Debug)]
@@ -39,14 +40,20 @@ impl Display for Dbc {
             let receivers = if matches!(line.sender, Node::Unit) { "Modem,Vehicle" } else { "Unit" };
             writeln!(f, " SG_ Crc : 0|8@1+ (1,0) [0|255] \"\" {receivers}")?;
             writeln!(f, " SG_ Counter : 8|4@1+ (1,0) [0|14] \"\" {receivers}")?;
-            for field in line.fields {
-                writeln!(f, " SG_ {} {receivers}", Signal(field))?;
+            for signal in signals(line) {
+                writeln!(f, " SG_ {signal} {receivers}")?;
             }
             writeln!(f)?;
         }
         f.write_str(NOTES)?;
         for (line, _, id) in self.messages() {
             writeln!(f, "CM_ BO_ {id} \"{}\";", line.comment)?;
+            writeln!(f, "CM_ SG_ {id} Crc \"{}\";", meaning::CRC)?;
+            writeln!(f, "CM_ SG_ {id} Counter \"{}\";", meaning::COUNTER)?;
+            for signal in signals(line) {
+                let meaning = meaning::signal(line.content, signal.field.name);
+                writeln!(f, "CM_ SG_ {id} {} \"{meaning}\";", signal.name())?;
+            }
         }
         f.write_str(ATTRIBUTES)?;
         for (line, slot, id) in self.messages() {
@@ -62,11 +69,17 @@ impl Display for Dbc {
             ] {
                 writeln!(f, "BA_ \"{name}\" BO_ {id} {value};")?;
             }
+            for signal in signals(line) {
+                let (name, start) = (signal.name(), signal.start());
+                if start != 0 {
+                    writeln!(f, "BA_ \"GenSigStartValue\" SG_ {id} {name} {start};")?;
+                }
+            }
         }
         for (line, _, id) in self.messages() {
-            for field in line.fields.iter().filter(|field| !field.values.is_empty()) {
-                write!(f, "VAL_ {id} {}", field.name)?;
-                for (raw, name) in field.values {
+            for signal in signals(line).filter(|signal| !signal.field.values.is_empty()) {
+                write!(f, "VAL_ {id} {}", signal.name())?;
+                for (raw, name) in signal.field.values {
                     write!(f, " {raw} \"{name}\"")?;
                 }
                 writeln!(f, " ;")?;
@@ -76,7 +89,10 @@ impl Display for Dbc {
     }
 }
 
-const HEAD: &str = "VERSION \"\"
+const HEAD: &str = concat!(
+    "VERSION \"",
+    env!("CARGO_PKG_VERSION"),
+    "\"
 
 NS_ :
 
@@ -84,7 +100,8 @@ BS_:
 
 BU_: Unit Modem Vehicle
 
-";
+"
+);
 
 const NOTES: &str = "CM_ \"Every message: AUTOSAR E2E Profile 1, variant 1A: Crc is CRC-8 with polynomial 0x1D, initial \
 value and final xor 0, over E2EDataId (low byte, high byte) and bytes 1 to 7; Counter counts 0 to 14 on each identifier. \
@@ -98,6 +115,10 @@ CM_ BU_ Vehicle \"The vehicle's own sensors, driver's desk and planner.\";
 
 const ATTRIBUTES: &str = "BA_DEF_ \"BusType\" STRING ;
 BA_DEF_ \"Baudrate\" INT 0 1000000;
+BA_DEF_ \"InterfaceVersion\" INT 0 7;
+BA_DEF_ BO_ \"GenMsgSendType\" ENUM \"Cyclic\",\"NoMsgSendType\";
+BA_DEF_ BO_ \"E2EProfile\" STRING ;
+BA_DEF_ SG_ \"GenSigStartValue\" INT -2147483648 2147483647;
 BA_DEF_ BO_ \"GenMsgCycleTime\" INT 0 65535;
 BA_DEF_ BO_ \"GenMsgTimeout\" INT 0 65535;
 BA_DEF_ BO_ \"FramesPerCycle\" INT 1 255;
@@ -107,6 +128,10 @@ BA_DEF_ BO_ \"E2EMaxNoNewOrRepeatedData\" INT 0 14;
 BA_DEF_ BO_ \"E2ESyncCounterInit\" INT 0 14;
 BA_DEF_DEF_ \"BusType\" \"CAN\";
 BA_DEF_DEF_ \"Baudrate\" 500000;
+BA_DEF_DEF_ \"InterfaceVersion\" 2;
+BA_DEF_DEF_ \"GenMsgSendType\" \"Cyclic\";
+BA_DEF_DEF_ \"E2EProfile\" \"PROFILE_01A\";
+BA_DEF_DEF_ \"GenSigStartValue\" 0;
 BA_DEF_DEF_ \"GenMsgCycleTime\" 0;
 BA_DEF_DEF_ \"GenMsgTimeout\" 0;
 BA_DEF_DEF_ \"FramesPerCycle\" 1;
@@ -136,19 +161,56 @@ impl Display for Name {
     }
 }
 
-/// A signal up to its unit.
-struct Signal(&'static Field);
+/// A signal of the file: a field, in one part where every part of a message has the same fields, so that tools see each part by a
+/// name of its own.
+struct Signal {
+    field: &'static Field,
+    part: Option<u8>,
+}
+
+/// All signals of a line.
+fn signals(line: &'static Line) -> impl Iterator<Item = Signal> {
+    let parts = line.selector().filter(|_| line.fields.iter().all(|field| !matches!(field.place, Place::Part(_))));
+    let parts = parts.map_or(0, |selector| u8::try_from(selector.max).unwrap_or(0).saturating_add(1));
+    line.fields.iter().flat_map(move |field| {
+        let is_in_each = parts > 0 && field.place == Place::Always && field.name != TAG.name;
+        let (first, last) = if is_in_each { (0, parts) } else { (0, 1) };
+        (first..last).map(move |part| Signal { field, part: is_in_each.then_some(part) })
+    })
+}
+
+impl Signal {
+    fn name(&self) -> SignalName {
+        SignalName(self.field.name, self.part)
+    }
+
+    /// The raw value before anything is known: the code for none, or the value nearest to zero.
+    fn start(&self) -> i64 {
+        self.field.none.unwrap_or(0i64.max(self.field.min).min(self.field.max))
+    }
+}
+
+/// The name of a signal, with its part where every part has one.
+struct SignalName(&'static str, Option<u8>);
+
+impl Display for SignalName {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        f.write_str(self.0)?;
+        self.1.map_or(Ok(()), |part| write!(f, "{part}"))
+    }
+}
 
 impl Display for Signal {
+    /// Up to its unit.
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Field { name, start, length, per_unit, unit, min, max, .. } = *self.0;
-        f.write_str(name)?;
-        match self.0.place {
-            Place::Always => {}
-            Place::Selector => f.write_str(" M")?,
-            Place::Part(part) => write!(f, " m{part}")?,
+        let Field { start, length, per_unit, unit, min, max, .. } = *self.field;
+        write!(f, "{}", self.name())?;
+        match (self.field.place, self.part) {
+            (Place::Always, None) => {}
+            (Place::Selector, _) => f.write_str(" M")?,
+            (Place::Part(part), _) | (Place::Always, Some(part)) => write!(f, " m{part}")?,
         }
-        let sign = if self.0.signed { '-' } else { '+' };
+        let sign = if self.field.signed { '-' } else { '+' };
         let (factor, min, max) = (Decimal(1, per_unit), Decimal(min, per_unit), Decimal(max, per_unit));
         write!(f, " : {start}|{length}@1{sign} ({factor},0) [{min}|{max}] \"{unit}\"")
     }
@@ -189,6 +251,14 @@ mod tests {
         assert_eq!(shown(-900_000_000, 10_000_000), "-90");
         assert_eq!(shown(-1, 10_000_000), "-0.0000001");
         assert_eq!(shown(28_799, 80), "359.9875");
+    }
+
+    #[test]
+    fn every_signal_says_what_it_means() {
+        for (line, signal) in CATALOGUE.iter().flat_map(|line| signals(line).map(move |signal| (line, signal))) {
+            let meaning = meaning::signal(line.content, signal.field.name);
+            assert!(meaning.ends_with('.') && !meaning.contains('"'), "{} {}: {meaning}", line.name, signal.name());
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::Predecessor;
 use super::bits::Payload;
 use super::field::Field;
+use super::meaning::meaning;
 use super::motion::speed;
 use super::predecessor;
 use crate::units::{Seconds, Speed};
@@ -11,13 +12,17 @@ use crate::units::{Seconds, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DriverRequest {
-    /// Whether the unit shall drive.
+    #[doc = meaning!(engaged)]
     pub engaged: bool,
-    /// Whom it shall follow.
+    #[doc = meaning!(predecessor_kind)]
     pub predecessor: Predecessor,
-    /// Speed wanted on a free road, `v_∞`; 0 to 65.534 m/s by 2 mm/s.
+    #[doc = meaning!(request_target_speed)]
+    ///
+    /// `v_∞`; 0 to 65.534 m/s by 2 mm/s.
     pub target_speed: Speed,
-    /// Desired time gap, `t_g`; 0.1 to 3.995 s by 5 ms; `None`: the configured one.
+    #[doc = meaning!(request_time_gap)]
+    ///
+    /// `t_g`; 0.1 to 3.995 s by 5 ms; `None`: the configured one.
     pub time_gap: Option<Seconds>,
 }
 

@@ -3,6 +3,7 @@
 use super::Predecessor;
 use super::bits::Payload;
 use super::field::{Field, TAG};
+use super::meaning::meaning;
 use super::motion::speed;
 use super::predecessor;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
@@ -11,13 +12,21 @@ use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Se
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limits {
-    /// Largest acceleration that its controller demands; 0.02 m/s², rounded up.
+    #[doc = meaning!(acceleration_limit)]
+    ///
+    /// 0.02 m/s², rounded up.
     pub acceleration: Acceleration,
-    /// Hardest braking that its controller demands in normal driving; 0.02 m/s².
+    #[doc = meaning!(braking_limit)]
+    ///
+    /// 0.02 m/s².
     pub braking: Acceleration,
-    /// Fastest change of the demand in normal driving; 0.05 m/s³.
+    #[doc = meaning!(jerk_limit)]
+    ///
+    /// 0.05 m/s³.
     pub jerk: Jerk,
-    /// Hardest braking that it is capable of; 0.02 m/s², rounded up, because others' safety rests on its not being more.
+    #[doc = meaning!(emergency_braking)]
+    ///
+    /// 0.02 m/s², rounded up.
     pub emergency_braking: Acceleration,
 }
 
@@ -25,27 +34,45 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DrivingParameters {
-    /// Bumper to bumper, `l`; 0 to 40.95 m by 1 cm.
+    #[doc = meaning!(length)]
+    ///
+    /// 0 to 40.95 m by 1 cm.
     pub length: Distance,
-    /// Distance kept at standstill, `s_0`; 0 to 10.23 m by 1 cm.
+    #[doc = meaning!(standstill)]
+    ///
+    /// `s_0`; 0 to 10.23 m by 1 cm.
     pub standstill: Distance,
-    /// Whom it follows.
+    #[doc = meaning!(predecessor_kind)]
     pub predecessor: Predecessor,
-    /// Speed that it wants on a free road, `v_∞`; 0 to 65.534 m/s by 2 mm/s.
+    #[doc = meaning!(target_speed)]
+    ///
+    /// `v_∞`; 0 to 65.534 m/s by 2 mm/s.
     pub target_speed: Speed,
-    /// Share by which it exceeds that speed to catch up with a vehicle that it follows; 0 to 0.75 by 0.05.
+    #[doc = meaning!(catch_up)]
+    ///
+    /// 0 to 0.75 by 0.05.
     pub catch_up: Fraction,
-    /// Desired time gap, `t_g`; 0.1 to 3.995 s by 5 ms.
+    #[doc = meaning!(time_gap)]
+    ///
+    /// `t_g`; 0.1 to 3.995 s by 5 ms.
     pub time_gap: Seconds,
-    /// Gain `k` (with the adjacency `α` = 1); 0 to 3.999 /s² by 0.001.
+    #[doc = meaning!(gain)]
+    ///
+    /// `k`, with the adjacency `α` = 1; 0 to 3.999 /s² by 0.001.
     pub gain: Gain,
-    /// Damping `γ`; 0 to 3.999 s by 0.001 s.
+    #[doc = meaning!(damping)]
+    ///
+    /// `γ`; 0 to 3.999 s by 0.001 s.
     pub damping: Seconds,
-    /// Time constant of its actuators, `T`; 0 to 1.998 s by 2 ms.
+    #[doc = meaning!(lag)]
+    ///
+    /// `T`; 0 to 1.998 s by 2 ms.
     pub lag: FineSeconds,
     /// Its limits.
     pub limits: Limits,
-    /// How far its horizon reaches; 0 to 25.5 s by 0.1 s, in tenths of a second.
+    #[doc = meaning!(horizon_length)]
+    ///
+    /// 0 to 25.5 s by 0.1 s, in tenths of a second.
     pub horizon_tenths: u8,
 }
 

@@ -2,6 +2,7 @@
 
 use super::bits::Payload;
 use super::field::{Field, TAG};
+use super::meaning::meaning;
 use super::motion::{self, WirePosition, position_of};
 use crate::fixed::quotient;
 use crate::health::Cause;
@@ -12,13 +13,21 @@ use crate::units::{Distance, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Ends {
-    /// How far behind the estimate the target may be; 0 to 327.64 m by 0.02 m, rounded up.
+    #[doc = meaning!(behind)]
+    ///
+    /// 0 to 327.64 m by 0.02 m, rounded up.
     pub behind: Distance,
-    /// How far ahead of it; likewise.
+    #[doc = meaning!(ahead)]
+    ///
+    /// Likewise.
     pub ahead: Distance,
-    /// How much slower it may be; 0 to 102 m/s by 0.2 m/s, rounded up.
+    #[doc = meaning!(slower)]
+    ///
+    /// 0 to 102 m/s by 0.2 m/s, rounded up.
     pub slower: Speed,
-    /// How much faster; likewise.
+    #[doc = meaning!(faster)]
+    ///
+    /// Likewise.
     pub faster: Speed,
 }
 
@@ -28,11 +37,17 @@ pub struct Ends {
 pub struct TargetEstimate {
     /// Ties the two frames; modulo 4.
     pub tag: u8,
-    /// Front bumper of the target; 1 mm.
+    #[doc = meaning!(estimate_position)]
+    ///
+    /// 1 mm.
     pub position: WirePosition,
+    #[doc = meaning!(estimate_speed)]
+    ///
     /// 0 to 65.534 m/s by 2 mm/s.
     pub speed: Speed,
-    /// Age of the newest sample it rests on; 0 to 16.38 s by 2 ms, rounded up, saturating.
+    #[doc = meaning!(age)]
+    ///
+    /// 0 to 16.38 s by 2 ms, rounded up, saturating.
     pub age: Duration,
     /// The bound; `None`: not known, or wider than the fields can say.
     pub ends: Option<Ends>,

@@ -2,6 +2,7 @@
 
 use super::bits::Payload;
 use super::field::{Field, TAG, stamp, stamp_of};
+use super::meaning::meaning;
 use crate::time::Stamp;
 
 /// A position on the globe.
@@ -10,13 +11,21 @@ use crate::time::Stamp;
 pub struct GeoPosition {
     /// Ties the two frames; modulo 4.
     pub tag: u8,
-    /// Degrees north by 1e-7; ±900,000,000.
+    #[doc = meaning!(latitude)]
+    ///
+    /// By 1e-7; ±900,000,000.
     pub latitude: i32,
-    /// Degrees east by 1e-7; ±1,800,000,000.
+    #[doc = meaning!(longitude)]
+    ///
+    /// By 1e-7; ±1,800,000,000.
     pub longitude: i32,
-    /// Degrees clockwise from north by 0.0125; 0 to 28,799.
+    #[doc = meaning!(heading)]
+    ///
+    /// By 0.0125; 0 to 28,799.
     pub heading: u16,
-    /// When it was there; 0.1 ms.
+    #[doc = meaning!(stamp)]
+    ///
+    /// 0.1 ms.
     pub stamp: Stamp,
 }
 

@@ -3,6 +3,7 @@
 
 use super::bits::Payload;
 use super::field::{Field, TAG};
+use super::meaning::meaning;
 use super::motion;
 use crate::units::{Acceleration, Distance, Speed};
 
@@ -14,14 +15,21 @@ pub const KNOTS: usize = 5;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Knot {
-    /// Way from the position in the motion message with the same tag; 0 to 262.143 m by 1 mm.
+    #[doc = meaning!(displacement)]
+    ///
+    /// 0 to 262.143 m by 1 mm.
     pub displacement: Distance,
+    #[doc = meaning!(knot_speed)]
+    ///
     /// 0 to 65.534 m/s by 2 mm/s.
     pub speed: Speed,
-    /// ±20.46 m/s² by 0.02 m/s². At standstill (speed 0) it is the one with which the vehicle came to rest since the
-    /// knot before, not positive; it tells when that was.
+    #[doc = meaning!(knot_acceleration)]
+    ///
+    /// ±20.46 m/s² by 0.02 m/s²; not positive at standstill.
     pub acceleration: Acceleration,
-    /// How far midway since the knot before lies ahead of the curve through the two; -20 to 15 mm by 5 mm.
+    #[doc = meaning!(bow)]
+    ///
+    /// -20 to 15 mm by 5 mm.
     pub bow: Distance,
 }
 

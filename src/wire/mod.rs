@@ -21,6 +21,7 @@ pub mod geo;
 pub mod horizon;
 mod index;
 pub mod load;
+mod meaning;
 pub mod motion;
 mod predecessor;
 pub mod quantity;

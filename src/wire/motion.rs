@@ -3,6 +3,7 @@
 use super::StationHash;
 use super::bits::Payload;
 use super::field::{Field, TAG, stamp, stamp_of};
+use super::meaning::meaning;
 use crate::time::Stamp;
 use crate::units::{Acceleration, Distance, Position, Speed};
 
@@ -64,23 +65,39 @@ const _: () = assert!(WirePosition::MODULUS_MM == 1 << 25);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion {
-    /// Ties the two frames of one sample, and the horizon that was computed from it; modulo 4.
+    #[doc = meaning!(tag)]
+    ///
+    /// Modulo 4.
     pub tag: u8,
-    /// Front bumper along the lane; 1 mm.
+    #[doc = meaning!(position)]
+    ///
+    /// 1 mm.
     pub position: WirePosition,
+    #[doc = meaning!(speed)]
+    ///
     /// 0 to 65.534 m/s by 2 mm/s.
     pub speed: Speed,
+    #[doc = meaning!(acceleration)]
+    ///
     /// ±20.46 m/s² by 0.02 m/s².
     pub acceleration: Acceleration,
-    /// The acceleration last demanded of the actuators, in force up to the stamp; as `acceleration`.
+    #[doc = meaning!(demand)]
+    ///
+    /// As `acceleration`.
     pub demand: Acceleration,
-    /// When all of this was true; 0.1 ms.
+    #[doc = meaning!(stamp)]
+    ///
+    /// 0.1 ms.
     pub stamp: Stamp,
-    /// 95 % of position errors are below this: 0 to 6.3 m by 0.05 m, rounded up; `None`: not published.
+    #[doc = meaning!(position_accuracy)]
+    ///
+    /// 0 to 6.3 m by 0.05 m, rounded up; `None`: not published.
     pub position_accuracy: Option<Distance>,
-    /// 95 % of speed errors are below this: 0 to 1.24 m/s by 0.02 m/s, rounded up; `None`: not published.
+    #[doc = meaning!(speed_accuracy)]
+    ///
+    /// 0 to 1.24 m/s by 0.02 m/s, rounded up; `None`: not published.
     pub speed_accuracy: Option<Speed>,
-    /// Whose state it is.
+    #[doc = meaning!(station)]
     pub station: StationHash,
 }
 

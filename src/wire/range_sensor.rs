@@ -2,6 +2,7 @@
 
 use super::bits::Payload;
 use super::field::Field;
+use super::meaning::meaning;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
 
@@ -9,15 +10,25 @@ use crate::units::{Distance, Speed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct RangeSample {
-    /// Own front bumper to its rear bumper; 0 to 262.143 m by 1 mm.
+    #[doc = meaning!(range_distance)]
+    ///
+    /// 0 to 262.143 m by 1 mm.
     pub distance: Distance,
-    /// Its speed less our own; ±65.534 m/s by 2 mm/s.
+    #[doc = meaning!(speed_difference)]
+    ///
+    /// ±65.534 m/s by 2 mm/s.
     pub speed_difference: Speed,
-    /// 95 % of distance errors are below this: 0 to 1.55 m by 0.05 m, rounded up. A worse measurement is not to be sent.
+    #[doc = meaning!(distance_accuracy)]
+    ///
+    /// 0 to 1.55 m by 0.05 m, rounded up.
     pub distance_accuracy: Distance,
-    /// 95 % of speed errors are below this: 0 to 1.5 m/s by 0.1 m/s, rounded up; likewise.
+    #[doc = meaning!(range_speed_accuracy)]
+    ///
+    /// 0 to 1.5 m/s by 0.1 m/s, rounded up.
     pub speed_accuracy: Speed,
-    /// How old the measurement was when the frame was sent; 0 to 63 ms by 1 ms, rounded up; likewise.
+    #[doc = meaning!(range_age)]
+    ///
+    /// 0 to 63 ms by 1 ms, rounded up.
     pub age: Duration,
 }
 

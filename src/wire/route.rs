@@ -3,6 +3,7 @@
 use super::Predecessor;
 use super::bits::Payload;
 use super::field::{Field, TAG, stamp, stamp_of};
+use super::meaning::meaning;
 use super::predecessor;
 use crate::time::Stamp;
 use crate::units::Distance;
@@ -13,17 +14,27 @@ use crate::units::Distance;
 pub struct Route {
     /// Ties the two frames; modulo 4.
     pub tag: u8,
-    /// Number of the intersection in the route data; 0 to 255.
+    #[doc = meaning!(intersection)]
+    ///
+    /// 0 to 255.
     pub intersection: u8,
-    /// Leg by which it comes; 0 to 7.
+    #[doc = meaning!(leg)]
+    ///
+    /// 0 to 7.
     pub leg: u8,
-    /// Way to the crossing point, negative beyond it; ±1048.575 m by 1 mm.
+    #[doc = meaning!(route_distance)]
+    ///
+    /// ±1048.575 m by 1 mm.
     pub distance: Distance,
-    /// When `distance` was true; 0.1 ms.
+    #[doc = meaning!(stamp)]
+    ///
+    /// 0.1 ms.
     pub stamp: Stamp,
-    /// When it entered the intersection's zone, which decides the order: GNSS time by 10 ms, modulo 2²⁰ (2.9 h).
+    #[doc = meaning!(arrival)]
+    ///
+    /// By 10 ms, modulo 2²⁰ (2.9 h).
     pub arrival: u32,
-    /// Whom it takes to be ahead of it in the order.
+    #[doc = meaning!(claim_kind)]
     pub predecessor: Predecessor,
 }
 

@@ -3,23 +3,28 @@
 use super::bits::Payload;
 use super::command::ModeCode;
 use super::field::Field;
+use super::meaning::meaning;
 use crate::health::Cause;
 
 /// One page of the unit's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Status {
-    /// The cause that this page counts.
+    #[doc = meaning!(cause)]
     pub cause: Cause,
-    /// How often it was met since start; 0 to 16,777,215, saturating.
+    #[doc = meaning!(count)]
+    ///
+    /// 0 to 16,777,215, saturating.
     pub count: u32,
-    /// The mode.
+    #[doc = meaning!(mode)]
     pub mode: ModeCode,
-    /// Detail of the mode, 0 to 31: the cause of a fallback or a fault.
+    #[doc = meaning!(detail)]
+    ///
+    /// 0 to 31.
     pub detail: u8,
-    /// Whether GNSS time is known.
+    #[doc = meaning!(synchronised)]
     pub synchronised: bool,
-    /// Peers whose link is on.
+    #[doc = meaning!(links_on)]
     pub links_on: u8,
     /// [`INTERFACE`] of the sender.
     pub interface: u8,

@@ -2,15 +2,16 @@
 
 use super::bits::Payload;
 use super::field::Field;
+use super::meaning::meaning;
 use crate::time::GnssTime;
 
 /// First step: its *reception* is the mark that the follow-up dates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sync {
-    /// Ties the two steps; modulo 16.
+    #[doc = meaning!(sequence)]
     pub sequence: u8,
-    /// Whole seconds of the GNSS time of sending, as far as the sender knew it beforehand.
+    #[doc = meaning!(seconds)]
     pub seconds: u32,
 }
 
@@ -20,7 +21,9 @@ pub struct Sync {
 pub struct FollowUp {
     /// As in the sync message.
     pub sequence: u8,
-    /// What to add to the sync message's `seconds`, in microseconds; 0 to 4,294,967,295.
+    #[doc = meaning!(micros)]
+    ///
+    /// 0 to 4,294,967,295.
     pub micros: u32,
 }
 

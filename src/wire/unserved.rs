@@ -2,20 +2,26 @@
 
 use super::bits::Payload;
 use super::field::Field;
+use super::meaning::meaning;
 use crate::units::Distance;
 
 /// Whom the unit cannot know of at the intersection that it comes to next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Unserved {
-    /// Number of that intersection in the route data; 0 to 255.
+    #[doc = meaning!(intersection)]
+    ///
+    /// 0 to 255.
     pub intersection: u8,
-    /// Its legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit `n` is leg `n`.
+    #[doc = meaning!(legs)]
     pub legs: u8,
-    /// Way of the rear bumper of the nearest one ahead on the unit's own leg to that crossing point, negative beyond it; ±1048.574 m by
-    /// 1 mm. `None`: there is nobody.
+    #[doc = meaning!(unserved_ahead)]
+    ///
+    /// ±1048.574 m by 1 mm; `None`: there is nobody.
     pub ahead: Option<Distance>,
-    /// How many there are that the unit could meet; 0 to 63, saturating.
+    #[doc = meaning!(stations)]
+    ///
+    /// 0 to 63, saturating.
     pub stations: u8,
 }
 

@@ -92,7 +92,8 @@ impl<'a> Publisher<'a> {
             length,
             standstill: law.standstill,
             predecessor: Predecessor::Station(predecessor),
-            target_speed: law.target_speed,
+            // More than a road vehicle drives: a recording does not say what its driver wanted.
+            target_speed: speed(50.0),
             catch_up: law.catch_up,
             time_gap: Seconds::from_millis(1_000),
             gain: law.gain,

@@ -1,0 +1,209 @@
+//! What every signal means, once: the documentation of the messages' fields and the comments of the DBC are both made of it. A name
+//! enters, its text leaves. An engineer with the DBC alone has to be able to build a node that is right.
+
+use super::catalogue::{About, Content, Speaker};
+
+/// The text of a meaning, as a literal, so that `#[doc = meaning!(…)]` can have it.
+macro_rules! meaning {
+    (tag) => { "Ties the frames of one message: all of them carry the same tag, which counts modulo 4 from message to message." };
+    (position) => { "Front bumper along the lane, in the direction of travel, modulo 33554.432 m. Take the position nearest to the own one." };
+    (stamp) => { "GNSS time (seconds since 1980-01-06, without leap seconds) at which all of this message was true, modulo 13.1072 s." };
+    (station) => { "Low 8 bits of the identity of the station whose state it is: the name by which PredecessorStation refers to it. Two stations may have the same one; each is known by its slot." };
+    (ego_station) => { "The own station, as the unit is configured. Another value is counted (ego_station in Health), and the motion is used." };
+    (speed) => { "Speed along the lane; a vehicle that rolls back says 0." };
+    (acceleration) => { "Acceleration along the lane; braking is negative." };
+    (demand) => { "The acceleration that was demanded last of the actuators, in force up to the stamp: from it the receiver foresees what the lag still brings. Without a command in force, the same as Acceleration." };
+    (position_accuracy) => { "95 % of the errors of Position are below this. The receiver takes three times as much for certain." };
+    (speed_accuracy) => { "95 % of the errors of Speed are below this. The receiver takes three times as much for certain." };
+    (part) => { "Which frame of the message this is." };
+    (displacement) => { "Way from Position of the Motion of the same Tag to where the front bumper will be at this knot." };
+    (knot_speed) => { "Speed at this knot." };
+    (knot_acceleration) => { "Acceleration at this knot. At Speed 0 it is that with which the vehicle came to rest since the knot before, and tells when (see the message)." };
+    (bow) => { "How far the vehicle, midway in time since the knot before, is ahead of the quintic curve through the two knots." };
+    (length) => { "Length of the vehicle, bumper to bumper, with what it tows." };
+    (standstill) => { "Distance that it keeps at standstill to the rear bumper ahead." };
+    (predecessor_kind) => { "Whether the vehicle follows a station (PredecessorStation), follows nobody and drives by TargetSpeed, or does not say (it drives by no law that it publishes; in DriverRequest: the order at the intersections decides)." };
+    (predecessor_station) => { "Station of the vehicle that it follows, the nearest ahead of it with that name. Ignored unless PredecessorKind is station; 0 then." };
+    (target_speed) => { "Speed wanted on a free road: a cap, which only CatchUp lets it exceed." };
+    (catch_up) => { "Share of TargetSpeed by which it exceeds that speed, at most, to catch up with the vehicle that it follows." };
+    (time_gap) => { "Time gap that it keeps to the rear bumper ahead, beside Standstill. Less than 0.1 s is reserved: 0 is not a value." };
+    (gain) => { "Gain k of the law u = -k (gap error + Damping times the speed difference)." };
+    (damping) => { "Weight of the speed difference in the law, in seconds." };
+    (lag) => { "Time constant of its actuators: how its acceleration follows the demand." };
+    (acceleration_limit) => { "Largest acceleration that it demands; also the hardest that it is capable of, which others' safety rests on." };
+    (braking_limit) => { "Hardest braking that it demands in normal driving, as a magnitude." };
+    (jerk_limit) => { "Fastest change of its demand in normal driving." };
+    (emergency_braking) => { "Hardest braking that it is capable of, as a magnitude. Others' safety rests on its never being more. Publish a harder one 10 s before it is used." };
+    (horizon_length) => { "How far ahead in time its Horizon messages reach; 0: it sends none." };
+    (latitude) => { "Degrees north of the front bumper's middle, WGS 84." };
+    (longitude) => { "Degrees east of the front bumper's middle, WGS 84." };
+    (heading) => { "Degrees clockwise from true north into which the vehicle points." };
+    (route_distance) => { "Way of the front bumper to the crossing point of its leg at Stamp; negative beyond it." };
+    (leg) => { "Leg of the intersection by which it comes, by the numbers of the route data." };
+    (intersection) => { "Number of the intersection in the route data." };
+    (arrival) => { "GNSS time at which it entered the intersection's zone, modulo 10485.76 s. It decides the order: earlier goes first." };
+    (claim_kind) => { "Whether it takes a station (PredecessorStation) to be just ahead of it in the order, takes itself for the first, or does not say." };
+    (claim_station) => { "Station that it takes to be just ahead of it in the order. Ignored unless PredecessorKind is station; 0 then." };
+    (engaged) => { "Whether the unit shall drive. Send 0 as soon as the driver takes over. 300 ms without a DriverRequest and the unit hands back (Detail request lost)." };
+    (request_target_speed) => { "Set speed: a cap. The unit exceeds it only by the share that is configured to catch up, 0 by default." };
+    (request_time_gap) => { "Time gap to keep to the rear bumper ahead, beside the configured distance at standstill. Less than 0.1 s is reserved: 0 is refused." };
+    (range_distance) => { "Own front bumper to the rear bumper of the nearest vehicle on the own path." };
+    (speed_difference) => { "Speed of that vehicle less the own speed: negative where the own vehicle closes in." };
+    (distance_accuracy) => { "95 % of the errors of Distance are below this. Do not send a view that is worse than can be said." };
+    (range_speed_accuracy) => { "95 % of the errors of SpeedDifference are below this. Do not send a view that is worse than can be said." };
+    (range_age) => { "How old the measurement was when the frame was sent, rounded up. Do not send an older one." };
+    (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
+    (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to that crossing point; negative beyond it." };
+    (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };
+    (sequence) => { "Ties TimeSync and TimeFollowUp: the same in both, and counts modulo 16." };
+    (seconds) => { "Whole seconds of GNSS time (since 1980-01-06, without leap seconds) of the sending of this frame, as far as known beforehand." };
+    (micros) => { "What to add to TimeSync.Seconds to get the GNSS time at which the TimeSync with this Sequence was on the bus." };
+    (command_acceleration) => { "Demanded acceleration; braking is negative. Not to be used in Mode standby." };
+    (effort) => { "Whether Force or BrakeTorque stands in the frame." };
+    (force) => { "Net engine force that brings the acceleration about, by the configured vehicle model." };
+    (brake_torque) => { "Brake torque that brings the acceleration about, by the configured vehicle model." };
+    (mode) => { "How the unit drives: standby (not at all), cooperative, holdover (by the estimate), fallback (by what is certain), fault (it brakes)." };
+    (limited) => { "Whether the envelope, the last gate, changed the command." };
+    (tick) => { "Counts the unit's periods modulo 64: a command that does not count on is an old one." };
+    (estimate_position) => { "Where the front bumper of the target is now, as estimated; modulo 33554.432 m, as in Motion." };
+    (estimate_speed) => { "Speed of the target now, as estimated." };
+    (age) => { "Age of the newest sample that the estimate rests on, rounded up." };
+    (behind) => { "How far behind Position the target may be, at most." };
+    (ahead) => { "How far ahead of Position the target may be, at most." };
+    (slower) => { "How much slower than Speed the target may be, at most." };
+    (faster) => { "How much faster than Speed the target may be, at most." };
+    (cause) => { "The cause that this page counts." };
+    (count) => { "How often the cause was met since start." };
+    (detail) => { "Why the unit is in fallback or fault; none in every other mode." };
+    (synchronised) => { "Whether the unit knows GNSS time." };
+    (links_on) => { "Number of peers whose messages come in time." };
+    (interface) => { "Version of the interface, 2: a node built for another version may misread signals." };
+}
+
+pub(super) use meaning;
+
+/// Of the end-to-end checksum, which every frame has.
+pub(super) const CRC: &str = "End-to-end checksum, AUTOSAR Profile 1A: CRC-8 (polynomial 0x1D, start and final xor 0) over E2EDataId, low byte first, and bytes 1 to 7.";
+/// Of the end-to-end counter, which every frame has.
+pub(super) const COUNTER: &str =
+    "End-to-end counter: counts 0 to 14 and begins again, over all frames of this identifier.";
+
+/// What a signal of a message means; empty for a signal that there is not.
+#[must_use]
+pub fn signal(content: Content, name: &str) -> &'static str {
+    match content {
+        Content::Sync | Content::FollowUp => match name {
+            "Sequence" => meaning!(sequence),
+            "Seconds" => meaning!(seconds),
+            "Micros" => meaning!(micros),
+            _ => "",
+        },
+        Content::Command => match name {
+            "Acceleration" => meaning!(command_acceleration),
+            "Mode" => meaning!(mode),
+            "Limited" => meaning!(limited),
+            "Tick" => meaning!(tick),
+            "Effort" => meaning!(effort),
+            "Force" => meaning!(force),
+            "BrakeTorque" => meaning!(brake_torque),
+            _ => "",
+        },
+        Content::DriverRequest => match name {
+            "Engaged" => meaning!(engaged),
+            "PredecessorKind" => meaning!(predecessor_kind),
+            "PredecessorStation" => meaning!(predecessor_station),
+            "TargetSpeed" => meaning!(request_target_speed),
+            "TimeGap" => meaning!(request_time_gap),
+            _ => "",
+        },
+        Content::Range => match name {
+            "Distance" => meaning!(range_distance),
+            "SpeedDifference" => meaning!(speed_difference),
+            "DistanceAccuracy" => meaning!(distance_accuracy),
+            "SpeedAccuracy" => meaning!(range_speed_accuracy),
+            "Age" => meaning!(range_age),
+            _ => "",
+        },
+        Content::Unserved => match name {
+            "Stations" => meaning!(stations),
+            "Ahead" => meaning!(unserved_ahead),
+            "Legs" => meaning!(legs),
+            "Intersection" => meaning!(intersection),
+            _ => "",
+        },
+        Content::EstimateA | Content::EstimateB => match name {
+            "Tag" => meaning!(tag),
+            "Position" => meaning!(estimate_position),
+            "Speed" => meaning!(estimate_speed),
+            "Age" => meaning!(age),
+            "Behind" => meaning!(behind),
+            "Ahead" => meaning!(ahead),
+            "Slower" => meaning!(slower),
+            "Faster" => meaning!(faster),
+            _ => "",
+        },
+        Content::Status => match name {
+            "Cause" => meaning!(cause),
+            "Count" => meaning!(count),
+            "Mode" => meaning!(mode),
+            "Detail" => meaning!(detail),
+            "Synchronised" => meaning!(synchronised),
+            "LinksOn" => meaning!(links_on),
+            "InterfaceVersion" => meaning!(interface),
+            _ => "",
+        },
+        Content::Said(speaker, about) => said(speaker, about, name),
+    }
+}
+
+fn said(speaker: Speaker, about: About, name: &str) -> &'static str {
+    match (about, name) {
+        (_, "Tag") => meaning!(tag),
+        (_, "Part") => meaning!(part),
+        (_, "Stamp") => meaning!(stamp),
+        (About::MotionA, "Position") => meaning!(position),
+        (About::MotionA, "Station") if matches!(speaker, Speaker::Ego) => meaning!(ego_station),
+        (About::MotionA, "Station") => meaning!(station),
+        (About::MotionB, "Speed") => meaning!(speed),
+        (About::MotionB, "Acceleration") => meaning!(acceleration),
+        (About::MotionB, "Demand") => meaning!(demand),
+        (About::MotionB, "PositionAccuracy") => meaning!(position_accuracy),
+        (About::MotionB, "SpeedAccuracy") => meaning!(speed_accuracy),
+        (About::Horizon, "Displacement") => meaning!(displacement),
+        (About::Horizon, "Speed") => meaning!(knot_speed),
+        (About::Horizon, "Acceleration") => meaning!(knot_acceleration),
+        (About::Horizon, "Bow") => meaning!(bow),
+        (About::Geo, "Latitude") => meaning!(latitude),
+        (About::Geo, "Longitude") => meaning!(longitude),
+        (About::Geo, "Heading") => meaning!(heading),
+        (About::Route, "Distance") => meaning!(route_distance),
+        (About::Route, "Leg") => meaning!(leg),
+        (About::Route, "Intersection") => meaning!(intersection),
+        (About::Route, "Arrival") => meaning!(arrival),
+        (About::Route, "PredecessorKind") => meaning!(claim_kind),
+        (About::Route, "PredecessorStation") => meaning!(claim_station),
+        (About::DrivingParameters, name) => parameters(name),
+        _ => "",
+    }
+}
+
+fn parameters(name: &str) -> &'static str {
+    match name {
+        "Length" => meaning!(length),
+        "Standstill" => meaning!(standstill),
+        "PredecessorKind" => meaning!(predecessor_kind),
+        "PredecessorStation" => meaning!(predecessor_station),
+        "TargetSpeed" => meaning!(target_speed),
+        "TimeGap" => meaning!(time_gap),
+        "Gain" => meaning!(gain),
+        "Damping" => meaning!(damping),
+        "Lag" => meaning!(lag),
+        "CatchUp" => meaning!(catch_up),
+        "AccelerationLimit" => meaning!(acceleration_limit),
+        "BrakingLimit" => meaning!(braking_limit),
+        "JerkLimit" => meaning!(jerk_limit),
+        "EmergencyBraking" => meaning!(emergency_braking),
+        "HorizonLength" => meaning!(horizon_length),
+        _ => "",
+    }
+}
