@@ -1,6 +1,7 @@
 //! The command line as it is typed: arguments enter, raw values leave. [`crate::commands::options`] interprets and
 //! checks them.
 
+use crate::commands::dbc::{self, arguments::DbcArguments};
 use crate::commands::ecu::{self, arguments::EcuArguments};
 use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
 use crate::commands::evaluate::{self, arguments::EvaluateArguments};
@@ -61,6 +62,9 @@ pub enum Command {
     /// Record the frames on a CAN interface
     #[command(after_help = record::arguments::AFTER_HELP)]
     Record(RecordArguments),
+    /// Print the message catalogue as a DBC file
+    #[command(after_help = dbc::arguments::AFTER_HELP)]
+    Dbc(DbcArguments),
     /// Run an onboard unit on a CAN interface
     #[command(after_help = ecu::arguments::AFTER_HELP)]
     Ecu(EcuArguments),

@@ -4,8 +4,10 @@
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
 //! ```
 
+pub mod base_id;
 pub mod cli;
 pub mod corridor;
+pub mod dbc;
 pub mod ecu;
 pub mod ending;
 pub mod envelope_cost;

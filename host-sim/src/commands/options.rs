@@ -3,6 +3,7 @@
 
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
+use crate::commands::dbc::DbcOptions;
 use crate::commands::ecu::options::EcuOptions;
 use crate::commands::envelope_cost::options::EnvelopeCostOptions;
 use crate::commands::evaluate::options::EvaluateOptions;
@@ -16,7 +17,7 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    corridor, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
+    corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -48,6 +49,8 @@ pub enum Options {
     Replay(ReplayOptions),
     /// Record a CAN interface.
     Record(RecordOptions),
+    /// Print the catalogue.
+    Dbc(DbcOptions),
     /// Run a unit on a CAN interface.
     Ecu(EcuOptions),
     /// Judge a unit on a CAN interface.
@@ -70,6 +73,7 @@ impl Options {
             Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             Some(Command::Record(arguments)) => RecordOptions::read(arguments).map(Self::Record),
+            Some(Command::Dbc(arguments)) => DbcOptions::read(&arguments).map(Self::Dbc),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
             Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
             None => Self::of_run(RunArguments { scenario: None, settings: cli.run }),
@@ -107,6 +111,7 @@ impl Options {
             Self::EnvelopeCost(options) => envelope_cost::run(options),
             Self::Replay(options) => replay::run(options),
             Self::Record(options) => record::run(options),
+            Self::Dbc(options) => dbc::run(options),
             Self::Ecu(options) => ecu::run(options),
             Self::Hil(options) => hil::run(options),
         }

@@ -3,6 +3,8 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::commands::base_id::number;
+
 /// Identity of the unit. `hil` uses the same arguments for the device under test.
 #[derive(Clone, Debug, Default, Args)]
 pub struct UnitArguments {
@@ -13,6 +15,10 @@ pub struct UnitArguments {
     /// The unit of the vehicle with this index in the scenario; by default the ego's
     #[arg(long, value_name = "INDEX")]
     pub vehicle: Option<usize>,
+
+    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
+    #[arg(long, value_name = "ID", value_parser = number)]
+    pub base_id: Option<u16>,
 }
 
 /// The arguments of `ecu`.

@@ -8,6 +8,7 @@ use holdover::wire::catalogue::{CATALOGUE, Node, PEERS_OFFSET, SLOT_STRIDE};
 use holdover::wire::{BaseId, StationHash};
 
 use super::arguments::{EcuArguments, UnitArguments};
+use crate::commands::base_id;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
 use crate::sim::modem::PEERS;
@@ -56,8 +57,9 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// # Errors
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
+    let base_id = base_id::checked(arguments.base_id)?;
     if let Some(station) = arguments.station {
-        return Ok(Config::car(StationHash(station)));
+        return Ok(Config { base_id, ..Config::car(StationHash(station)) });
     }
     let vehicle = arguments.vehicle.unwrap_or(scenario.ego);
     let last = scenario.vehicles.len() - 1;
@@ -65,7 +67,7 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
         let remedy = format!("give an index from 0 to {last}");
         return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
     }
-    let config = world::config(scenario, vehicle);
+    let config = Config { base_id, ..world::config(scenario, vehicle) };
     config.check(STEPS).map_err(|cause| {
         Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")
     })?;
@@ -97,9 +99,9 @@ mod tests {
     fn the_unit_is_the_scenarios_ego_unless_it_is_the_firmwares() {
         let paper = scenario(Path::new("paper"), &Overrides::default()).unwrap();
         assert_eq!(unit(&paper, &UnitArguments::default()).unwrap(), world::config(&paper, 2));
-        let firmware = unit(&paper, &UnitArguments { station: Some(1), vehicle: None }).unwrap();
+        let firmware = unit(&paper, &UnitArguments { station: Some(1), ..UnitArguments::default() }).unwrap();
         assert_eq!(firmware, Config::car(StationHash(1)));
-        let beyond = unit(&paper, &UnitArguments { station: None, vehicle: Some(5) }).unwrap_err();
+        let beyond = unit(&paper, &UnitArguments { vehicle: Some(5), ..UnitArguments::default() }).unwrap_err();
         assert_eq!(beyond.to_string(), "--vehicle: there is no vehicle 5; give an index from 0 to 4");
     }
 }

@@ -1,6 +1,8 @@
 //! The arguments of `replay`, as they are typed.
 
 use clap::Args;
+
+use crate::commands::base_id::number;
 use std::path::PathBuf;
 
 /// The arguments of `replay`.
@@ -28,7 +30,7 @@ pub struct ReplayArguments {
     pub station: Option<u8>,
 
     /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
-    #[arg(long, value_name = "ID", value_parser = identifier)]
+    #[arg(long, value_name = "ID", value_parser = number)]
     pub base_id: Option<u16>,
 
     /// Period of the unit's task, 0.001 to 0.1 [default: 0.01]
@@ -50,14 +52,6 @@ pub struct ReplayArguments {
     /// Print that summary as one JSON value
     #[arg(long)]
     pub json: bool,
-}
-
-/// A number, decimal or with 0x hexadecimal.
-fn identifier(text: &str) -> Result<u16, std::num::ParseIntError> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u16::from_str_radix(digits, 16),
-        None => text.parse(),
-    }
 }
 
 /// The end of `replay --help`.

@@ -4,10 +4,11 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use holdover::Config;
-use holdover::wire::{BaseId, StationHash};
+use holdover::wire::StationHash;
 
 use super::arguments::ReplayArguments;
 use crate::bus::candump::Interface;
+use crate::commands::base_id;
 use crate::error::{Error, quoted};
 use crate::input::scenario::{Overrides, Scenario};
 use crate::sim::quantities::duration;
@@ -52,12 +53,7 @@ impl ReplayOptions {
             (None, None) => of_a_car(station, period, step)?,
             (file, vehicle) => of_scenario(file.as_deref(), vehicle, step)?,
         };
-        if let Some(id) = base_id {
-            config.base_id = BaseId::new(id).ok_or_else(|| {
-                let remedy = format!("give one up to {:#x}, so that the messages fit into 11 bits", BaseId::MAX);
-                Error::new(format!("the first identifier is {id:#x}"), remedy).in_option("--base-id")
-            })?;
-        }
+        config.base_id = base_id::checked(base_id)?;
         let output = match (bus, json, summary) {
             (Some(bus), ..) => Output::Bus(bus),
             (None, true, _) => Output::Json,

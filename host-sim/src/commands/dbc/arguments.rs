@@ -1,0 +1,30 @@
+//! The arguments of `dbc`, as they are typed.
+
+use clap::Args;
+
+use crate::commands::base_id::number;
+
+/// The arguments of `dbc`.
+#[derive(Clone, Debug, Args)]
+pub struct DbcArguments {
+    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
+    #[arg(long, value_name = "ID", value_parser = number)]
+    pub base_id: Option<u16>,
+
+    /// Slots of peers, 1 to 16; the firmware has 8
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    pub slots: u8,
+}
+
+/// The end of `dbc --help`.
+pub const AFTER_HELP: &str = "\
+Examples:
+  holdover-sim dbc > bus.dbc                              as holdover.dbc, which comes with the source
+  holdover-sim dbc --base-id 0x300 --slots 16 > bus.dbc   for another bus
+
+The unit's base is `base_id` in its configuration, and --base-id of ecu and hil.
+canmatrix makes ARXML, KCD and SYM of it: canconvert bus.dbc bus.arxml
+
+Exit codes:
+  0  it was written
+  2  bad input; one line on stderr names option, cause and remedy";
