@@ -105,7 +105,7 @@ BU_: Unit Modem Vehicle
 
 const NOTES: &str = "CM_ \"Every message: AUTOSAR E2E Profile 1, variant 1A: Crc is CRC-8 with polynomial 0x1D, initial \
 value and final xor 0, over E2EDataId (low byte, high byte) and bytes 1 to 7; Counter counts 0 to 14 on each identifier. \
-A raw value outside a signal's limits is reserved unless it is named: a frame with one is refused whole. Where a message \
+A raw value outside a signal's limits is reserved, and so is one between the last value and a named one: a frame with one is refused whole. Where a message \
 needs several frames, they carry the same Tag, which differs from that of the message before; a message is used only when \
 whole.\";
 CM_ BU_ Unit \"The holdover unit.\";
@@ -210,6 +210,8 @@ impl Display for Signal {
             (Place::Selector, _) => f.write_str(" M")?,
             (Place::Part(part), _) | (Place::Always, Some(part)) => write!(f, " m{part}")?,
         }
+        // The code for none is among the limits, or tools would warn of it as a start value.
+        let max = max.max(self.field.none.unwrap_or(max));
         let sign = if self.field.signed { '-' } else { '+' };
         let (factor, min, max) = (Decimal(1, per_unit), Decimal(min, per_unit), Decimal(max, per_unit));
         write!(f, " : {start}|{length}@1{sign} ({factor},0) [{min}|{max}] \"{unit}\"")

@@ -46,7 +46,7 @@ macro_rules! meaning {
     (claim_station) => { "Station that it takes to be just ahead of it in the order. Ignored unless PredecessorKind is station; 0 then." };
     (engaged) => { "Whether the unit shall drive. Send 0 as soon as the driver takes over. 300 ms without a DriverRequest and the unit hands back (Detail request lost)." };
     (request_target_speed) => { "Set speed: a cap. The unit exceeds it only by the share that is configured to catch up, 0 by default." };
-    (request_time_gap) => { "Time gap to keep to the rear bumper ahead, beside the configured distance at standstill. Less than 0.1 s is reserved: 0 is refused." };
+    (request_time_gap) => { "Time gap to keep to the rear bumper ahead, beside the configured distance at standstill. Less than 0.1 s is reserved: 0 is refused. So is more than 3.995 s but for the code." };
     (range_distance) => { "Own front bumper to the rear bumper of the nearest vehicle on the own path." };
     (speed_difference) => { "Speed of that vehicle less the own speed: negative where the own vehicle closes in." };
     (distance_accuracy) => { "95 % of the errors of Distance are below this. Do not send a view that is worse than can be said." };
