@@ -169,6 +169,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_REQUEST_LOST = -96,
   // Not a refusal of a frame: an `EgoMotion` of another station than the unit's own.
   HOLDOVER_REFUSED_EGO_STATION = -97,
+  // Not a refusal of a frame: the driver took over by a pedal.
+  HOLDOVER_REFUSED_DRIVER_OVERRIDE = -98,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -441,6 +443,10 @@ typedef struct holdover_command_t {
   uint16_t effort_value;
   // Counts ticks; modulo 64.
   uint8_t tick;
+  // 1: the brakes are to hold the vehicle, which stands; else 0.
+  uint8_t hold;
+  // The unit's clock at the tick in ms; modulo 1024.
+  uint16_t time_ms;
 } holdover_command_t;
 
 // Where the target is now, as the unit believes.

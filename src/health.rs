@@ -77,6 +77,8 @@ pub enum Cause {
     RequestLost = 32,
     /// Not a refusal: an `EgoMotion` of another station than the unit is configured for.
     EgoStation = 33,
+    /// Not a refusal: the driver took over by a pedal while the unit was asked to drive, once for each time.
+    DriverOverride = 34,
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -112,7 +114,7 @@ impl Incident {
 
 impl Cause {
     /// Every cause, in the order of its number.
-    pub const ALL: [Self; 34] = [
+    pub const ALL: [Self; 35] = [
         Self::Length,
         Self::Checksum,
         Self::Repeated,
@@ -147,6 +149,7 @@ impl Cause {
         Self::Unreachable,
         Self::RequestLost,
         Self::EgoStation,
+        Self::DriverOverride,
     ];
 
     /// The name of the cause, as reports and the DBC spell it.
@@ -187,6 +190,7 @@ impl Cause {
             Self::Unreachable => "unreachable",
             Self::RequestLost => "request_lost",
             Self::EgoStation => "ego_station",
+            Self::DriverOverride => "driver_override",
         }
     }
 }

@@ -27,7 +27,7 @@ use crate::health::{Cause, Health, Incident};
 use crate::model::{Reading, State};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
-use crate::units::Acceleration;
+use crate::units::{Acceleration, Speed};
 use crate::wire::command::Command;
 use crate::wire::{BaseId, Frame, Received, Receiver, Role};
 use association::Association;
@@ -182,7 +182,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let ego = self.scene.ego_at(now, last);
         let demand = self.drive(now, target, ego.as_ref());
         let (acceleration, limited) = self.limit(now, demand, Last { demand: last, age }, ego.as_ref());
-        answer.command = self.actuate(acceleration, limited, ego.as_ref());
+        answer.command = self.actuate(now, acceleration, limited, ego.as_ref());
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
@@ -258,10 +258,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The command with the force or the torque that brings it about.
-    fn actuate(&mut self, acceleration: Acceleration, limited: bool, ego: Option<&State>) -> Command {
+    fn actuate(&mut self, now: Instant, acceleration: Acceleration, limited: bool, ego: Option<&State>) -> Command {
         let is_driving = self.mode != Mode::Standby;
         let effort = self.dynamics.effort(&self.scene.config, ego, is_driving, acceleration);
-        Command { acceleration, effort, mode: self.mode.code(), limited, tick: self.outbox.next_tick() }
+        let stands = ego.is_some_and(|ego| ego.speed <= Speed::ZERO);
+        let hold = is_driving && stands && acceleration <= Acceleration::ZERO;
+        let (mode, tick, time_ms) = (self.mode.code(), self.outbox.next_tick(), now.millis());
+        Command { acceleration, effort, mode, limited, tick, hold, time_ms }
     }
 
     /// What is believed of the target.

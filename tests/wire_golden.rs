@@ -4,6 +4,7 @@
 use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use holdover::wire::actuators::{ActuatorState, Control};
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
@@ -113,7 +114,15 @@ fn every_message_has_these_bytes() {
         age: Duration::from_millis(17),
     };
     let command = |effort| {
-        Message::Command(Command { acceleration: a(-1_234), effort, mode: ModeCode::Holdover, limited: true, tick: 42 })
+        Message::Command(Command {
+            acceleration: a(-1_234),
+            effort,
+            mode: ModeCode::Holdover,
+            limited: true,
+            tick: 42,
+            hold: true,
+            time_ms: 777,
+        })
     };
     let ends = Ends { behind: m(1_240), ahead: m(860), slower: v(1_400), faster: v(600) };
     let estimate = TargetEstimate {
@@ -132,6 +141,8 @@ fn every_message_has_these_bytes() {
         links_on: 5,
         interface: 2,
     };
+    let actuators =
+        ActuatorState { control: Control::Driving, accelerator: true, brake: false, holding: true, tick: 42 };
     let messages = [
         Message::Sync(Sync { sequence: 11, seconds: 1_400_000_000 }),
         Message::FollowUp(FollowUp { sequence: 11, micros: 123_456 }),
@@ -139,6 +150,7 @@ fn every_message_has_these_bytes() {
         command(Effort::BrakeTorque(765)),
         Message::Ego(motion()),
         Message::DriverRequest(driver_request),
+        Message::Actuators(actuators),
         Message::Ego(geo()),
         Message::Range(range),
         Message::Unserved(Unserved { intersection: 201, legs: 0b1000_0110, ahead: Some(m(-31_416)), stations: 17 }),
@@ -174,11 +186,12 @@ fn every_message_has_these_bytes() {
 const GOLDEN: &[&str] = &[
     "480#4AB0004E72530000",
     "481#EAB040E201000000",
-    "482#C270D9AB0AB00100",
-    "482#9F71D9ABBA5F0000",
+    "482#5270D9AB0AB061C2",
+    "482#0F71D9ABBA5F60C2",
     "484#F3605E4AFBE6C0A7",
     "485#B1208BA6F62548FC",
     "486#1D502EBECAFF0000",
+    "483#8560550000000000",
     "487#A6B0A512434B0C35",
     "487#5071190986DB1B15",
     "488#C300BAC5637F9908",

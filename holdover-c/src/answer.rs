@@ -76,6 +76,10 @@ pub struct Command {
     pub effort_value: u16,
     /// Counts ticks; modulo 64.
     pub tick: u8,
+    /// 1: the brakes are to hold the vehicle, which stands; else 0.
+    pub hold: u8,
+    /// The unit's clock at the tick in ms; modulo 1024.
+    pub time_ms: u16,
 }
 
 /// Where the target is now, as the unit believes.
@@ -129,6 +133,8 @@ impl Answer {
             limited: 0,
             effort_value: 0,
             tick: 0,
+            hold: 0,
+            time_ms: 0,
         },
         estimate: Estimate::NONE,
         frame_count: 0,
@@ -154,6 +160,8 @@ impl Answer {
             limited: u8::from(command.limited),
             effort_value,
             tick: command.tick,
+            hold: u8::from(command.hold),
+            time_ms: command.time_ms,
         };
         self.estimate = answer.estimate.as_ref().map_or(Estimate::NONE, Estimate::from);
         self.frame_count = 0;

@@ -145,6 +145,8 @@ pub enum Status {
     RefusedRequestLost = -96,
     /// Not a refusal of a frame: an `EgoMotion` of another station than the unit's own.
     RefusedEgoStation = -97,
+    /// Not a refusal of a frame: the driver took over by a pedal.
+    RefusedDriverOverride = -98,
 }
 
 impl From<ConfigError> for Status {
@@ -207,6 +209,7 @@ impl From<Cause> for Status {
             Cause::Unreachable => Self::RefusedUnreachable,
             Cause::RequestLost => Self::RefusedRequestLost,
             Cause::EgoStation => Self::RefusedEgoStation,
+            Cause::DriverOverride => Self::RefusedDriverOverride,
         }
     }
 }
@@ -278,6 +281,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedUnreachable, c"counted: unreachable"),
     (Status::RefusedRequestLost, c"counted: request_lost"),
     (Status::RefusedEgoStation, c"counted: ego_station"),
+    (Status::RefusedDriverOverride, c"counted: driver_override"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -176,6 +176,12 @@ fn expected_of(message: &Message) -> Expected {
         Message::Ego(said) | Message::Own(said) | Message::Peer(_, said) => expected_of_said(said),
         Message::Sync(s) => e.value("Sequence", s.sequence).value("Seconds", s.seconds),
         Message::FollowUp(f) => e.value("Sequence", f.sequence).value("Micros", f.micros),
+        Message::Actuators(a) => e
+            .name("Control", ["off", "ready", "driving", "failed"][a.control as usize])
+            .name("Accelerator", if a.accelerator { "pressed" } else { "released" })
+            .name("Brake", if a.brake { "pressed" } else { "released" })
+            .name("Holding", if a.holding { "held at standstill" } else { "not held" })
+            .value("Tick", a.tick),
         Message::DriverRequest(i) => e
             .name("Engaged", if i.engaged { "drive" } else { "off" })
             .predecessor(i.predecessor)
@@ -197,7 +203,9 @@ fn expected_of(message: &Message) -> Expected {
                 .value("Acceleration", si!(c.acceleration))
                 .name("Mode", mode(c.mode))
                 .name("Limited", if c.limited { "changed by the envelope" } else { "as computed" })
-                .value("Tick", c.tick);
+                .value("Tick", c.tick)
+                .name("Hold", if c.hold { "hold at standstill" } else { "drive" })
+                .value("Time", f64::from(c.time_ms) / 1e3);
             match c.effort {
                 Effort::Force(newtons) => e.name("Effort", "force").value("Force", newtons),
                 Effort::BrakeTorque(torque) => e.name("Effort", "brake torque").value("BrakeTorque", torque),
@@ -234,6 +242,9 @@ fn detail(number: u8) -> Option<&'static str> {
         3 => "silent",
         4 => "range disagrees",
         5 => "request lost",
+        8 => "driver brakes",
+        9 => "driver accelerates",
+        10 => "actuators not ready",
         16 => "ego missing",
         17 => "ego stale",
         _ => return None,
@@ -257,6 +268,7 @@ fn names_of(message: &Message) -> Vec<String> {
         Message::Sync(_) => vec!["TimeSync".into()],
         Message::FollowUp(_) => vec!["TimeFollowUp".into()],
         Message::DriverRequest(_) => vec!["DriverRequest".into()],
+        Message::Actuators(_) => vec!["ActuatorState".into()],
         Message::Range(_) => vec!["RangeSensor".into()],
         Message::Unserved(_) => vec!["PeersUnserved".into()],
         Message::Command(_) => vec!["MotionCommand".into()],

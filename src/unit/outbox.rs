@@ -141,7 +141,7 @@ impl Outbox {
             cause,
             count: health.of(cause),
             mode: report.mode.code(),
-            detail: report.mode.detail(),
+            detail: detail(scene, report.mode),
             synchronised: scene.is_synchronised(now),
             links_on: links_on(scene, now),
             interface: INTERFACE,
@@ -227,6 +227,17 @@ fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         arrival: registration.arrival.0,
         predecessor: scene.coordination.claim(),
     })
+}
+
+/// The cause of a fallback or a fault; in Standby, why a unit that is asked to drive does not.
+fn detail<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    mode: Mode,
+) -> u8 {
+    match scene.actuators.cause().filter(|_| mode == Mode::Standby && scene.is_asked()) {
+        Some(cause) => cause as u8,
+        None => mode.detail(),
+    }
 }
 
 /// The driving parameters of the ego. When it does not drive by its law, it says so by naming no predecessor.

@@ -4,6 +4,7 @@
 //! of the order and the estimator. Every other stage of the tick only reads it. So a reference to the scene is the one view that the
 //! rules need.
 
+mod actuators;
 mod admission;
 mod inbox;
 mod named;
@@ -27,6 +28,7 @@ use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driver_request::DriverRequest;
+use actuators::Actuators;
 use named::Named;
 use sight::Ranging;
 use unknown::Unknown;
@@ -50,6 +52,8 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub coordination: Coordination<PEERS>,
     /// What the range sensor has seen.
     pub ranging: Ranging,
+    /// What the actuators and the driver's feet say.
+    pub actuators: Actuators,
     /// Vehicles without a slot.
     pub unknown: Unknown,
     /// The vehicle that the driver has put ahead.
@@ -69,6 +73,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             estimator: Estimator::idle(),
             coordination: Coordination::idle(),
             ranging: Ranging::new(),
+            actuators: Actuators::NONE,
             unknown: Unknown::NONE,
             named: Named::Nobody,
         }
@@ -85,6 +90,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
         self.coordination.reset();
         self.ranging = Ranging::new();
+        self.actuators = Actuators::NONE;
         self.unknown = Unknown::NONE;
         self.named = Named::Nobody;
     }
@@ -146,9 +152,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.request.as_ref().map_or(self.config.law.target_speed, |request| request.target_speed)
     }
 
-    /// Whether the driver wants the unit to drive, as far as is known.
-    pub fn is_engaged(&self) -> bool {
+    /// Whether the driver's request asks the unit to drive.
+    pub fn is_asked(&self) -> bool {
         self.request.as_ref().is_some_and(|request| request.engaged)
+    }
+
+    /// Whether the unit is to drive: it is asked to, and neither pedals nor actuators forbid it.
+    pub fn is_engaged(&self) -> bool {
+        self.is_asked() && self.actuators.cause().is_none()
     }
 
     /// Whether the driver's request is too old to be obeyed.

@@ -11,8 +11,8 @@ use super::e2e::Limits;
 use super::field::{Field, Place};
 use super::index;
 use super::{
-    Slot, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route, status,
-    sync, unserved,
+    Slot, actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route,
+    status, sync, unserved,
 };
 
 /// Identifiers that the catalogue takes up, from the base on.
@@ -89,6 +89,8 @@ pub enum Content {
     Command,
     /// [`driver_request::DriverRequest`].
     DriverRequest,
+    /// [`actuators::ActuatorState`].
+    Actuators,
     /// [`range_sensor::RangeSample`].
     Range,
     /// [`unserved::Unserved`].
@@ -190,6 +192,7 @@ const fn timing(content: Content) -> (u16, u16, u8) {
         Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => (10, 50, 1),
         Content::Range => (20, 200, 1),
         Content::Unserved => (200, 600, 1),
+        Content::Actuators => (20, 0, 1),
         Content::DriverRequest | Content::Status => (100, 300, 1),
         Content::Said(Speaker::Peer, About::MotionA | About::MotionB) => (100, 250, 1),
         Content::Said(_, About::MotionA | About::MotionB) => (100, 300, 1),
@@ -213,6 +216,7 @@ const fn within(content: Content) -> u16 {
         | Content::FollowUp
         | Content::Command
         | Content::DriverRequest
+        | Content::Actuators
         | Content::Range
         | Content::Unserved
         | Content::Status => 0,
@@ -230,6 +234,10 @@ const fn comment(content: Content) -> &'static str {
         }
         Content::Command => "Effort selects Force (driving) or BrakeTorque (braking). Not to be used in Mode standby.",
         Content::DriverRequest => "What the driver or the planner wants.",
+        Content::Actuators => {
+            "What the actuators make of MotionCommand. Not needed: a unit that never hears it takes the actuators to be ready. Once heard, \
+             what it said last holds."
+        }
         Content::Range => "Not sent while nothing is measured ahead, or worse than the accuracies can say.",
         Content::Unserved => {
             "Sent on a route only. Legs by which the next vehicle into the conflict area, or one that is in it, has no slot; Ahead is the way of \
@@ -270,13 +278,14 @@ use Node::{Modem, Unit, Vehicle};
 use Speaker::{Ego, Own, Peer};
 
 /// Lines of the catalogue.
-pub const LINES: usize = 24;
+pub const LINES: usize = 25;
 
 /// The catalogue, by offset.
 pub static CATALOGUE: [Line; LINES] = [
     line("TimeSync", 0x00, Content::Sync, Modem, sync::SYNC_FIELDS),
     line("TimeFollowUp", 0x01, Content::FollowUp, Modem, sync::FOLLOW_UP_FIELDS),
     line("MotionCommand", 0x02, Content::Command, Unit, command::FIELDS),
+    line("ActuatorState", 0x03, Content::Actuators, Vehicle, actuators::FIELDS),
     line("EgoMotionA", 0x04, Content::Said(Ego, MotionA), Vehicle, motion::FIELDS_A),
     line("EgoMotionB", 0x05, Content::Said(Ego, MotionB), Vehicle, motion::FIELDS_B),
     line("DriverRequest", 0x06, Content::DriverRequest, Vehicle, driver_request::FIELDS),

@@ -51,6 +51,12 @@ pub struct Command {
     ///
     /// Modulo 64.
     pub tick: u8,
+    #[doc = meaning!(hold)]
+    pub hold: bool,
+    #[doc = meaning!(time)]
+    ///
+    /// By 1 ms, 0 to 1023.
+    pub time_ms: u16,
 }
 
 impl Command {
@@ -61,6 +67,8 @@ impl Command {
         mode: ModeCode::Standby,
         limited: false,
         tick: 0,
+        hold: false,
+        time_ms: 0,
     };
 }
 
@@ -98,8 +106,11 @@ const EFFORT: Field = Field { values: &[(0, "force"), (1, "brake torque")], ..Fi
 const FORCE: Field = Field::unsigned("Force", 37, 16).limits(0, 65_534).steps(1, "N").part(0);
 const BRAKE_TORQUE: Field = Field::unsigned("BrakeTorque", 37, 16).limits(0, 65_534).steps(1, "Nm").part(1);
 
+const HOLD: Field = Field::unsigned("Hold", 53, 1).named(&[(0, "drive"), (1, "hold at standstill")]);
+const TIME: Field = Field::unsigned("Time", 54, 10).steps(1000, "s");
+
 /// The frame; the effort's kind selects which of its two readings applies.
-pub const FIELDS: &[Field] = &[ACCELERATION, MODE, LIMITED, TICK, EFFORT, FORCE, BRAKE_TORQUE];
+pub const FIELDS: &[Field] = &[ACCELERATION, MODE, LIMITED, TICK, EFFORT, FORCE, BRAKE_TORQUE, HOLD, TIME];
 
 impl Command {
     /// The frame's payload; what does not fit is limited to its field's range.
@@ -109,6 +120,8 @@ impl Command {
         let a = MODE.with_raw(a, self.mode as i64);
         let a = LIMITED.with_raw(a, i64::from(self.limited));
         let a = TICK.with_raw(a, i64::from(self.tick & 63));
+        let a = HOLD.with_raw(a, i64::from(self.hold));
+        let a = TIME.with_raw(a, i64::from(self.time_ms & 1023));
         [match self.effort {
             Effort::Force(newtons) => FORCE.with_raw(EFFORT.with_raw(a, 0), i64::from(newtons)),
             Effort::BrakeTorque(newton_metres) => {
@@ -131,6 +144,8 @@ impl Command {
             mode: ModeCode::from_raw(MODE.raw(*a)),
             limited: LIMITED.raw(*a) != 0,
             tick: TICK.byte(*a),
+            hold: HOLD.raw(*a) != 0,
+            time_ms: TIME.word(*a) as u16,
         }
     }
 }

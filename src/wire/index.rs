@@ -150,7 +150,7 @@ static BY_OFFSET: [u8; OFFSETS] = {
 };
 
 /// What is not said of a vehicle.
-const OTHERS: usize = 9;
+const OTHERS: usize = 10;
 const CONTENTS: usize = OTHERS + 3 * ABOUTS;
 
 /// Places in the catalogue, by [`number`].
@@ -179,6 +179,7 @@ const fn number(content: Content) -> usize {
         Content::EstimateB => 6,
         Content::Status => 7,
         Content::Unserved => 8,
+        Content::Actuators => 9,
         Content::Said(Speaker::Ego, about) => OTHERS + about as usize,
         Content::Said(Speaker::Own, about) => OTHERS + ABOUTS + about as usize,
         Content::Said(Speaker::Peer, about) => OTHERS + 2 * ABOUTS + about as usize,

@@ -59,6 +59,13 @@ macro_rules! meaning {
     (seconds) => { "Whole seconds of GNSS time (since 1980-01-06, without leap seconds) of the sending of this frame, as far as known beforehand." };
     (micros) => { "What to add to TimeSync.Seconds to get the GNSS time at which the TimeSync with this Sequence was on the bus." };
     (command_acceleration) => { "Demanded acceleration; braking is negative. Not to be used in Mode standby." };
+    (hold) => { "Asks the brakes to hold the vehicle: it stands and is to go on standing." };
+    (time) => { "The unit's own clock when it made the command, modulo 1.024 s: frames that waited on their way are as far apart by it as they were made." };
+    (control) => { "Whether the actuators take the unit's commands. Off and failed make the unit stand by (Detail actuators not ready)." };
+    (accelerator) => { "Whether the driver presses the accelerator pedal: the unit stands by for as long (Detail driver accelerates)." };
+    (brake) => { "Whether the driver presses the brake pedal: the unit stands by at once (Detail driver brakes), and until DriverRequest.Engaged was 0 once." };
+    (holding) => { "Whether the brakes hold the vehicle at standstill, as MotionCommand.Hold asks." };
+    (acknowledged) => { "Tick of the newest MotionCommand that is in force." };
     (effort) => { "Whether Force or BrakeTorque stands in the frame." };
     (force) => { "Net engine force that brings the acceleration about, by the configured vehicle model." };
     (brake_torque) => { "Brake torque that brings the acceleration about, by the configured vehicle model." };
@@ -103,9 +110,19 @@ pub fn signal(content: Content, name: &str) -> &'static str {
             "Mode" => meaning!(mode),
             "Limited" => meaning!(limited),
             "Tick" => meaning!(tick),
+            "Hold" => meaning!(hold),
+            "Time" => meaning!(time),
             "Effort" => meaning!(effort),
             "Force" => meaning!(force),
             "BrakeTorque" => meaning!(brake_torque),
+            _ => "",
+        },
+        Content::Actuators => match name {
+            "Control" => meaning!(control),
+            "Accelerator" => meaning!(accelerator),
+            "Brake" => meaning!(brake),
+            "Holding" => meaning!(holding),
+            "Tick" => meaning!(acknowledged),
             _ => "",
         },
         Content::DriverRequest => match name {

@@ -4,6 +4,7 @@
 //! Contract of every decoder here: any 8 bytes in, a value or a named [`Cause`](crate::health::Cause) out; no panic, no allocation.
 //! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
 
+pub mod actuators;
 mod assembly;
 mod base_id;
 pub mod bits;
@@ -93,6 +94,8 @@ pub enum Message {
     Ego(Said),
     /// What the driver or the planner wants.
     DriverRequest(driver_request::DriverRequest),
+    /// What the actuators make of the commands, and what the driver does with the pedals.
+    Actuators(actuators::ActuatorState),
     /// An on-board sensor's view of the vehicle ahead.
     Range(range_sensor::RangeSample),
     /// Whom the modem hears and has no slot for.

@@ -6,6 +6,7 @@
 
 use embedded_can::{Frame, Id};
 
+use super::actuators::ActuatorState;
 use super::assembly::{Assembly, Piece};
 use super::bits::Payload;
 use super::catalogue::{self, ABOUTS, About, BaseId, Content, LIMITS, LINES, Node, PEERS_OFFSET, Speaker};
@@ -202,6 +203,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
             Content::Said(Speaker::Own, _) if UNIT => None,
             Content::Command => Some(Message::Command(Command::decode(&whole))),
             Content::DriverRequest => Some(Message::DriverRequest(DriverRequest::decode(&whole))),
+            Content::Actuators => Some(Message::Actuators(ActuatorState::decode(&whole))),
             Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
             Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
             Content::Status => Some(Message::Status(Status::decode(&whole)?)),

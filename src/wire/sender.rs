@@ -57,6 +57,7 @@ impl<const PEERS: usize> Sender<PEERS> {
         match message {
             Message::Sync(sync) => self.emit(Content::Sync, none, &sync.encode(), emit),
             Message::FollowUp(follow_up) => self.emit(Content::FollowUp, none, &follow_up.encode(), emit),
+            Message::Actuators(state) => self.emit(Content::Actuators, none, &state.encode(), emit),
             Message::DriverRequest(parameters) => self.emit(Content::DriverRequest, none, &parameters.encode(), emit),
             Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
             Message::Unserved(unserved) => self.emit(Content::Unserved, none, &unserved.encode(), emit),

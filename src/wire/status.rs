@@ -42,6 +42,9 @@ const DETAILS: &[(i64, &str)] = &[
     (3, "silent"),
     (4, "range disagrees"),
     (5, "request lost"),
+    (8, "driver brakes"),
+    (9, "driver accelerates"),
+    (10, "actuators not ready"),
     (16, "ego missing"),
     (17, "ego stale"),
 ];

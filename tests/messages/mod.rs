@@ -4,6 +4,7 @@
 use holdover::health::Cause;
 use holdover::time::{Duration, Stamp};
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use holdover::wire::actuators::{ActuatorState, Control};
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
@@ -139,14 +140,23 @@ prop_compose! {
 }
 
 prop_compose! {
+    pub fn actuators()(
+        control in proptest::sample::select(&[Control::Off, Control::Ready, Control::Driving, Control::Failed][..]),
+        accelerator: bool, brake: bool, holding: bool, tick in 0u8..64,
+    ) -> ActuatorState {
+        ActuatorState { control, accelerator, brake, holding, tick }
+    }
+}
+
+prop_compose! {
     pub fn command()(
         acceleration in steps(-8191..=8191, 500),
         effort in prop_oneof![
             (0u16..=65_534).prop_map(Effort::Force), (0u16..=65_534).prop_map(Effort::BrakeTorque),
         ],
-        mode in mode(), limited: bool, tick in 0u8..64,
+        mode in mode(), limited: bool, tick in 0u8..64, hold: bool, time_ms in 0u16..1024,
     ) -> Command {
-        Command { acceleration, effort, mode, limited, tick }
+        Command { acceleration, effort, mode, limited, tick, hold, time_ms }
     }
 }
 
@@ -204,6 +214,7 @@ pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
         1 => motion().prop_map(|motion| Message::Ego(Said::Motion(motion))),
         1 => geo().prop_map(|position| Message::Ego(Said::Geo(position))),
         1 => driver_request().prop_map(Message::DriverRequest),
+        1 => actuators().prop_map(Message::Actuators),
         1 => range_sample().prop_map(Message::Range),
         1 => unserved().prop_map(Message::Unserved),
         5 => (0..slots, said()).prop_map(|(slot, said)| Message::Peer(Slot(slot), said)),

@@ -106,9 +106,9 @@ impl Deviation {
     }
 }
 
-/// Whether two commands are the same, except for the count of periods, which starts at power-up.
+/// Whether two commands are the same, except for the count of periods and the clock, which start at power-up.
 fn same(device: &Command, twin: &Command) -> bool {
-    Command { tick: 0, ..*device } == Command { tick: 0, ..*twin }
+    Command { tick: 0, time_ms: 0, ..*device } == Command { tick: 0, time_ms: 0, ..*twin }
 }
 
 /// The distance between two estimated positions, which are modulo 2^25 mm on the wire.

@@ -219,6 +219,8 @@ mod tests {
                 mode: ModeCode::Cooperative,
                 limited: false,
                 tick,
+                hold: false,
+                time_ms: 0,
             };
             let (at, mut news) = (Instant::from_micros(millis * 1000), Vec::new());
             let Self { sender, monitor } = self;

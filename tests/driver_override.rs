@@ -1,0 +1,117 @@
+//! The driver's pedals and the actuators: the brake hands back at once and for good, the accelerator for as long as it is pressed, and
+//! actuators that take no commands make the unit stand by; each is said in `Health`. At standstill the command asks to hold.
+
+mod rig;
+
+use holdover::health::Cause;
+use holdover::wire::Message;
+use holdover::wire::actuators::{ActuatorState, Control};
+use holdover::wire::command::ModeCode;
+use rig::road::Road;
+
+const DRIVES: ActuatorState =
+    ActuatorState { control: Control::Driving, accelerator: false, brake: false, holding: false, tick: 0 };
+
+/// Following at 15 m/s, and the actuators have been heard.
+fn road() -> Road {
+    let mut road = Road::new(&rig::config(), 15.0, 20.0);
+    for _ in 0..3 {
+        say(&mut road, DRIVES);
+    }
+    road.power_up();
+    road.run(2.0);
+    road
+}
+
+fn say(road: &mut Road, state: ActuatorState) {
+    let _ = road.rig.put(road.now, &Message::Actuators(state));
+}
+
+/// The mode of the next answer, and the detail that `Health` tells within the next 100 ms.
+fn told(road: &mut Road) -> (ModeCode, u8) {
+    let mode = road.step().command.mode;
+    let mut detail = None;
+    for _ in 0..10 {
+        for message in road.step().all {
+            if let Message::Status(status) = message {
+                detail = Some(status.detail);
+            }
+        }
+    }
+    (mode, detail.expect("it is told every 100 ms"))
+}
+
+#[test]
+fn the_brake_hands_back_at_once_until_the_request_was_off() {
+    let mut road = road();
+    assert_eq!(told(&mut road), (ModeCode::Cooperative, 0));
+    say(&mut road, ActuatorState { brake: true, ..DRIVES });
+    assert_eq!(told(&mut road), (ModeCode::Standby, 8));
+    say(&mut road, DRIVES);
+    assert_eq!(told(&mut road), (ModeCode::Standby, 8), "releasing the pedal is no request");
+    assert_eq!(road.rig.unit.health().of(Cause::DriverOverride), 1);
+    road.engaged = false;
+    road.run(0.2);
+    assert_eq!(told(&mut road), (ModeCode::Standby, 0));
+    road.engaged = true;
+    road.run(0.2);
+    assert_eq!(told(&mut road), (ModeCode::Cooperative, 0));
+}
+
+#[test]
+fn the_accelerator_hands_back_for_as_long_as_it_is_pressed() {
+    let mut road = road();
+    for times in 1..4 {
+        say(&mut road, ActuatorState { accelerator: true, ..DRIVES });
+        assert_eq!(told(&mut road), (ModeCode::Standby, 9));
+        say(&mut road, DRIVES);
+        assert_eq!(told(&mut road), (ModeCode::Cooperative, 0));
+        assert_eq!(road.rig.unit.health().of(Cause::DriverOverride), times);
+    }
+}
+
+#[test]
+fn actuators_that_take_no_commands_make_the_unit_stand_by() {
+    for control in [Control::Off, Control::Failed] {
+        let mut road = road();
+        say(&mut road, ActuatorState { control, ..DRIVES });
+        assert_eq!(told(&mut road), (ModeCode::Standby, 10), "{control:?}");
+        say(&mut road, ActuatorState { control: Control::Ready, ..DRIVES });
+        assert_eq!(told(&mut road), (ModeCode::Cooperative, 0), "{control:?}");
+        assert_eq!(road.rig.unit.health().of(Cause::DriverOverride), 0, "nobody pressed a pedal");
+    }
+}
+
+#[test]
+fn pedals_of_a_driver_who_drives_are_no_override() {
+    let mut road = road();
+    road.engaged = false;
+    road.run(0.3);
+    say(&mut road, ActuatorState { brake: true, ..DRIVES });
+    road.run(0.1);
+    say(&mut road, DRIVES);
+    road.engaged = true;
+    road.run(0.3);
+    assert_eq!(told(&mut road), (ModeCode::Cooperative, 0));
+    assert_eq!(road.rig.unit.health().of(Cause::DriverOverride), 0);
+}
+
+#[test]
+fn the_command_asks_to_hold_a_vehicle_that_stands_and_is_to_go_on_standing() {
+    let mut road = road();
+    assert!(!road.step().command.hold);
+    road.acceleration = -4.0;
+    road.run_to_rest();
+    assert!(road.run(1.0).command.hold, "behind a vehicle that stands");
+    road.engaged = false;
+    assert!(!road.run(0.3).command.hold, "not in Standby");
+}
+
+#[test]
+fn the_time_in_the_command_counts_milliseconds() {
+    let mut road = road();
+    let first = road.step().command.time_ms;
+    for period in 1..300u16 {
+        assert_eq!(road.step().command.time_ms, (first + 10 * period) % 1024);
+    }
+}
