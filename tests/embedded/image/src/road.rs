@@ -3,7 +3,7 @@
 
 use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
-use holdover::units::{Fraction, Acceleration, Distance, FineSeconds, Jerk, Position, Seconds, Speed};
+use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Seconds, Speed};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
