@@ -3,8 +3,8 @@
 
 The program is the vehicle (EgoMotion, DriverRequest), its modem (TimeSync, TimeFollowUp), and one vehicle ahead that the
 modem hears (Peer0Motion, Peer0DrivingParameters). It knows the unit by `holdover.dbc` alone. It engages the unit and moves
-its vehicle as the unit commands. The vehicle ahead falls silent for 16.5 s and speaks again. So the unit goes from standby
-to cooperative, holdover, fallback and back. The program prints what it saw.
+its vehicle as the unit commands. The vehicle ahead begins to accelerate, falls silent for 16.5 s, and speaks again. So the
+unit goes from standby to cooperative, holdover, fallback and back. The program prints what it saw.
 
     pip install -r examples/first-node/requirements.txt
     holdover-sim ecu --bus vcan0 --station 1 &
@@ -34,11 +34,11 @@ Signals = dict[str, Any]
 EPOCH = time.time() - 315_964_800 + 18 - time.monotonic()
 
 # What happens, and when: seconds since the first frame.
-ENGAGE, SILENT, BACK, RELEASE, END = 2.0, 8.0, 24.5, 28.5, 29.5
+ENGAGE, FASTER, SILENT, BACK, RELEASE, END = 2.0, 7.0, 8.0, 24.5, 28.5, 29.5
 PERIOD = 0.010  # s: that of EgoMotion, and of the unit
 LATE = 0.025  # s: at twice that the unit rightly takes its vehicle's motion for lost
 STATION, PEER_STATION = 1, 7  # the unit's own name, as it is configured, and that of the vehicle ahead
-CRUISE = 12.0  # m/s: both vehicles at first, and the vehicle ahead all the time
+CRUISE, WANTED = 12.0, 14.0  # m/s: the speed of both vehicles at first, and what the vehicle ahead wants later
 LENGTH, LAG, TIME_GAP, STANDSTILL = 4.8, 0.3, 1.6, 2.0  # m, s, s, m: of both vehicles
 
 
@@ -57,9 +57,6 @@ class Bus:
 
     def attribute(self, message: str, name: str) -> int:
         return int(self.dbc.get_message_by_name(message).dbc.attributes[name].value)
-
-    def version(self) -> int:
-        return int(self.dbc.dbc.attribute_definitions["InterfaceVersion"].default_value)
 
     def send(self, name: str, **signals: float | str) -> None:
         message, counter = self.dbc.get_message_by_name(name), self.next_counter.get(name, 0)
@@ -110,13 +107,22 @@ class Vehicle:
         bus.send(f"{name}MotionB", Tag=tag, **motion, PositionAccuracy=0.1, SpeedAccuracy=0.04)
 
 
-# How the vehicle ahead drives: it follows nobody, at its set speed. By this the unit foresees what it does in the silence.
-# The three parts are three frames of one identifier and one tag.
+def free_road(speed: float, target_speed: float) -> float:
+    """The law of a vehicle that follows nobody, by which the unit foresees it in a silence."""
+    return 0.73 * (1.0 - (speed / target_speed) ** 4)
+
+
+# How the vehicle ahead drives, beside its TargetSpeed. The three parts are three frames of one identifier and one tag.
 PARAMETERS: list[dict[str, float | str]] = [
-    {"Length": LENGTH, "Standstill": STANDSTILL, "PredecessorKind": "nobody", "PredecessorStation": 0, "TargetSpeed": CRUISE},
+    {"Length": LENGTH, "Standstill": STANDSTILL, "PredecessorKind": "nobody", "PredecessorStation": 0},
     {"TimeGap": TIME_GAP, "Gain": 0.5, "Damping": 2.0, "Lag": LAG, "CatchUp": 0.0},
     {"AccelerationLimit": 2.5, "BrakingLimit": 4.0, "JerkLimit": 5.0, "EmergencyBraking": 8.0, "HorizonLength": 0.0},
 ]
+
+
+def number(value: Any) -> float:
+    """Some raw values have a name instead, such as "no bound" of an end that is too far away to be told."""
+    return float("inf") if str(value) == "no bound" else float(value)
 
 
 # 3. The node. Every 10 ms it moves the vehicles and sends what is due; between, it hears the unit.
@@ -132,7 +138,7 @@ class Seen:
     estimates: int = 0  # in holdover
     largest_error: float = 0.0  # m, of these estimates
     outside: int = 0  # estimates whose bound does not contain the truth
-    longest_wait: float = 0.0  # s, between two commands
+    oldest_command: float = 0.0  # s, when the actuators looked at it
     smallest_gap: float = float("inf")  # m
     lateness: float = 0.0  # s, of this program itself
 
@@ -143,7 +149,7 @@ class Node:
     def __init__(self, bus: Bus) -> None:
         self.bus, self.seen = bus, Seen()
         self.ego, self.peer = Vehicle(0.0), Vehicle(35.0)
-        self.mode, self.estimate = "standby", Signals()
+        self.mode, self.estimate, self.wanted = "standby", Signals(), CRUISE
         self.start = self.driven = self.commanded = time.monotonic()
 
     def now(self) -> float:
@@ -156,9 +162,9 @@ class Node:
         print(f"{self.now():6.2f} s  {self.ego.speed:5.2f} m/s  gap {self.gap():5.1f} m  {what}", flush=True)
 
     def run(self) -> Seen:
-        self.start = self.driven = self.commanded = time.monotonic()
-        script = [(ENGAGE, "the driver engages"), (SILENT, "the vehicle ahead falls silent"),
-                  (BACK, "the vehicle ahead speaks again"), (RELEASE, "the driver takes over")]  # fmt: skip
+        script = [(ENGAGE, "the driver engages"), (FASTER, f"the vehicle ahead wants {WANTED} m/s"),
+                  (SILENT, "the vehicle ahead falls silent"), (BACK, "the vehicle ahead speaks again"),
+                  (RELEASE, "the driver takes over")]  # fmt: skip
         for cycle in range(round(END / PERIOD)):
             due = cycle * PERIOD
             while (left := due - self.now()) > 0.0:
@@ -173,10 +179,12 @@ class Node:
     def drive(self) -> None:
         """In standby the driver keeps the speed. Otherwise the newest command holds; when it is too old, the vehicle brakes."""
         now = time.monotonic()
+        self.seen.oldest_command = max(self.seen.oldest_command, now - self.commanded)
         if self.mode == "standby":
             self.ego.demand = 0.0
         elif now - self.commanded > self.bus.attribute("MotionCommand", "GenMsgTimeout") / 1000:
             self.ego.demand = -2.0
+        self.peer.demand = free_road(self.peer.speed, self.wanted)
         for vehicle in (self.ego, self.peer):
             vehicle.drive(now - self.driven)
         self.driven = now
@@ -198,14 +206,15 @@ class Node:
         at = EPOCH + self.driven  # when the vehicles were where they are
         self.ego.tell(self.bus, "Ego", STATION, round(due / PERIOD) % 4, at)
         if self.turn("DriverRequest", due) is not None:
-            wish = {"Engaged": "drive" if ENGAGE <= due < RELEASE else "off", "TargetSpeed": 13.4, "TimeGap": TIME_GAP}
+            wish = {"Engaged": "drive" if ENGAGE <= due < RELEASE else "off", "TargetSpeed": 16.0, "TimeGap": TIME_GAP}
             self.bus.send("DriverRequest", PredecessorKind="station", PredecessorStation=PEER_STATION, **wish)
+        self.wanted = CRUISE if due < FASTER else WANTED
         if SILENT <= due < BACK:
             return
         if (turn := self.turn("Peer0MotionA", due)) is not None:
             self.peer.tell(self.bus, "Peer0", PEER_STATION, turn % 4, at)
         if (turn := self.turn("Peer0DrivingParameters", due)) is not None:
-            for part, signals in enumerate(PARAMETERS):
+            for part, signals in enumerate([PARAMETERS[0] | {"TargetSpeed": self.wanted}, *PARAMETERS[1:]]):
                 self.bus.send("Peer0DrivingParameters", Tag=turn % 4, Part=part, **signals)
 
     def hear(self, timeout: float) -> None:
@@ -220,7 +229,7 @@ class Node:
             ahead = self.peer.position + self.peer.speed * (time.monotonic() - self.driven) - self.estimate["Position"]
             self.seen.estimates += 1
             self.seen.largest_error = max(self.seen.largest_error, abs(ahead))
-            self.seen.outside += not -signals["Behind"] <= ahead <= signals["Ahead"]
+            self.seen.outside += not -number(signals["Behind"]) <= ahead <= number(signals["Ahead"])
         elif name == "Health":
             self.seen.version, self.seen.synchronised = signals["InterfaceVersion"], str(signals["Synchronised"])
             if self.now() >= ENGAGE:  # by then it trusts us: the first frame of each identifier is always refused
@@ -229,9 +238,7 @@ class Node:
                 self.seen.fallbacks.add(str(signals["Detail"]))
 
     def obey(self, mode: str, acceleration: float) -> None:
-        now = time.monotonic()
-        self.seen.longest_wait = max(self.seen.longest_wait, now - self.commanded)
-        self.commanded, self.mode, self.ego.demand = now, mode, acceleration
+        self.commanded, self.mode, self.ego.demand = time.monotonic(), mode, acceleration
         if not self.seen.modes or self.seen.modes[-1][1] != mode:
             self.seen.modes.append((self.now(), mode))
             self.say(f"-> {mode}")
@@ -249,7 +256,8 @@ def judge(seen: Seen, bus: Bus, gap: float) -> list[tuple[bool, str]]:
             ("cooperative", BACK, 0.3, 1.0), ("standby", RELEASE, 0.0, 0.5)]  # fmt: skip
     for (at, mode), (_, event, least, most) in zip(seen.modes[1:], late, strict=True) if names == order else []:
         checks.append((least <= at - event <= most, f"{mode} {at - event:.2f} s after the event, of {least} to {most} s"))
-    checks.append((seen.version == bus.version(), f"interface version {seen.version}, that of the DBC is {bus.version()}"))
+    version = bus.dbc.dbc.attribute_definitions["InterfaceVersion"].default_value
+    checks.append((seen.version == version, f"interface version {seen.version}, that of the DBC is {version}"))
     checks.append((seen.synchronised == "GNSS time known", f"time: {seen.synchronised}"))
     checks.append((seen.fallbacks == {"silent"}, f"causes of fallback: {', '.join(sorted(seen.fallbacks))}"))
     checks.append((bus.broken + bus.gaps == 0, f"E2E: {bus.received} frames, {bus.broken} broken, {bus.gaps} gaps"))
@@ -258,8 +266,9 @@ def judge(seen: Seen, bus: Bus, gap: float) -> list[tuple[bool, str]]:
     checks.append((not grown, f"frames refused since the driver engaged: {refused or 'none'}"))
     error = f"largest error {seen.largest_error:.2f} m, {seen.outside} of {seen.estimates} outside their bound"
     checks.append((seen.estimates > 1000 and seen.largest_error < 1.0 and seen.outside == 0, f"estimates in holdover: {error}"))
-    checks.append((seen.smallest_gap > 5.0 and gap < 40.0, f"gap at least {seen.smallest_gap:.1f} m, {gap:.1f} m in the end"))
-    checks.append((seen.longest_wait < 0.05, f"at most {seen.longest_wait * 1e3:.0f} ms between two commands"))
+    checks.append((seen.smallest_gap > 10.0 and gap < 50.0, f"gap at least {seen.smallest_gap:.1f} m, {gap:.1f} m in the end"))
+    timeout = bus.attribute("MotionCommand", "GenMsgTimeout")
+    checks.append((seen.oldest_command * 1e3 < timeout, f"commands at most {seen.oldest_command * 1e3:.0f} ms old"))
     return checks
 
 
