@@ -6,6 +6,7 @@
 #   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
 #   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
+#   node     the first node, a Python program that knows the DBC alone, against the process and the emulated Cortex-M4F
 #
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
@@ -156,7 +157,27 @@ check_r5() {
     scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
 }
 
-checks=(kernel tests ecu m4 r5)
+check_node() {
+    need qemu-system-arm qemu-system-arm
+    need python3 python3
+    local target=thumbv7em-none-eabihf python=$work/python
+    local node=("$python/bin/python" examples/first-node/first_node.py)
+    # Debian's python3 has venv in a package of its own.
+    python3 -c 'import ensurepip' 2>/dev/null || as_root apt-get install -y --no-install-recommends python3-venv ||
+        skip "this Python makes no environments; remedy: apt-get install python3-venv"
+    # The guest of user-mode Linux runs on the machine's own files, and so with this environment.
+    { [ -x "$python/bin/pip" ] || python3 -m venv "$python"; } &&
+        "$python/bin/pip" install --quiet --disable-pip-version-check -r examples/first-node/requirements.txt ||
+        skip "python-can, cantools and autosar-e2e cannot be had from PyPI"
+    images $target
+    echo "-- the first node and a process of Linux"
+    conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 & "$@"; code=$?; kill $!; exit $code' \
+        "$sim" "${node[@]}"
+    echo "-- the first node and an emulated Cortex-M4F over slcan"
+    conclude scripts/device-m4.sh "$work/$target-real-time" -- "${node[@]}" --channel slcan0
+}
+
+checks=(kernel tests ecu m4 r5 node)
 for name in "$@"; do
     [[ " ${checks[*]} " = *" $name "* ]] || { echo "hil.sh: no check '$name'; there are: ${checks[*]}" >&2 && exit 2; }
 done
