@@ -23,9 +23,6 @@ const WAITING: Speed = Speed::from_mm_per_s(500);
 /// Slower than this a vehicle is in a queue.
 const SLOW: Speed = Speed::from_mm_per_s(3_000);
 
-/// Slower than this a vehicle may be about to stop in a queue.
-const QUEUED: Speed = Speed::from_mm_per_s(5_000);
-
 /// How far before the conflict area the ego stops, and at least behind the vehicle ahead.
 const LINE: Distance = Distance::from_mm(1_000);
 
@@ -101,18 +98,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that
     /// hardly moved when it was heard last is not believed to have moved on since, for as long as a holdover lasts: the vehicle that it
-    /// waits for may have changed. While the ego is in a queue, a peer that was slow then is taken to have braked from there on.
+    /// waits for may have changed.
     fn stops_at(&self, index: usize) -> Option<Position> {
         let (scene, now) = (self.scene, self.at);
         let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
         let way = |speed: Speed| Distance::from_mm(saturate_i32(braked(i64::from(speed.to_mm_per_s()), braking)));
         let track = scene.peers.get(index)?;
         let is_silent = !track.link().is_on(now, &scene.config.link) && scene.is_in_reach(index, now);
-        let slow = if self.speed <= QUEUED { QUEUED } else { SLOW };
-        if let Some(newest) = track.newest().filter(|newest| is_silent && newest.speed <= slow) {
+        if is_silent && track.newest().is_some_and(|newest| newest.speed <= SLOW) {
             let certain = scene.bound(index, now)?.lowest_position();
-            let at_rest = if newest.speed <= SLOW { certain } else { newest.position.ahead(way(newest.speed)) };
-            return Some(at_rest.ahead(track.length().negated()).ahead(LINE.negated()));
+            return Some(certain.ahead(track.length().negated()).ahead(LINE.negated()));
         }
         let (reading, rear) = scene.rear(index, now)?;
         Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
