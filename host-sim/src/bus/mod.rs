@@ -5,6 +5,7 @@
 
 pub mod candump;
 pub mod fault;
+pub mod fd;
 pub mod frame;
 pub mod memory;
 pub mod port;
@@ -13,6 +14,7 @@ pub mod record;
 pub mod socketcan;
 
 use crate::error::Error;
+pub use fd::FdFrame;
 pub use frame::Frame;
 use holdover::time::Instant;
 pub use port::Port;
