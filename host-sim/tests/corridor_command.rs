@@ -52,10 +52,7 @@ fn a_short_run_passes_and_the_same_seed_is_the_same_bytes_outside_timing() {
 #[test]
 fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_simulated() {
     let folder = tempfile::tempdir().unwrap();
-    // The ego is to come within the 20 s.
-    let (of_second, of_harrison) = ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"");
-    let edits = [("ego_after_s = 100.0", "ego_after_s = 0.0"), (of_second, of_harrison)];
-    let file = short(folder.path(), &edits);
+    let file = short(folder.path(), &EARLY_EGO);
     let report = folder.path().join("report");
     let output = sim(&["run", &file, "--json", "--vehicles", "4,8", "--out", report.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
@@ -206,13 +203,80 @@ fn what_cannot_be_is_refused_with_its_line() {
 
 #[test]
 fn options_of_a_string_are_not_for_a_corridor_nor_the_other_way_round() {
-    for arguments in [["run", "corridor", "--candump", "x.log"], ["run", "paper", "--seeds", "3"]] {
+    for arguments in [["run", "corridor", "--trace", "x.csv"], ["run", "paper", "--seeds", "3"]] {
         let output = sim(&arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
     }
     let output = sim(&["sweep", "corridor"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("is a corridor"));
+}
+
+/// The ego comes within the 20 s.
+const EARLY_EGO: [(&str, &str); 2] =
+    [("ego_after_s = 100.0", "ego_after_s = 0.0"), ("\"2nd Street, northwest\"", "\"Harrison Street, southwest\"")];
+
+/// Identifiers of `EgoPosition`, `PeersUnserved`, `OwnRoute`, `Peer0Route`.
+const IDS_OF_ROUTES: [&str; 4] = ["487", "489", "495", "4C5"];
+
+fn lines(file: &Path) -> Vec<String> {
+    std::fs::read_to_string(file).unwrap().lines().map(str::to_owned).collect()
+}
+
+fn has(log: &[String], id: &str) -> bool {
+    log.iter().any(|line| line.contains(&format!(" can0 {id}#")))
+}
+
+#[test]
+fn the_log_of_a_corridor_has_the_messages_of_a_route_and_a_unit_with_the_map_repeats_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &EARLY_EGO);
+    let log = folder.path().join("bus.log");
+    let name = log.to_str().unwrap();
+    for (vehicle, seed) in [(None, "5"), (Some("2"), "5")] {
+        let vehicle = |option| vehicle.map_or(vec![], |vehicle| vec![option, vehicle]);
+        let run = ["run", &file, "--no-report", "--json", "--seed", seed, "--candump", name];
+        let ran = sim(&[&run[..], &["--candump-times", "sent"], &vehicle("--candump-vehicle")].concat());
+        assert_eq!(ran.status.code(), Some(0), "{}", String::from_utf8_lossy(&ran.stderr));
+        let sent = lines(&log);
+        for id in IDS_OF_ROUTES {
+            assert!(has(&sent, id), "{id}");
+        }
+        let own = |line: &&String| ["482", "48A", "48B", "49"].iter().any(|id| line.contains(&format!(" can0 {id}")));
+        let own: Vec<String> = sent.iter().filter(own).cloned().collect();
+        let replayed =
+            sim(&[&["replay", name, "--scenario", &file, "--seed", seed][..], &vehicle("--vehicle")].concat());
+        assert!(String::from_utf8(replayed.stdout).unwrap().lines().eq(own.iter()), "seed {seed}");
+        // Without the map it is another unit.
+        let without = sim(&[&["replay", name][..]].concat());
+        assert!(!String::from_utf8(without.stdout).unwrap().lines().eq(own.iter()));
+        // The results are those of a run without a log.
+        let results = |output: &Output| -> serde_json::Value {
+            let mut results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            results.as_object_mut().unwrap().remove("timing");
+            results
+        };
+        assert_eq!(results(&ran), results(&sim(&run[..6])));
+    }
+}
+
+#[test]
+fn a_log_that_cannot_be_is_refused_before_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = short(folder.path(), &[]);
+    let cases: [(&[&str], &str); 3] = [
+        (&[], "--candump: no vehicle of this seed is the ego; name one by --candump-vehicle\n"),
+        (&["--candump-vehicle", "999"], "--candump-vehicle: there is no vehicle 999; give an index from 0 to "),
+        (&["--demand", "30"], "--candump: is for the scenario's own traffic, and --demand runs other traffic; "),
+    ];
+    for (arguments, message) in cases {
+        let output = sim(&[&["run", &file, "--candump", "x.log"][..], arguments].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.starts_with(&format!("error: {message}")), "{said}");
+        assert_eq!((output.status.code(), said.lines().count()), (Some(2), 1));
+    }
+    let output = sim(&["replay", "x.log", "--scenario", "corridor", "--vehicle", "255"]);
+    assert!(String::from_utf8(output.stderr).unwrap().contains("give an index below 255"));
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn what_candump_cannot_have_written_is_refused_with_its_line() {
         ),
         (
             b"(2015-07-10 08:17:32.249713)  can0  123   [0]",
-            "the time begins with \"(2015-07-10\"; record with `candump -l` or `candump -t a`",
+            "the time begins with \"(2015-07-10\"; record with `candump -l`, or on the screen with -t a, z or d",
         ),
         (
             b"(1.0) a_network_interface 123#",

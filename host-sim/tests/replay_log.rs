@@ -98,7 +98,10 @@ fn what_is_no_log_ends_with_one_line_and_exit_code_2() {
         (b"(10.000000) can0 123#012\n", "bus.log:1: the data \"012\" has half a byte"),
         (b"(10.000000) can0 123#010203040506070809\n", "bus.log:1: 9 bytes of data"),
         (b"(1e1) can0 123#00\n", "bus.log:1: the time is \"1e1\""),
-        (b"can0 123 [1] 00\n", "bus.log:1: the line has no time; record with `candump -l` or `candump -t a`"),
+        (
+            b"can0 123 [1] 00\n",
+            "bus.log:1: the line has no time; record with `candump -l`, or on the screen with -t a, z or d",
+        ),
         (
             b"(8.500000) can0 123#00\n",
             "bus.log:2: the time is 1.500 s before that of a line above; sort the log by time, or split it where its \
@@ -157,4 +160,113 @@ fn help_gives_examples_and_the_rules_of_time() {
     for wanted in ["Examples:", "Time:", "--summary", "--base-id", "Exit codes:"] {
         assert!(help.contains(wanted), "{wanted}");
     }
+}
+
+/// A second of a bus, in the form of candump's screen with `-t z` or `-t d`, or with times since 1970.
+fn screen(form: char) -> String {
+    let (mut log, mut last) = (String::new(), 0);
+    for number in 0..120_u64 {
+        let at = number * 10_000 + if number % 3 == 0 { 0 } else { 137 };
+        let time = match form {
+            'a' => format!("{:010}.{:06}", 1_436_509_052 + at / 1_000_000, at % 1_000_000),
+            'z' => format!("{:03}.{:06}", at / 1_000_000, at % 1_000_000),
+            _ => format!("{:03}.{:06}", (at - last) / 1_000_000, (at - last) % 1_000_000),
+        };
+        last = at;
+        log += &format!(" ({time})  can1  484   [8]  01 02 03 04 05 06 07 08\n");
+    }
+    log
+}
+
+#[test]
+fn differences_and_times_since_the_first_frame_are_the_same_drive() {
+    let [absolute, zero, differences] = ['a', 'z', 'd'].map(|form| summary(screen(form).as_bytes(), &[]));
+    assert_eq!((&absolute["ticks"], &absolute["frames"]), (&121.into(), &120.into()));
+    for other in [&zero, &differences] {
+        for key in ["frames", "ticks", "refused", "recognised", "ignored"] {
+            assert_eq!(other[key], absolute[key], "{key}");
+        }
+    }
+    let [zero, differences] = ['z', 'd'].map(|form| replay(screen(form).as_bytes(), &[]).stdout);
+    assert!(!zero.is_empty() && zero == differences);
+}
+
+#[test]
+fn differences_that_are_all_alike_are_differences() {
+    let log = " (000.000000)  can0  123   [0] \n".to_owned() + &" (000.010000)  can0  123   [0] \n".repeat(50);
+    assert_eq!(summary(log.as_bytes(), &[])["ticks"], 51);
+}
+
+#[test]
+fn differences_of_two_interfaces_count_from_line_to_line() {
+    let log = " (000.000000)  can0  123   [0] \n (000.030000)  can1  123   [0] \n (000.020000)  can0  123   [0] \n \
+               (000.010000)  can0  123   [0] \n";
+    assert_eq!(summary(log.as_bytes(), &[])["ticks"], 7);
+}
+
+#[test]
+fn a_mistake_behind_the_first_relative_times_has_its_line() {
+    let log = " (000.000000)  can0  123   [0] \n\n (000.010000)  can0  123   [1]\n";
+    let output = replay(log.as_bytes(), &["--summary"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        (output.status.code(), said.as_str()),
+        (Some(2), "error: bus.log:3: the line is not complete; delete it\n")
+    );
+}
+
+#[test]
+fn logs_of_other_tools_are_refused_by_name_with_the_way_to_convert_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let asc = b"date Thu Apr 20 10:44:05 2023\nbase hex  timestamps absolute\n";
+    let trc = b";$FILEVERSION=1.1\n;$STARTTIME=45036.4\n";
+    let cases: [(&str, &[u8], &str); 7] = [
+        (
+            "drive.asc",
+            asc,
+            "is an ASC log, and no candump log; convert it with python-can: python -m can.logconvert drive.asc drive.log",
+        ),
+        (
+            "drive.blf",
+            b"LOGG\x90\0\0\0\x02\xff",
+            "is a BLF log, and no candump log; convert it with python-can: python -m can.logconvert drive.blf drive.log",
+        ),
+        (
+            "drive.TRC",
+            trc,
+            "is a TRC log, and no candump log; convert it with python-can: python -m can.logconvert drive.TRC drive.log",
+        ),
+        (
+            "drive.mf4",
+            b"MDF     4.10    \x9a\x01",
+            "is an MF4 log, and no candump log; convert it with python-can: python -m can.logconvert drive.mf4 drive.log (it needs asammdf)",
+        ),
+        // Without the right name, by its content; and without content that is known, by its name.
+        (
+            "renamed.log",
+            b"LOGG\x90\0\0\0\x02\xff",
+            "is a BLF log, and no candump log; convert it with python-can: python -m can.logconvert IN.blf OUT.log",
+        ),
+        (
+            "old.trc",
+            b"    1)  1059900002 Rx         0300  7  00 00 00 00 04 00 00\n",
+            "is a TRC log, and no candump log; convert it with python-can: python -m can.logconvert old.trc old.log",
+        ),
+        (
+            "my drive.asc",
+            asc,
+            "is an ASC log, and no candump log; convert it with python-can: python -m can.logconvert IN.asc OUT.log",
+        ),
+    ];
+    for (name, content, message) in cases {
+        std::fs::write(folder.path().join(name), content).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_holdover-sim"));
+        let output = command.current_dir(folder.path()).args(["replay", name]).output().unwrap();
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), format!("error: {name}: {message}\n"));
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{name}");
+    }
+    // A candump log may have any name.
+    std::fs::write(folder.path().join("good.asc"), "(1.000000) can0 123#\n").unwrap();
+    let good = folder.path().join("good.asc");
+    assert_eq!(holdover_sim(&["replay", good.to_str().unwrap()]).status.code(), Some(0));
 }

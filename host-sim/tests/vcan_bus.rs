@@ -218,3 +218,48 @@ fn a_recording_that_is_killed_has_all_but_the_last_moment() {
     // A tenth of a second is 20 of them.
     assert!(log.ends_with('\n') && log.lines().count() > 250, "{}", log.lines().count());
 }
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn can_fd_frames_are_recorded_as_candump_writes_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (ours, theirs) = (path("ours.log"), path("theirs.log"));
+    let sim = env!("CARGO_BIN_EXE_holdover-sim");
+    let out = shell(&format!(
+        "candump -L -T 2000 vcan0 >{theirs} & {sim} record --bus vcan0 --duration 2 -o {ours} & sleep 0.7; \
+         cansend vcan0 123##1AABBCC; cansend vcan0 12345678##3AABBCCDDAABBCCDDAA; cansend vcan0 124##0; \
+         cansend vcan0 125#11; wait"
+    ));
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(said.contains("4 frames recorded, 3 of them CAN FD"), "{said}");
+    let (ours, theirs) = (std::fs::read_to_string(ours).unwrap(), std::fs::read_to_string(theirs).unwrap());
+    assert_eq!(ours, theirs);
+    assert_eq!(ours.lines().filter(|line| line.contains("##")).count(), 3);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_recording_ends_by_sigterm_as_by_ctrl_c_with_all_frames_and_their_number() {
+    for signal in ["TERM", "INT"] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("ended.log");
+        let recorder = Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
+            .args(["record", "--bus", "vcan0", "--output"])
+            .arg(&file)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut port = open();
+        heard(&mut port, 700);
+        for count in 0..300_u16 {
+            Port::send(&mut port, frame(0x123, &count.to_be_bytes())).unwrap();
+        }
+        heard(&mut port, 20);
+        shell(&format!("kill -{signal} {}", recorder.id()));
+        let ended = recorder.wait_with_output().unwrap();
+        let said = String::from_utf8(ended.stderr).unwrap();
+        assert_eq!((ended.status.code(), said.as_str()), (Some(0), "300 frames recorded\n"), "{signal}");
+        assert_eq!(std::fs::read_to_string(&file).unwrap().lines().count(), 300, "{signal}");
+    }
+}

@@ -1,7 +1,8 @@
 //! A CAN bus in memory: frames that one node sends leave at every other node in the order of their times.
 //!
 //! The bus has no transmission time and no arbitration: frames of the same instant arrive in the order of sending. A
-//! node may send ahead of time; no node receives the frame before its time.
+//! node may send ahead of time; no node receives the frame before its time. A log of the bus gets the times of a wire
+//! from [`wire`](super::wire).
 
 use super::{Bus, Frame};
 use holdover::time::Instant;

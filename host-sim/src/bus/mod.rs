@@ -1,18 +1,22 @@
 //! CAN buses behind one trait: a node sends frames, and receives the frames of the other nodes in the order of time.
 //!
 //! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are
-//! middleware that wraps a node of any bus. [`port`] is a node that follows the bus's own time.
+//! middleware that wraps a node of any bus. [`port`] is a node that follows the bus's own time. [`wire`] says when the
+//! frames of a bus in memory would have been on a wire.
 
 pub mod candump;
 pub mod fault;
+pub mod fd;
 pub mod frame;
 pub mod memory;
 pub mod port;
 pub mod record;
 #[cfg(target_os = "linux")]
 pub mod socketcan;
+pub mod wire;
 
 use crate::error::Error;
+pub use fd::FdFrame;
 pub use frame::Frame;
 use holdover::time::Instant;
 pub use port::Port;

@@ -4,7 +4,7 @@
 //! [`Bus`](super::Bus) is for a caller that sets the time itself; a port is for a caller that has to keep up with the
 //! bus.
 
-use super::Frame;
+use super::{FdFrame, Frame};
 use holdover::time::Instant;
 use std::io;
 
@@ -15,6 +15,8 @@ pub enum Event {
     Sent(Frame),
     /// A frame of another node.
     Received(Frame),
+    /// A CAN FD frame of another node. A classic node hears none, but a recording has them.
+    Fd(FdFrame),
     /// An error of the bus, reported by the controller or by a node that plays one.
     Error(BusError),
     /// The interface has gone down. Until it is up again, no frame can be received or sent.

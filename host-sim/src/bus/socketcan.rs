@@ -6,12 +6,14 @@
 //! same bits comes at the same time, the two are taken for one another, which makes no difference.
 
 use super::port::{BusError, Event, Port};
-use super::{Bus, Frame};
+use super::{Bus, FdFrame, Frame};
 use crate::error::{Error, quoted};
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::Instant;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
-use socketcan::{CanErrorFrame, CanFilter, CanFrame, CanSocket, EmbeddedFrame, Frame as _, Socket, SocketOptions};
+use socketcan::{
+    CanAnyFrame, CanErrorFrame, CanFdSocket, CanFilter, CanFrame, EmbeddedFrame, Frame as _, Socket, SocketOptions,
+};
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 use std::os::fd::AsFd;
@@ -28,7 +30,7 @@ const QUEUE_PATIENCE: Duration = Duration::from_millis(20);
 /// A node on a CAN interface.
 #[derive(Debug)]
 pub struct SocketCan {
-    socket: CanSocket,
+    socket: CanFdSocket,
     /// Frames that were sent and have not been seen on the bus yet.
     awaited: VecDeque<Frame>,
     /// An event that was received, and is later than a [`Bus::receive`] asked for.
@@ -41,7 +43,7 @@ impl SocketCan {
     /// # Errors
     /// There is no CAN, no such interface, or the interface is down; with the remedy.
     pub fn open(name: &str) -> Result<Self, Error> {
-        let socket = CanSocket::open_iface(0).and_then(|_| CanSocket::open(name));
+        let socket = CanFdSocket::open_iface(0).and_then(|_| CanFdSocket::open(name));
         let socket = socket.map_err(|error| unopened(name, &error))?;
         if is_down(name) {
             return Err(Error::new(format!("{} is down", quoted(name)), format!("as root: {}", up(name))));
@@ -94,15 +96,16 @@ impl SocketCan {
             }
         };
         let at = stamps.socket.map_or_else(|| self.now(), instant);
-        let event = match classic(&frame) {
-            Ok(frame) => match self.awaited.iter().position(|sent| *sent == frame) {
+        let event = match read(&frame) {
+            Some(Read::Fd(frame)) => Event::Fd(frame),
+            Some(Read::Classic(frame)) => match self.awaited.iter().position(|sent| *sent == frame) {
                 Some(place) => {
                     self.awaited.remove(place);
                     Event::Sent(frame)
                 }
                 None => Event::Received(frame),
             },
-            Err(error) => Event::Error(error),
+            None => Event::Error(error(&frame)),
         };
         Ok(Some((at, event)))
     }
@@ -177,7 +180,7 @@ impl Bus for SocketCan {
                     return Ok(None);
                 }
                 Event::Received(frame) => return Ok(Some((at, frame))),
-                Event::Sent(_) | Event::Error(_) | Event::Down => {}
+                Event::Sent(_) | Event::Fd(_) | Event::Error(_) | Event::Down => {}
             }
         }
         Ok(None)
@@ -189,22 +192,35 @@ fn instant(time: SystemTime) -> Instant {
     Instant::from_micros(u64::try_from(since.as_micros()).unwrap_or(u64::MAX))
 }
 
-/// The frame, or the error that it reports.
-fn classic(frame: &CanFrame) -> Result<Frame, BusError> {
-    let id = || match frame.raw_id() & 0x1FFF_FFFF {
+/// A frame of another node.
+enum Read {
+    Classic(Frame),
+    Fd(FdFrame),
+}
+
+/// The frame; `None` if it reports an error.
+fn read(frame: &CanAnyFrame) -> Option<Read> {
+    let id = identifier(frame)?;
+    match frame {
+        CanAnyFrame::Normal(data) => Frame::new(id, EmbeddedFrame::data(data)).map(Read::Classic),
+        CanAnyFrame::Remote(remote) => Frame::new_remote(id, EmbeddedFrame::dlc(remote)).map(Read::Classic),
+        CanAnyFrame::Fd(fd) => FdFrame::new(id, fd.flags().bits(), EmbeddedFrame::data(fd)).map(Read::Fd),
+        CanAnyFrame::Error(_) => None,
+    }
+}
+
+fn identifier(frame: &CanAnyFrame) -> Option<Id> {
+    match frame.raw_id() & 0x1FFF_FFFF {
         raw if frame.is_extended() => ExtendedId::new(raw).map(Id::Extended),
         raw => u16::try_from(raw).ok().and_then(StandardId::new).map(Id::Standard),
-    };
-    let made = match frame {
-        CanFrame::Data(data) => id().and_then(|id| Frame::new(id, EmbeddedFrame::data(data))),
-        CanFrame::Remote(remote) => id().and_then(|id| Frame::new_remote(id, EmbeddedFrame::dlc(remote))),
-        CanFrame::Error(_) => None,
-    };
-    made.ok_or_else(|| {
-        let mut data = [0; 8];
-        data.iter_mut().zip(frame.data()).for_each(|(to, from)| *to = *from);
-        BusError { classes: frame.raw_id() & 0x1FFF_FFFF, data }
-    })
+    }
+}
+
+/// The error that a frame reports.
+fn error(frame: &CanAnyFrame) -> BusError {
+    let mut data = [0; 8];
+    data.iter_mut().zip(frame.data()).for_each(|(to, from)| *to = *from);
+    BusError { classes: frame.raw_id() & 0x1FFF_FFFF, data }
 }
 
 fn linux(frame: &Frame) -> io::Result<CanFrame> {

@@ -30,7 +30,7 @@ pub enum Options {
     /// Run a string of vehicles.
     Run(RunOptions),
     /// Run a corridor.
-    Corridor(CorridorOptions),
+    Corridor(Box<CorridorOptions>),
     /// List the scenarios that come with the program.
     List,
     /// Measure the estimate of a recorded vehicle.
@@ -89,7 +89,7 @@ impl Options {
         match library::kind(&file, &text)? {
             library::Kind::String => RunOptions::read(arguments).map(Self::Run),
             library::Kind::Corridor => {
-                CorridorOptions::read(named, &file, &text, arguments.settings).map(Self::Corridor)
+                CorridorOptions::read(named, &file, &text, arguments.settings).map(Box::new).map(Self::Corridor)
             }
         }
     }

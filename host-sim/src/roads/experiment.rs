@@ -62,10 +62,7 @@ impl Experiment {
     /// The trips of a seed, and the index of the ego's trip.
     #[must_use]
     pub fn trips(&self, seed: u64) -> (Vec<Trip>, Option<usize>) {
-        let trips = trips(&self.corridor, &self.network, seed);
-        let is_ego = |trip: &Trip| trip.road == self.corridor.ego_road && trip.at_s >= self.corridor.ego_after_s;
-        let ego = trips.iter().position(is_ego);
-        (trips, ego)
+        with_ego(&self.corridor, &self.network, seed)
     }
 
     /// One run.
@@ -178,6 +175,19 @@ impl Experiment {
         };
         parallel::each(jobs, one).into_iter().collect()
     }
+}
+
+/// The trips of a seed in a corridor, and the index of the ego's trip.
+#[must_use]
+pub fn of_seed(corridor: &Corridor, seed: u64) -> (Vec<Trip>, Option<usize>) {
+    with_ego(corridor, &Network::of(corridor), seed)
+}
+
+fn with_ego(corridor: &Corridor, network: &Network, seed: u64) -> (Vec<Trip>, Option<usize>) {
+    let trips = trips(corridor, network, seed);
+    let is_ego = |trip: &Trip| trip.road == corridor.ego_road && trip.at_s >= corridor.ego_after_s;
+    let ego = trips.iter().position(is_ego);
+    (trips, ego)
 }
 
 /// The conditions of the four sides, in the order of [`Sides`].

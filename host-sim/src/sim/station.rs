@@ -5,10 +5,13 @@ use holdover::wire::{Predecessor, StationHash};
 
 use super::quantities::{seconds, speed};
 
+/// Number of different stations.
+pub const STATIONS: usize = 255;
+
 /// The station of the vehicle with this index. Stations repeat after 255 vehicles, when the first of them is long gone.
 #[must_use]
 pub const fn station(index: usize) -> StationHash {
-    StationHash((index % 255) as u8 + 1)
+    StationHash((index % STATIONS) as u8 + 1)
 }
 
 /// The vehicle with this station, in a run of up to 255 vehicles.

@@ -12,16 +12,29 @@ const ERROR_FLAG: u32 = 0x2000_0000;
 /// The most bytes of an FD frame.
 const FD_BYTES: usize = 64;
 
+/// A line.
+#[derive(Debug)]
+pub(super) struct Line {
+    /// Its content.
+    pub(super) entry: Entry,
+    /// Whether its time is that of `-t z` or `-t d`, and not since 1970.
+    pub(super) is_relative: bool,
+}
+
 /// The content of a line; `None` if it is blank.
-pub fn parse(line: &str) -> Result<Option<Entry>, Error> {
+pub(super) fn parse(line: &str) -> Result<Option<Line>, Error> {
     let mut words = line.split_ascii_whitespace();
     let Some(mut word) = words.next() else { return Ok(None) };
-    let mut at = None;
+    let (mut at, mut is_relative) = (None, false);
     if let Some(stamp) = word.strip_prefix('(') {
         let stamp = stamp.strip_suffix(')').ok_or_else(|| {
-            Error::new(format!("the time begins with {}", quoted(word)), "record with `candump -l` or `candump -t a`")
+            Error::new(
+                format!("the time begins with {}", quoted(word)),
+                "record with `candump -l`, or on the screen with -t a, z or d",
+            )
         })?;
         at = Some(instant(stamp)?);
+        is_relative = is_of_screen(stamp);
         word = words.next().ok_or_else(cut_off)?;
     }
     let interface = Interface::try_from(word)
@@ -35,7 +48,7 @@ pub fn parse(line: &str) -> Result<Option<Entry>, Error> {
         Some((id, data)) => logged(id, data)?,
         None => shown(word, words)?,
     };
-    Ok(Some(Entry { at, interface, content }))
+    Ok(Some(Line { entry: Entry { at, interface, content }, is_relative }))
 }
 
 const NOT_A_LOG: &str = "give a log as `candump -l` writes it";
@@ -43,6 +56,12 @@ const NOT_A_LOG: &str = "give a log as `candump -l` writes it";
 /// The error of the last line of a log that was being written when the machine stopped.
 fn cut_off() -> Error {
     Error::new("the line is not complete", "delete it")
+}
+
+/// Whether a time has the width of `-t z` and `-t d`: three digits of seconds. `-t z` has more after 1000 s, but then its
+/// meaning is known. Seconds since 1970 have ten.
+fn is_of_screen(stamp: &str) -> bool {
+    stamp.split_once('.').is_some_and(|(seconds, micros)| seconds.len() == 3 && micros.len() == 6)
 }
 
 /// The time of `seconds.fraction`, cut off after microseconds.

@@ -1,8 +1,8 @@
 //! Writes candump logs: frames with their times enter, lines in the form of `candump -l` leave.
 
 use super::Interface;
-use crate::bus::Frame;
 use crate::bus::port::BusError;
+use crate::bus::{FdFrame, Frame};
 use embedded_can::{Frame as _, Id};
 use holdover::time::Instant;
 use std::fmt::Write as _;
@@ -34,6 +34,16 @@ impl<W: Write> LogWriter<W> {
     pub fn write(&mut self, at: Instant, frame: &Frame) -> io::Result<()> {
         self.line.clear();
         self.format(at, frame).map_err(io::Error::other)?;
+        self.out.write_all(self.line.as_bytes())
+    }
+
+    /// Writes one CAN FD frame.
+    ///
+    /// # Errors
+    /// Errors of the writer.
+    pub fn write_fd(&mut self, at: Instant, frame: &FdFrame) -> io::Result<()> {
+        self.line.clear();
+        self.format_fd(at, frame).map_err(io::Error::other)?;
         self.out.write_all(self.line.as_bytes())
     }
 
@@ -73,13 +83,26 @@ impl<W: Write> LogWriter<W> {
         write!(self.line, "({:010}.{:06}) {} ", micros / 1_000_000, micros % 1_000_000, self.interface)
     }
 
+    fn identify(&mut self, id: Id) -> std::fmt::Result {
+        match id {
+            Id::Standard(id) => write!(self.line, "{:03X}#", id.as_raw()),
+            Id::Extended(id) => write!(self.line, "{:08X}#", id.as_raw()),
+        }
+    }
+
+    fn format_fd(&mut self, at: Instant, frame: &FdFrame) -> std::fmt::Result {
+        self.begin(at)?;
+        self.identify(frame.id())?;
+        write!(self.line, "#{:X}", frame.flags())?;
+        frame.data().iter().try_for_each(|byte| write!(self.line, "{byte:02X}"))?;
+        self.line.push('\n');
+        Ok(())
+    }
+
     fn format(&mut self, at: Instant, frame: &Frame) -> std::fmt::Result {
         self.begin(at)?;
+        self.identify(frame.id())?;
         let line = &mut self.line;
-        match frame.id() {
-            Id::Standard(id) => write!(line, "{:03X}#", id.as_raw())?,
-            Id::Extended(id) => write!(line, "{:08X}#", id.as_raw())?,
-        }
         match (frame.is_remote_frame(), frame.dlc()) {
             (true, 0) => line.push('R'),
             (true, dlc) => write!(line, "R{dlc}")?,

@@ -1,4 +1,5 @@
-//! `run` on a corridor: checked options enter; a table or JSON on stdout, a report, a picture and the verdict leave.
+//! `run` on a corridor: checked options enter; a table or JSON on stdout, a report, a picture, a candump log and the
+//! verdict leave.
 
 pub mod cost;
 pub mod demand;
@@ -19,6 +20,7 @@ use crate::commands::ending::json;
 use crate::commands::motions::rows::{self, Row};
 use crate::error::Error;
 use crate::output::{self, LongRuns};
+use crate::roads::conditions::Conditions;
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
@@ -81,7 +83,8 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     }
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
-    let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len()) as u64);
+    let logged = usize::from(options.candump.is_some());
+    let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
         bar.set_style(style);
     }
@@ -99,6 +102,12 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
             cost::measure(row.step_s, &config, itinerary, &journal.log)
         })
         .collect();
+    if let Some(candump) = &options.candump {
+        let mut journal = Journal::new(Some(candump.vehicle));
+        experiment.run(first, Conditions::of(&options.corridor), Some(&mut journal))?;
+        candump.write(&journal.log)?;
+        done();
+    }
     let mut loads = Vec::new();
     let engaged = options.corridor.envelope.engaged;
     let timed = if engaged { &sides.envelope } else { &sides.holdover };

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use super::scale::VEHICLES;
 use crate::commands::ending::Destination;
 use crate::commands::run::arguments::RunSettings;
+use crate::commands::run::candump::Candump;
 use crate::error::Error;
 use crate::input::scenario::Overrides;
 use crate::places::can_be_file;
 use crate::roads::description::Corridor;
+use crate::roads::experiment::of_seed;
 use crate::roads::read;
 use crate::seeds;
 use crate::sim::modem::PEERS;
@@ -37,6 +39,8 @@ pub struct CorridorOptions {
     pub slots: Vec<usize>,
     /// File for the one-page picture.
     pub picture: Option<PathBuf>,
+    /// The bus to log, of the first seed; the vehicle is the index of its trip.
+    pub candump: Option<Candump>,
 }
 
 impl CorridorOptions {
@@ -49,7 +53,6 @@ impl CorridorOptions {
             ("--leader-motion", settings.leader_motion.is_some()),
             ("--channel-trace", settings.channel_trace.is_some()),
             ("--trace", settings.trace.is_some()),
-            ("--candump", settings.candump.is_some()),
         ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
             return Err(
@@ -72,9 +75,14 @@ impl CorridorOptions {
         let slots = slots(settings.slots.clone(), &mut corridor, !demand.is_empty())?;
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
+        let candump = candump(&corridor, &settings)?;
         let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
-        if let Some(picture) = &settings.picture {
-            can_be_file("--picture", picture, &[named])?;
+        let mut taken = vec![named];
+        for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
+            if let Some(file) = file {
+                can_be_file(option, file, &taken)?;
+                taken.push(file);
+            }
         }
         let usual = if destination.report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
         let is_given = settings.vehicles.is_some();
@@ -104,8 +112,50 @@ impl CorridorOptions {
             command += &format!(" --vehicles {}", listed(vehicles.iter().map(usize::to_string).collect()));
         }
         let name = named.file_stem().map_or("corridor".into(), |stem| stem.to_string_lossy().into_owned());
-        Ok(Self { corridor, name, command, seeds, destination, vehicles, demand, slots, picture: settings.picture })
+        Ok(Self {
+            corridor,
+            name,
+            command,
+            seeds,
+            destination,
+            vehicles,
+            demand,
+            slots,
+            picture: settings.picture,
+            candump,
+        })
     }
+}
+
+/// The bus to log: that of the vehicle of the command line, or else the ego's.
+fn candump(corridor: &Corridor, settings: &RunSettings) -> Result<Option<Candump>, Error> {
+    let Some(file) = settings.candump.clone() else { return Ok(None) };
+    if settings.demand.is_some() {
+        let cause = "is for the scenario's own traffic, and --demand runs other traffic";
+        return Err(Error::new(cause, "leave one of the two out").in_option("--candump"));
+    }
+    let (trips, ego) = of_seed(corridor, corridor.seed);
+    let Some(vehicle) = settings.candump_vehicle.or(ego) else {
+        let error = Error::new("no vehicle of this seed is the ego", "name one by --candump-vehicle");
+        return Err(error.in_option("--candump"));
+    };
+    exists("--candump-vehicle", vehicle, trips.len())?;
+    Ok(Some(Candump { file, vehicle, times: settings.candump_times.unwrap_or_default() }))
+}
+
+/// Whether there is a vehicle of that index among so many.
+///
+/// # Errors
+/// There is none.
+pub fn exists(option: &str, vehicle: usize, vehicles: usize) -> Result<(), Error> {
+    if vehicle < vehicles {
+        return Ok(());
+    }
+    let remedy = match vehicles.checked_sub(1) {
+        Some(last) => format!("give an index from 0 to {last}"),
+        None => "let vehicles arrive".to_owned(),
+    };
+    Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option(option))
 }
 
 /// Numbers of slots: those of the command line, which then apply to the corridor; or else the corridor's.

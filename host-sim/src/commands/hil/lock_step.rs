@@ -236,7 +236,7 @@ impl<P: Port> Bench<P> {
                         line => *foreign += u64::from(line.is_some()),
                     },
                     Event::Error(_) => *bus_errors += 1,
-                    Event::Down => {}
+                    Event::Fd(_) | Event::Down => {}
                 }
                 !is_enough
             })?;

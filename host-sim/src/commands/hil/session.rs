@@ -138,7 +138,7 @@ impl BusListener {
                 }
             },
             Event::Error(_) => self.bus_errors += 1,
-            Event::Down => {}
+            Event::Fd(_) | Event::Down => {}
         }
         Ok(())
     }

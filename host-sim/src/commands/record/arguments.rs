@@ -14,7 +14,7 @@ pub struct RecordArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 
-    /// Stop after this long; otherwise it records until it is interrupted
+    /// Stop after this long; otherwise it records until it is interrupted by Ctrl-C (SIGINT) or SIGTERM
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
@@ -27,9 +27,11 @@ Examples:
   holdover-sim replay drive.log --bus vcan0        the same traffic once more
   canplayer vcan0=can0 -I drive.log                the same, by can-utils
 
-The log has the kernel's time stamps, since 1970, and what the controller
-reports as errors. can-utils, Wireshark and python-can read it as it is.
+The log has the kernel's time stamps, since 1970, all frames, CAN FD (`##`)
+among them, and what the controller reports as errors. can-utils, Wireshark
+and python-can read it as it is. SIGINT and SIGTERM end it as --duration does:
+the log is complete, and the number of frames is told.
 
 Exit codes:
-  0  recorded
+  0  recorded, however it was ended
   2  bad input; one line on stderr names cause and remedy";

@@ -1,7 +1,9 @@
 //! `record`: the events on a CAN interface enter, a candump log with the kernel's time stamps leaves.
 
 pub mod arguments;
+pub mod interruption;
 
+use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -17,6 +19,7 @@ use crate::places::can_be_file;
 use crate::sim::quantities::duration;
 use crate::verdict::Verdict;
 use arguments::RecordArguments;
+use interruption::Interruption;
 
 /// Time between two checks of the end, and between two flushes of the log.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -49,11 +52,14 @@ impl RecordOptions {
     }
 }
 
-/// Records until the end.
+/// Records until the end: of the time, or by SIGINT or SIGTERM.
 ///
 /// # Errors
 /// An interface that cannot be used, and a log that cannot be written.
 pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
+    let interruption = Interruption::awaited().map_err(|error| {
+        Error::new(format!("signals cannot be awaited ({error})"), "report this, with the system's name and version")
+    })?;
     let mut port = bus::open(&options.interface)?;
     let (name, out): (&Path, Box<dyn Write>) = match &options.file {
         Some(file) => (file, Box::new(File::create(file).map_err(|error| Error::unwritable(file, &error))?)),
@@ -62,8 +68,8 @@ pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
     let log = LogWriter::new(BufWriter::new(out), &options.interface)
         .ok_or_else(|| Error::new("is no name of an interface", "name one, such as vcan0").in_option("--bus"))?;
     let until = options.length.map(|length| port.now().plus(length));
-    match record(&mut port, log, until) {
-        Ok(frames) => output::say(&format!("{frames} frames recorded")),
+    match record(&mut port, log, until, &interruption) {
+        Ok(recorded) => output::say(&recorded.to_string()),
         Err(Failure::Log(error)) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(Failure::Log(error)) => return Err(Error::unwritable(name, &error)),
         Err(Failure::Port(error)) => {
@@ -83,26 +89,51 @@ pub enum Failure {
     Log(io::Error),
 }
 
-/// Records the events until `until`, and returns the number of frames. However it ends, the log is complete up to a
-/// tenth of a second before.
+/// Number of frames in a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Recorded {
+    /// All frames, error frames among them.
+    pub frames: u64,
+    /// Those of CAN FD.
+    pub fd: u64,
+}
+
+impl fmt::Display for Recorded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} frames recorded", self.frames)?;
+        if self.fd > 0 { write!(f, ", {} of them CAN FD", self.fd) } else { Ok(()) }
+    }
+}
+
+/// Records the events until `until`, or until it is interrupted. However it ends, the log is complete up to a tenth of a
+/// second before.
 ///
 /// # Errors
 /// Errors of the port and of the log.
-pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Option<Instant>) -> Result<u64, Failure> {
-    let (mut frames, mut flushed) = (0, port.now());
+pub fn record(
+    port: &mut impl Port,
+    mut log: LogWriter<impl Write>,
+    until: Option<Instant>,
+    interruption: &Interruption,
+) -> Result<Recorded, Failure> {
+    let (mut recorded, mut flushed) = (Recorded::default(), port.now());
     loop {
         let now = port.now();
         if now.since(flushed) >= PAUSE {
             log.flush().map_err(Failure::Log)?;
             flushed = now;
         }
-        if until.is_some_and(|until| until <= now) {
+        if interruption.is_asked() || until.is_some_and(|until| until <= now) {
             log.finish().map_err(Failure::Log)?;
-            return Ok(frames);
+            return Ok(recorded);
         }
         let pause = now.plus(PAUSE);
         match port.wait(until.map_or(pause, |until| until.min(pause))).map_err(Failure::Port)? {
             Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame).map_err(Failure::Log)?,
+            Some((at, Event::Fd(frame))) => {
+                log.write_fd(at, &frame).map_err(Failure::Log)?;
+                recorded.fd += 1;
+            }
             Some((at, Event::Error(error))) => log.write_error(at, &error).map_err(Failure::Log)?,
             Some((_, Event::Down)) => {
                 output::say("the interface is down; going on when it is up");
@@ -110,6 +141,6 @@ pub fn record(port: &mut impl Port, mut log: LogWriter<impl Write>, until: Optio
             }
             None => continue,
         }
-        frames += 1;
+        recorded.frames += 1;
     }
 }

@@ -8,20 +8,25 @@ use std::path::PathBuf;
 /// The arguments of `replay`.
 #[derive(Clone, Debug, Args)]
 pub struct ReplayArguments {
-    /// The log, as `candump -l` or `candump -t a` writes it; - for standard input
+    /// The log, as `candump -l` or candump's screen with `-t a`, `-t z` or `-t d` writes it; - for standard input
     #[arg(value_name = "LOG")]
     pub log: PathBuf,
 
     /// Put the log's frames on this CAN interface instead, with their timing
-    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["scenario", "vehicle", "station", "base_id", "period",
-        "step", "summary", "json"])]
+    #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["scenario", "vehicle", "seed", "station", "base_id",
+        "period", "step", "summary", "json"])]
     pub bus: Option<String>,
 
-    /// Replay as a unit of this scenario; the paper's if only --vehicle is given
-    #[arg(long, value_name = "SCENARIO.toml")]
+    /// Replay as a unit of this scenario, a file or a name from `run --list`; the paper's if only --vehicle is given. In a
+    /// corridor the unit has the map
+    #[arg(long, value_name = "SCENARIO")]
     pub scenario: Option<PathBuf>,
 
-    /// The vehicle whose unit receives the log; by default the ego
+    /// Seed of the run whose vehicle it is, if it is not the scenario's. It counts in a corridor
+    #[arg(long, value_name = "N", requires = "scenario")]
+    pub seed: Option<u64>,
+
+    /// The vehicle whose unit receives the log; by default the ego. In a corridor, 0 to 254 by arrival
     #[arg(long, value_name = "INDEX")]
     pub vehicle: Option<usize>,
 
@@ -61,8 +66,23 @@ Examples:
   holdover-sim replay drive.log --summary    what it would have made of the traffic
   candump -L can0 | holdover-sim replay - --base-id 0x500 --station 7
   holdover-sim --candump ego.log && holdover-sim replay ego.log --vehicle 2
-                                             the ego's unit of a run once more
+                                             the ego's unit on the bus of a run
+  holdover-sim --candump ego.log --candump-times sent
+                                             for that unit bit for bit once more
+  holdover-sim run corridor --no-report --candump ego.log
+  holdover-sim replay ego.log --scenario corridor
+                                             a unit that crosses intersections
   holdover-sim replay drive.log --bus vcan0  the same traffic on a CAN interface
+
+Logs:
+  candump -l, and candump's screen with -t a, -t z or -t d, which is told from
+  -t z by the first 100 lines. Logs of other tools (.asc, .blf, .trc, .mf4) are
+  refused by name; python-can converts them:
+  python -m can.logconvert IN.blf OUT.log
+  The times of a log that `run --candump` writes are those of a wire: frames end
+  one after the other, so that some are a tick later than in the run. With
+  --candump-times sent they are those of the run, and the unit sends the same
+  bits.
 
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first

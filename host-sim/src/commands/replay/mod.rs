@@ -52,6 +52,11 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
     let compares = options.output != Output::Frames;
     let mut player = Player::new(&options.config, compares)
         .map_err(|cause| Error::new(format!("the unit refuses its configuration: {cause}"), "change the options"))?;
+    if let Some(itinerary) = options.itinerary {
+        player.set_out(itinerary).map_err(|cause| {
+            Error::new(format!("the unit refuses the map: {cause:?}"), "report this with the scenario")
+        })?;
+    }
     let mut chosen = options.interface.clone();
     let mut other = None;
     let mut sink = Sink::new(options.output == Output::Frames);

@@ -4,14 +4,24 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use holdover::Config;
+use holdover::coordination::Itinerary;
 use holdover::wire::StationHash;
 
 use super::arguments::ReplayArguments;
 use crate::bus::candump::Interface;
 use crate::commands::base_id;
+use crate::commands::corridor::options::exists;
 use crate::error::{Error, quoted};
+use crate::input::library;
 use crate::input::scenario::{Overrides, Scenario};
+use crate::roads::conditions::{self, Conditions};
+use crate::roads::description::Corridor;
+use crate::roads::experiment::of_seed;
+use crate::roads::map::itineraries;
+use crate::roads::network::Network;
+use crate::roads::read;
 use crate::sim::quantities::duration;
+use crate::sim::station::STATIONS;
 use crate::sim::vehicle::STEPS;
 use crate::sim::world;
 
@@ -22,6 +32,8 @@ pub struct ReplayOptions {
     pub log: Option<PathBuf>,
     /// The unit.
     pub config: Config,
+    /// Its way through intersections, if it has one.
+    pub itinerary: Option<&'static Itinerary>,
     /// The interface to replay; `None`: that of the first frame.
     pub interface: Option<Interface>,
     /// The output.
@@ -47,21 +59,23 @@ impl ReplayOptions {
     /// # Errors
     /// Impossible values, and an unusable scenario.
     pub fn read(arguments: ReplayArguments) -> Result<Self, Error> {
-        let ReplayArguments { log, bus, scenario, vehicle, station, base_id, period, step, interface, summary, json } =
+        let ReplayArguments { log, bus, scenario, vehicle, seed, station, base_id, period, step, interface, .. } =
             arguments;
-        let mut config = match (&scenario, vehicle) {
-            (None, None) => of_a_car(station, period, step)?,
-            (file, vehicle) => of_scenario(file.as_deref(), vehicle, step)?,
+        let overrides = Overrides { seed, step_s: step, ..Overrides::default() };
+        let (mut config, itinerary) = match (&scenario, vehicle) {
+            (None, None) => (of_a_car(station, period, step)?, None),
+            (None, vehicle) => (of_string(None, vehicle, &overrides)?, None),
+            (Some(named), vehicle) => of_scenario(named, vehicle, &overrides)?,
         };
         config.base_id = base_id::checked(base_id)?;
-        let output = match (bus, json, summary) {
+        let output = match (bus, arguments.json, arguments.summary) {
             (Some(bus), ..) => Output::Bus(bus),
             (None, true, _) => Output::Json,
             (None, false, true) => Output::Summary,
             (None, false, false) => Output::Frames,
         };
         let interface = interface.map(|name| self::interface(&name)).transpose()?;
-        Ok(Self { log: (log != Path::new("-")).then_some(log), config, interface, output })
+        Ok(Self { log: (log != Path::new("-")).then_some(log), config, itinerary, interface, output })
     }
 }
 
@@ -77,14 +91,44 @@ fn of_a_car(station: Option<u8>, period_s: Option<f64>, step_s: Option<f64>) -> 
     Ok(config)
 }
 
-fn of_scenario(file: Option<&Path>, vehicle: Option<usize>, step_s: Option<f64>) -> Result<Config, Error> {
-    let scenario = Scenario::read(file, &Overrides { step_s, ..Overrides::default() })?;
-    let vehicle = vehicle.unwrap_or(scenario.ego);
-    let last = scenario.vehicles.len() - 1;
-    if vehicle > last {
-        let remedy = format!("give an index from 0 to {last}");
-        return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
+fn of_scenario(
+    named: &Path,
+    vehicle: Option<usize>,
+    overrides: &Overrides,
+) -> Result<(Config, Option<&'static Itinerary>), Error> {
+    let (file, text) = library::text(named)?;
+    match library::kind(&file, &text)? {
+        library::Kind::String => Ok((of_string(Some(named), vehicle, overrides)?, None)),
+        library::Kind::Corridor => {
+            let (config, itinerary) = of_corridor(&read::corridor(&file, &text, overrides)?, vehicle)?;
+            Ok((config, Some(itinerary)))
+        }
     }
+}
+
+/// The unit of a vehicle in a corridor, and its way.
+fn of_corridor(corridor: &Corridor, vehicle: Option<usize>) -> Result<(Config, &'static Itinerary), Error> {
+    let network = Network::of(corridor);
+    let (trips, ego) = of_seed(corridor, corridor.seed);
+    let vehicle = vehicle.or(ego).ok_or_else(|| {
+        Error::new("no vehicle of this seed is the ego", "name one by --vehicle").in_option("--scenario")
+    })?;
+    exists("--vehicle", vehicle, trips.len())?;
+    // The numbers of the first vehicles are their indices. Later ones depend on the vehicles that are under way then.
+    if vehicle >= STATIONS {
+        let cause = format!("the station of vehicle {vehicle} is known in a run only");
+        return Err(Error::new(cause, format!("give an index below {STATIONS}")).in_option("--vehicle"));
+    }
+    let trip = &trips[vehicle];
+    let config = conditions::config(corridor, &Conditions::of(corridor), vehicle, trip.kind);
+    Ok((config, itineraries(&network)[trip.road]))
+}
+
+/// The unit of a vehicle in a string.
+fn of_string(file: Option<&Path>, vehicle: Option<usize>, overrides: &Overrides) -> Result<Config, Error> {
+    let scenario = Scenario::read(file, overrides)?;
+    let vehicle = vehicle.unwrap_or(scenario.ego);
+    exists("--vehicle", vehicle, scenario.vehicles.len())?;
     let config = world::config(&scenario, vehicle);
     config.check(STEPS).map_err(|cause| {
         Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")

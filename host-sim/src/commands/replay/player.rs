@@ -2,6 +2,7 @@
 
 use std::io;
 
+use holdover::coordination::{Itinerary, MapError};
 use holdover::time::{Duration, Instant};
 use holdover::{Config, ConfigError};
 
@@ -42,6 +43,15 @@ impl Player {
         let unit = Unit::new(config)?;
         let deaf = compares.then(|| unit.clone());
         Ok(Self { unit, deaf, timeline: Timeline::new(config.period), tally: Tally::new(config.base_id) })
+    }
+
+    /// Sets out on a way through intersections, before the first line.
+    ///
+    /// # Errors
+    /// An error of the map that the unit found.
+    pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
+        self.deaf.iter_mut().try_for_each(|deaf| deaf.set_out(itinerary))?;
+        self.unit.set_out(itinerary)
     }
 
     /// Counts of the frames so far.
@@ -108,5 +118,5 @@ impl Player {
 }
 
 pub(super) fn no_time() -> Error {
-    Error::new("the line has no time", "record with `candump -l` or `candump -t a`")
+    Error::new("the line has no time", "record with `candump -l`, or on the screen with -t a, z or d")
 }

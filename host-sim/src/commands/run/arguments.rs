@@ -1,5 +1,6 @@
 //! The arguments of `run`, as they are typed.
 
+use super::candump::Times;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -82,13 +83,18 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 
-    /// Write the frames on one vehicle's bus as a candump log
+    /// Write the frames on one vehicle's bus as a candump log. Of a corridor, that of the first seed as the scenario says
     #[arg(long, value_name = "FILE")]
     pub candump: Option<PathBuf>,
 
-    /// The vehicle of that bus; by default the ego
+    /// The vehicle of that bus; by default the ego. In a corridor vehicles are counted from 0 by their arrival
     #[arg(long, value_name = "INDEX", requires = "candump")]
     pub candump_vehicle: Option<usize>,
+
+    /// The times in that log [default: wire]. In the run frames take no time, and the units are given them when they are
+    /// sent
+    #[arg(long, value_name = "WHICH", requires = "candump")]
+    pub candump_times: Option<Times>,
 }
 
 /// Examples and further notes.
@@ -102,6 +108,8 @@ Examples:
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
   holdover-sim --envelope                with every unit's last gate engaged
+  holdover-sim run corridor --no-report --candump ego.log
+                                         the frames on the ego's bus
   holdover-sim evaluate --help           measure the estimate on recordings
 
 Output:

@@ -1,16 +1,12 @@
-//! The files of a run: its trace enters, a CSV of every tick and a candump log leave.
+//! The file of a run's trace: the trace enters, a CSV of every tick leaves.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-use holdover::time::Instant;
-
-use crate::bus::candump::LogWriter;
 use crate::error::Error;
 use crate::input::scenario::Scenario;
 use crate::measure::figures::{mode_name, papers};
-use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::world::Trace;
 
 /// Writes every tick of the measured vehicle as its follower estimates it, with the bound on the bus and the follower's
@@ -56,18 +52,4 @@ fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::
         )?;
     }
     Ok(())
-}
-
-/// Writes the frames of the logged bus, at the GNSS time of each frame.
-pub fn write_log(file: &Path, trace: &Trace) -> Result<(), Error> {
-    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
-    let out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
-    let Some(mut log) = LogWriter::new(out, "can0") else {
-        return Err(Error::new("the interface has no name", "report this").in_file(file));
-    };
-    for (at_s, frame) in &trace.log {
-        let at = Instant::from_micros(EPOCH_US.saturating_add_signed(micros(*at_s)));
-        log.write(at, frame).map_err(|error| unwritable(&error))?;
-    }
-    log.finish().map(|_| ()).map_err(|error| unwritable(&error))
 }

@@ -1,6 +1,7 @@
 //! `run`: checked options enter; a table or JSON on stdout, a report, a trace and a candump log leave; and the verdict.
 
 pub mod arguments;
+pub mod candump;
 mod files;
 pub mod options;
 mod page;
@@ -31,7 +32,7 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         files::write_trace(file, scenario, &trace)?;
     }
     if let Some(candump) = &options.candump {
-        files::write_log(&candump.file, &trace)?;
+        candump.write(&trace.log)?;
     }
     let text = table::text(scenario, &summary, &failures);
     let page = || page::report(options, &trace, &summary, &failures).render();

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::arguments::RunArguments;
+use super::candump::Candump;
 use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
@@ -21,17 +22,8 @@ pub struct RunOptions {
     pub destination: Destination,
     /// File for the trace of every tick.
     pub trace: Option<PathBuf>,
-    /// The bus to record.
+    /// The bus to log.
     pub candump: Option<Candump>,
-}
-
-/// A bus to record.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Candump {
-    /// The log.
-    pub file: PathBuf,
-    /// Index of the vehicle whose bus it is.
-    pub vehicle: usize,
 }
 
 impl RunOptions {
@@ -76,7 +68,8 @@ impl RunOptions {
                 taken.push(file);
             }
         }
-        let candump = settings.candump.map(|file| Candump { file, vehicle });
+        let times = settings.candump_times.unwrap_or_default();
+        let candump = settings.candump.map(|file| Candump { file, vehicle, times });
         Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
     }
 }

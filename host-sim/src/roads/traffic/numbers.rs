@@ -3,8 +3,7 @@
 //! A unit's bus has room for 255 stations, and a unit that hears two vehicles with one number takes them for one. So a
 //! number is used again only when its last vehicle has long vanished. While all numbers are in use, no vehicle appears.
 
-/// How many numbers there are.
-const NUMBERS: usize = 255;
+use crate::sim::station::STATIONS as NUMBERS;
 
 /// A number rests for this time after its vehicle has vanished, in seconds. By then no unit remembers that vehicle.
 const RESTS_S: f64 = 60.0;

@@ -1,0 +1,183 @@
+//! Times on a wire: frames enter with the instants at which their senders wanted to send them; the same frames leave with
+//! the instants at which they would have been whole on a classic CAN bus of 500 kbit/s.
+//!
+//! One frame is on the bus at a time. Of the frames that wait, the one with the dominant identifier is next; frames of one
+//! identifier stay in order. Every frame takes its own bits, with the stuff bits that its content and its CRC need, and
+//! three bits of intermission follow. Neither errors nor full mailboxes are modelled.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use embedded_can::{Frame as _, Id};
+use holdover::time::{Duration, Instant};
+
+use super::Frame;
+
+/// Time of a bit at 500 kbit/s, in µs.
+const BIT_US: u32 = 2;
+/// Delimiter of the CRC, acknowledgement with its delimiter, and end of frame. They are not stuffed.
+const TAIL_BITS: u32 = 1 + 2 + 7;
+/// Bits between two frames.
+const INTERMISSION_BITS: u32 = 3;
+/// Bits of the CRC, and its polynomial without the highest term.
+const CRC_BITS: u32 = 15;
+const CRC_POLYNOMIAL: u16 = 0x4599;
+/// After so many equal bits the opposite bit is stuffed.
+const EQUAL_BITS: u32 = 5;
+
+/// The frames in the order in which they are on the bus, each with the instant of its end. They may enter in any order.
+#[must_use]
+pub fn on_wire(mut wanted: Vec<(Instant, Frame)>) -> Vec<(Instant, Frame)> {
+    wanted.sort_by_key(|(at, _)| *at);
+    let mut sent = Vec::with_capacity(wanted.len());
+    let mut waiting = BinaryHeap::new();
+    let mut coming = wanted.iter().enumerate().peekable();
+    let mut free = Instant::from_micros(0);
+    loop {
+        if waiting.is_empty() {
+            let Some((_, (at, _))) = coming.peek() else { return sent };
+            free = free.max(*at);
+        }
+        while let Some((number, (_, frame))) = coming.next_if(|(_, (at, _))| *at <= free) {
+            waiting.push(Reverse((arbitration(frame), number)));
+        }
+        let Some(Reverse((_, number))) = waiting.pop() else { continue };
+        let frame = wanted[number].1;
+        let end = free.plus(length(&frame));
+        sent.push((end, frame));
+        free = end.plus(micros(INTERMISSION_BITS));
+    }
+}
+
+/// The time for which the frame is on the bus, from its first bit to the end of the end of frame.
+#[must_use]
+pub fn length(frame: &Frame) -> Duration {
+    micros(bits(frame))
+}
+
+fn micros(bits: u32) -> Duration {
+    Duration::from_micros(i64::from(bits * BIT_US))
+}
+
+/// The number of bits of a frame, stuff bits among them.
+fn bits(frame: &Frame) -> u32 {
+    let mut stuffing = Stuffing::default();
+    let dlc = frame.dlc() as u32;
+    let remote = u32::from(frame.is_remote_frame());
+    stuffing.put(0, 1); // start of frame
+    match frame.id() {
+        // Identifier, remote request, two dominant bits.
+        Id::Standard(id) => stuffing.put(u32::from(id.as_raw()) << 3 | remote << 2, 14),
+        Id::Extended(id) => {
+            stuffing.put((id.as_raw() >> 18) << 2 | 0b11, 13);
+            stuffing.put((id.as_raw() & 0x3_FFFF) << 3 | remote << 2, 21);
+        }
+    }
+    stuffing.put(dlc, 4);
+    frame.data().iter().for_each(|byte| stuffing.put(u32::from(*byte), 8));
+    stuffing.put(stuffing.crc.into(), CRC_BITS);
+    stuffing.bits + TAIL_BITS
+}
+
+/// The bits of a frame up to its CRC.
+#[derive(Default)]
+struct Stuffing {
+    /// Number of bits so far, with stuff bits.
+    bits: u32,
+    crc: u16,
+    /// The last bit, and the number of its equals up to it.
+    last: bool,
+    equal: u32,
+}
+
+impl Stuffing {
+    /// Puts the lowest `count` bits of `value`, the highest of them first.
+    fn put(&mut self, value: u32, count: u32) {
+        for place in (0..count).rev() {
+            let bit = value >> place & 1 == 1;
+            let divides = bit != (self.crc >> (CRC_BITS - 1) & 1 == 1);
+            self.crc = self.crc << 1 & 0x7FFF ^ if divides { CRC_POLYNOMIAL } else { 0 };
+            self.put_bit(bit);
+            if self.equal == EQUAL_BITS {
+                self.put_bit(!bit);
+            }
+        }
+    }
+
+    fn put_bit(&mut self, bit: bool) {
+        self.equal = if self.bits > 0 && bit == self.last { self.equal + 1 } else { 1 };
+        self.last = bit;
+        self.bits += 1;
+    }
+}
+
+/// The bits by which a frame wins the bus; the lower number wins.
+fn arbitration(frame: &Frame) -> u32 {
+    let remote = u32::from(frame.is_remote_frame());
+    match frame.id() {
+        Id::Standard(id) => u32::from(id.as_raw()) << 21 | remote << 20,
+        Id::Extended(id) => {
+            let id = id.as_raw();
+            (id >> 18) << 21 | 0b11 << 19 | (id & 0x3_FFFF) << 1 | remote
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use embedded_can::StandardId;
+
+    fn at(micros: u64) -> Instant {
+        Instant::from_micros(micros)
+    }
+
+    fn frame(id: u16) -> Frame {
+        Frame::standard(id, &[0x55]).unwrap()
+    }
+
+    #[test]
+    fn a_frame_has_the_bits_that_can_utils_count() {
+        let standard = |id: u16, data: &[u8]| bits(&Frame::standard(id, data).unwrap());
+        let extended = |id: u32, data: &[u8]| bits(&Frame::extended(id, data).unwrap());
+        assert_eq!(standard(0x123, &[]), 45);
+        assert_eq!(standard(0, &[]), 50);
+        assert_eq!(standard(0x7FF, &[0; 8]), 123);
+        assert_eq!(standard(0x480, &[0x3C; 8]), 126);
+        assert_eq!(standard(0x482, &[0, 1, 2, 3, 4, 5, 6, 7]), 118);
+        assert_eq!(standard(0x555, &[0x55; 8]), 109);
+        assert_eq!(extended(0x1234_5678, &[1, 2, 3]), 92);
+        assert_eq!(extended(0, &[0; 8]), 147);
+        assert_eq!(extended(0x1FFF_FFFF, &[0xFF; 8]), 146);
+    }
+
+    #[test]
+    fn of_the_frames_that_wait_the_dominant_identifier_is_next_and_equals_stay_in_order() {
+        let (first, second) = (Frame::standard(5, &[1]).unwrap(), Frame::standard(5, &[2]).unwrap());
+        let wanted = vec![(at(0), frame(9)), (at(1), frame(7)), (at(2), first), (at(3), second), (at(9000), frame(1))];
+        let sent = on_wire(wanted);
+        let order: Vec<Frame> = sent.iter().map(|(_, frame)| *frame).collect();
+        assert_eq!(order, [frame(9), first, second, frame(7), frame(1)]);
+        assert_eq!(sent[0].0, at(0).plus(length(&frame(9))));
+        assert_eq!(sent[1].0, sent[0].0.plus(micros(3)).plus(length(&first)));
+        assert_eq!(sent[4].0, at(9000).plus(length(&frame(1))));
+    }
+
+    #[test]
+    fn a_data_frame_wins_over_its_remote_frame_and_a_standard_one_over_an_extended_one() {
+        let id = StandardId::new(0x123).unwrap();
+        let data = Frame::standard(0x123, &[]).unwrap();
+        let remote = Frame::new_remote(id, 0).unwrap();
+        let long = Frame::extended(0x123 << 18, &[]).unwrap();
+        let higher = Frame::standard(0x124, &[]).unwrap();
+        let order = [data, remote, long, higher];
+        assert!(order.is_sorted_by_key(arbitration));
+        let mut sent = on_wire(order.iter().rev().map(|frame| (at(0), *frame)).collect());
+        assert_eq!(sent.drain(..).map(|(_, frame)| frame).collect::<Vec<_>>(), order);
+    }
+
+    #[test]
+    fn an_empty_bus_stays_empty() {
+        assert_eq!(on_wire(Vec::new()), []);
+    }
+}
