@@ -114,7 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Cause> {
         let link = &self.config.link;
-        let seat = self.seat(at, index, holder, motion.station)?;
+        let mut seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
         let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
         let own = own.filter(|_| !seat.is_of_another);
@@ -131,9 +131,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             (sample, self.judge(track, &sample, &placed))
         });
         let is_new = holder != Some(motion.station);
-        if is_new && self.is_in_another_slot(at, index, motion.station, sample.as_ref().map(|(sample, _)| sample)) {
+        let said = sample.as_ref().map(|(sample, _)| sample);
+        if is_new && self.is_in_another_slot(at, index, motion.station, said) {
             return Err(Cause::StationConflict);
         }
+        // A silent station does not move here if this is certain to be another vehicle: its place would be forgotten.
+        seat.left = seat.left.filter(|left| !self.is_namesake(*left, said));
         if seat.is_renamed
             && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
         {
@@ -191,15 +194,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Whether a station of this name is heard in another slot, and is not certain to be another vehicle: a station speaks in one
     /// slot at a time. It is another vehicle if the motion is not where that one can be.
     fn is_in_another_slot(&self, at: Instant, index: usize, station: StationHash, sample: Option<&Sample>) -> bool {
-        let is_namesake = |other: usize| {
-            let bound = sample.zip(self.bound_at(other, sample));
-            bound.is_some_and(|(sample, bound)| {
-                let off = sample.position_error();
-                sample.position.ahead(off) < bound.lowest_position()
-                    || sample.position.ahead(off.negated()) > bound.highest_position()
-            })
-        };
-        self.peers.named(station).any(|other| other != index && self.is_heard(at, other) && !is_namesake(other))
+        self.peers.named(station).any(|other| other != index && self.is_heard(at, other) && !self.is_namesake(other, sample))
+    }
+
+    /// Whether a motion is certain not to be of the vehicle in another slot.
+    fn is_namesake(&self, other: usize, sample: Option<&Sample>) -> bool {
+        let bound = sample.zip(self.bound_at(other, sample));
+        bound.is_some_and(|(sample, bound)| {
+            let off = sample.position_error();
+            sample.position.ahead(off) < bound.lowest_position()
+                || sample.position.ahead(off.negated()) > bound.highest_position()
+        })
     }
 
     fn bound_at(&self, index: usize, sample: Option<&Sample>) -> Option<Bound> {

@@ -31,6 +31,16 @@ pub(in crate::unit) enum Named {
     Displaced(Displaced),
 }
 
+impl Named {
+    /// The slot of the vehicle, while it has one.
+    pub fn slot(&self) -> Option<usize> {
+        match self {
+            Self::InSlot(slot) => Some(usize::from(*slot)),
+            Self::Nobody | Self::Displaced(_) => None,
+        }
+    }
+}
+
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Notes the vehicle that the driver has put ahead.
     pub fn note_named(&mut self, target: Option<usize>) {
