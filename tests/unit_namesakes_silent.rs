@@ -77,3 +77,35 @@ fn a_station_that_moves_to_another_slot_is_followed_there() {
     let estimate = road.step().answer.estimate.expect("there is a target");
     assert!((m_of(estimate.reading.position) - road.target.position).abs() < 1.0);
 }
+
+/// Another station's motion in the target's slot.
+fn take_its_slot(road: &mut Road, place: f64) {
+    let now = road.now;
+    let motion = road.rig.motion(holdover::wire::StationHash(9), now, place, 15.0, 0.0, 0.0, Some((0.05, 0.02)));
+    let _ = road.rig.target(now, Said::Motion(motion));
+}
+
+#[test]
+fn a_namesake_does_not_stand_for_the_vehicle_ahead_that_has_lost_its_slot() {
+    for apart in [60.0, 120.0] {
+        let mut road = road();
+        let mut namesake = Body { position: road.target.position + apart, speed: 15.0 };
+        let mut other = road.target.position - 300.0;
+        road.senses = DEAF;
+        road.acceleration = -3.0;
+        let mut least = road.gap();
+        for period in 0..2_000u32 {
+            if period % 10 == 0 {
+                speak(&mut road, &namesake);
+                if period > 250 {
+                    take_its_slot(&mut road, other);
+                }
+            }
+            road.step();
+            namesake = namesake.after(0.0, 0.01);
+            other += 0.15;
+            least = least.min(road.gap());
+        }
+        assert!(least > 0.0, "{apart}: {least}");
+    }
+}
