@@ -220,6 +220,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
         let ego = self.ego.as_ref();
         let nearest = self.peers.predecessor(station, ego.map(|ego| ego.position))?;
+        if self.named.is_not_in(nearest, station) {
+            return None;
+        }
         let held = self.named.slot().filter(|slot| self.peers.named(station).any(|index| index == *slot));
         let Some((held, ego)) = held.filter(|held| *held != nearest).zip(ego) else { return Some(nearest) };
         let bounds = self.bound(held, ego.at).zip(self.bound(nearest, ego.at));
