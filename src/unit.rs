@@ -175,6 +175,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
         let last = self.controller.last_demand();
         coordinate::review(&mut self.scene, now, last, &mut self.health);
+        self.scene.note_others(now);
         let target = self.scene.target();
         self.scene.note_named(target);
         let (before, reading) = self.update(now, target);

@@ -44,6 +44,8 @@ pub enum Course {
     Caution {
         /// As in `Cruise`.
         ahead: Option<Reading>,
+        /// Since when the braking has grown, if that was before the course became caution.
+        since: Option<Instant>,
     },
     /// Braking as hard as is normal.
     Brake,
@@ -135,8 +137,8 @@ impl Controller {
             }
             (Course::Law { driver, target, cap }, Some(ego)) => self.by_law(config, driver, ego, *target, *cap),
             (Course::Cruise { ahead, target_speed }, Some(ego)) => self.cruise(config, ego, ahead, *target_speed),
-            (Course::Caution { ahead }, ego) => {
-                let since = *self.caution.get_or_insert(now);
+            (Course::Caution { ahead, since }, ego) => {
+                let since = *self.caution.get_or_insert(since.unwrap_or(now));
                 let slowing = slowing(config, now.since(since));
                 let behind = ego.zip(*ahead).map(|(ego, ahead)| behind(config, ego, &ahead));
                 self.slewed(config, behind.map_or(slowing, |behind| behind.min(slowing)))

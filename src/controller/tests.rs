@@ -95,7 +95,7 @@ fn every_course_of_its_own_keeps_to_the_limits_on_acceleration_and_jerk() {
         follows(&config, 1_000, 0),
         Course::Cruise { ahead: wall, target_speed: Speed::from_mm_per_s(60_000) },
         Course::Cruise { ahead: far, target_speed: Speed::from_mm_per_s(60_000) },
-        Course::Caution { ahead: None },
+        Course::Caution { ahead: None, since: None },
         Course::Brake,
     ];
     let limits = config.limits;
@@ -128,7 +128,7 @@ fn beyond_its_speed_limit_it_does_not_accelerate() {
 fn in_caution_the_braking_grows_by_half_a_metre_per_second_squared_every_second() {
     let config = config();
     for (periods, expected) in [(1, 0), (101, -500), (401, -2_000), (801, -4_000), (2_000, -4_000)] {
-        assert_eq!(mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None })), expected);
+        assert_eq!(mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None, since: None })), expected);
     }
 }
 

@@ -67,7 +67,7 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
         }
         Mode::Fallback { .. } => match still_known(scene, now, target) {
             Some(ahead) => Course::Cruise { ahead, target_speed: scene.target_speed() },
-            None => Course::Caution { ahead: None },
+            None => Course::Caution { ahead: None, since: None },
         },
         Mode::Fault { .. } => Course::Brake,
     }
@@ -101,7 +101,7 @@ fn hand_back<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let is_driven_by = |index: &usize| scene.is_in_reach(*index, now) && !scene.is_contradicted(*index, now);
     match target.filter(is_driven_by) {
         Some(index) => by_law(scene, now, Some(index), gains, ego, slowing(&scene.config, now.since(since))),
-        None => Course::Caution { ahead: still_known(scene, now, target) },
+        None => Course::Caution { ahead: still_known(scene, now, target), since: Some(since) },
     }
 }
 

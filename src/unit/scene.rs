@@ -210,12 +210,27 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         station.map_or(Predecessor::None, Predecessor::Station)
     }
 
-    /// The slot of the vehicle that the ego is to follow.
+    /// The slot of the vehicle that the ego is to follow. Of several with the name that the driver says, it is the nearest ahead when it
+    /// is named. After that another one takes its place only where it is certain to be between: the last place of a silent vehicle is
+    /// soon behind the ego, and says nothing of which one is nearer.
     pub fn target(&self) -> Option<usize> {
-        match self.predecessor() {
-            Predecessor::Station(station) => self.peers.predecessor(station, self.ego.as_ref().map(|ego| ego.position)),
-            Predecessor::None | Predecessor::Unknown => None,
+        let Predecessor::Station(station) = self.predecessor() else { return None };
+        if self.is_decided_by_order() {
+            return self.coordination.choice().target.map(usize::from);
         }
+        let ego = self.ego.as_ref();
+        let nearest = self.peers.predecessor(station, ego.map(|ego| ego.position))?;
+        if self.named.is_not_in(nearest, station) {
+            return None;
+        }
+        let held = self.named.slot().filter(|slot| self.peers.named(station).any(|index| index == *slot));
+        let Some((held, ego)) = held.filter(|held| *held != nearest).zip(ego) else { return Some(nearest) };
+        let bounds = self.bound(held, ego.at).zip(self.bound(nearest, ego.at));
+        let is_replaced = bounds.is_none_or(|(held, nearest)| {
+            let is_between = nearest.highest_position() < held.lowest_position();
+            held.highest_position() < ego.position || is_between && nearest.lowest_position() > ego.position
+        });
+        Some(if is_replaced { nearest } else { held })
     }
 
     /// The slot of the vehicle ahead that a sensor would see.

@@ -87,6 +87,8 @@ pub struct Driver {
     pub says_route: bool,
     /// Whether it is told the time.
     pub is_timed: bool,
+    /// Whether its driver's request comes.
+    pub asks: bool,
     pub last: Option<Heard>,
 }
 
@@ -111,6 +113,7 @@ impl Driver {
             hears: true,
             says_route: true,
             is_timed: true,
+            asks: true,
             last: None,
         }
     }
@@ -183,7 +186,9 @@ impl Junction {
                     target_speed: mps(driver.target_speed),
                     time_gap: None,
                 };
-                let _ = driver.rig.put(now, &Message::DriverRequest(request));
+                if driver.asks {
+                    let _ = driver.rig.put(now, &Message::DriverRequest(request));
+                }
             }
             if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);

@@ -8,7 +8,7 @@
 //! and whether it can be.
 
 use super::Scene;
-use crate::coordination::Axis;
+use crate::coordination::{Axis, PeerApproach};
 use crate::health::{Cause, Health};
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::{REACH, SHORTEST};
@@ -114,7 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Cause> {
         let link = &self.config.link;
-        let seat = self.seat(at, index, holder, motion.station)?;
+        let mut seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
         let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
         let own = own.filter(|_| !seat.is_of_another);
@@ -131,8 +131,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             (sample, self.judge(track, &sample, &placed))
         });
         let is_new = holder != Some(motion.station);
-        if is_new && self.is_in_another_slot(at, index, motion.station, sample.as_ref().map(|(sample, _)| sample)) {
-            return Err(Cause::StationConflict);
+        // A motion without a place changes nothing of what is held, and the place that would tell two vehicles apart comes after it.
+        if let Some((sample, _)) = sample.as_ref().filter(|_| is_new) {
+            let approach = placed.axis.as_ref().and_then(Axis::standing);
+            let is_namesake = |other: &usize| self.is_namesake(*other, sample, approach);
+            if self.is_in_another_slot(at, index, motion.station, is_namesake) {
+                return Err(Cause::StationConflict);
+            }
+            // A silent station does not move here if this is certain to be another vehicle: its place would be forgotten.
+            seat.left = seat.left.filter(|left| !is_namesake(left));
+        } else {
+            seat.left = None;
         }
         if seat.is_renamed
             && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
@@ -189,22 +198,35 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Whether a station of this name is heard in another slot, and is not certain to be another vehicle: a station speaks in one
-    /// slot at a time. It is another vehicle if the motion is not where that one can be.
-    fn is_in_another_slot(&self, at: Instant, index: usize, station: StationHash, sample: Option<&Sample>) -> bool {
-        let is_namesake = |other: usize| {
-            let bound = sample.zip(self.bound_at(other, sample));
-            bound.is_some_and(|(sample, bound)| {
-                let off = sample.position_error();
-                sample.position.ahead(off) < bound.lowest_position()
-                    || sample.position.ahead(off.negated()) > bound.highest_position()
-            })
-        };
-        self.peers.named(station).any(|other| other != index && self.is_heard(at, other) && !is_namesake(other))
+    /// slot at a time.
+    fn is_in_another_slot(
+        &self,
+        at: Instant,
+        index: usize,
+        station: StationHash,
+        is_namesake: impl Fn(&usize) -> bool,
+    ) -> bool {
+        self.peers.named(station).any(|other| other != index && self.is_heard(at, other) && !is_namesake(&other))
     }
 
-    fn bound_at(&self, index: usize, sample: Option<&Sample>) -> Option<Bound> {
-        let track = self.peers.get(index)?;
-        Some(track.certainty().bound()?.after(sample?.at, &track.reach()))
+    /// Whether a motion is certain not to be of the vehicle in another slot: it is not where that one can be, or comes to the same
+    /// crossing by another leg. Places on different legs are not to be compared.
+    fn is_namesake(&self, other: usize, sample: &Sample, approach: Option<&PeerApproach>) -> bool {
+        let held = self.coordination.itinerary().and_then(|_| self.coordination.standing(other));
+        let is_by_another_leg = |(one, other): (&PeerApproach, &PeerApproach)| {
+            one.crossing == other.crossing && one.leg != other.leg
+        };
+        if approach.zip(held).is_some_and(is_by_another_leg) {
+            return true;
+        }
+        let bound = self.peers.get(other).and_then(|track| {
+            Some(track.certainty().bound()?.after(sample.at, &track.reach()))
+        });
+        bound.is_some_and(|bound| {
+            let off = sample.position_error();
+            sample.position.ahead(off) < bound.lowest_position()
+                || sample.position.ahead(off.negated()) > bound.highest_position()
+        })
     }
 
     /// A motion on the ego's axis.

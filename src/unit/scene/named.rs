@@ -5,15 +5,19 @@
 //! minded until the new one is heard, or until the driver says that no vehicle is ahead.
 
 use super::Scene;
+use crate::coordination::Slots;
 use crate::envelope::Obstacle;
 use crate::model::bound::{AccelerationRange, Bound};
 use crate::time::Instant;
 use crate::units::Distance;
-use crate::wire::Predecessor;
+use crate::wire::{Predecessor, StationHash};
 
 /// What is certain of a vehicle that does not have a slot any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::unit) struct Displaced {
+    station: StationHash,
+    /// The slots of vehicles with the same name that were certain to be other ones at some time since.
+    others: Slots,
     bound: Bound,
     reach: AccelerationRange,
     length: Distance,
@@ -31,6 +35,21 @@ pub(in crate::unit) enum Named {
     Displaced(Displaced),
 }
 
+impl Named {
+    /// The slot of the vehicle, while it has one.
+    pub fn slot(&self) -> Option<usize> {
+        match self {
+            Self::InSlot(slot) => Some(usize::from(*slot)),
+            Self::Nobody | Self::Displaced(_) => None,
+        }
+    }
+
+    /// Whether the vehicle has lost its slot, and the vehicle with this name in a slot is certain to be another one.
+    pub fn is_not_in(&self, slot: usize, station: StationHash) -> bool {
+        matches!(self, Self::Displaced(held) if held.station == station && held.others.contains(slot))
+    }
+}
+
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Notes the vehicle that the driver has put ahead.
     pub fn note_named(&mut self, target: Option<usize>) {
@@ -41,13 +60,30 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
+    /// Notes which vehicles with the name of a vehicle without a slot are certain to be other ones now. Later what is certain of that
+    /// one may reach as far as they are.
+    pub fn note_others(&mut self, now: Instant) {
+        let Named::Displaced(mut displaced) = self.named else { return };
+        let held = displaced.bound.after(now, &displaced.reach);
+        for index in self.peers.named(displaced.station) {
+            let is_another = |bound: Bound| {
+                bound.highest_position() < held.lowest_position() || bound.lowest_position() > held.highest_position()
+            };
+            if self.bound(index, now).is_some_and(is_another) {
+                displaced.others.set(index, true);
+            }
+        }
+        self.named = Named::Displaced(displaced);
+    }
+
     /// Keeps what is certain of the vehicle that the driver has put ahead, when it loses its slot: the vehicle is still there.
     pub(super) fn displace(&mut self, index: usize) {
         if !matches!(self.named, Named::InSlot(slot) if usize::from(slot) == index) {
             return;
         }
         let certain = self.peers.get(index).and_then(|track| {
-            Some(Displaced { bound: *track.certainty().bound()?, reach: track.reach(), length: track.length() })
+            let (station, bound) = (track.station()?, *track.certainty().bound()?);
+            Some(Displaced { station, others: Slots::NONE, bound, reach: track.reach(), length: track.length() })
         });
         self.named = certain.map_or(Named::Nobody, Named::Displaced);
     }
@@ -60,7 +96,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 let index = usize::from(*slot);
                 if self.is_seen_past(index, now) { None } else { self.obstacle(now, index) }
             }
-            Named::Displaced(Displaced { bound, reach, length }) => {
+            Named::Displaced(Displaced { bound, reach, length, .. }) => {
                 Some(Obstacle::rear(&bound.after(now, reach), *length, reach))
             }
         }
