@@ -58,9 +58,9 @@ fn the_report_can_be_put_elsewhere_or_left_out() {
 fn the_bus_recorded_is_the_egos_unless_said_otherwise() {
     let candump = |arguments| options(arguments).unwrap().candump;
     let of = |vehicle, times| Some(Candump { file: "bus.log".into(), vehicle, times });
-    assert_eq!(candump("--candump bus.log"), of(2, Times::Wire));
-    assert_eq!(candump("--candump bus.log --candump-vehicle 0"), of(0, Times::Wire));
-    assert_eq!(candump("--candump bus.log --candump-times sent"), of(2, Times::Sent));
+    assert_eq!(candump("--candump bus.log"), of(2, Times::Sent));
+    assert_eq!(candump("--candump bus.log --candump-vehicle 0"), of(0, Times::Sent));
+    assert_eq!(candump("--candump bus.log --candump-times wire"), of(2, Times::Wire));
     assert!(options("--candump-vehicle 1").is_err());
     assert!(options("--candump-times wire").is_err());
 }

@@ -21,13 +21,8 @@ fn name(file: &Path) -> &str {
 /// The bus of that vehicle in a run, with the run's own times.
 fn record(folder: &Path, vehicle: &str, arguments: &[&str]) -> String {
     let log = folder.join("bus.log");
-    let ran = holdover_sim(
-        &[
-            arguments,
-            &["--no-report", "--candump", name(&log), "--candump-vehicle", vehicle, "--candump-times", "sent"],
-        ]
-        .concat(),
-    );
+    let ran =
+        holdover_sim(&[arguments, &["--no-report", "--candump", name(&log), "--candump-vehicle", vehicle]].concat());
     assert!(ran.status.code().is_some_and(|code| code <= 1), "{}", text(ran.stderr));
     std::fs::read_to_string(log).unwrap()
 }

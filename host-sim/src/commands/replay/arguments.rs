@@ -66,9 +66,7 @@ Examples:
   holdover-sim replay drive.log --summary    what it would have made of the traffic
   candump -L can0 | holdover-sim replay - --base-id 0x500 --station 7
   holdover-sim --candump ego.log && holdover-sim replay ego.log --vehicle 2
-                                             the ego's unit on the bus of a run
-  holdover-sim --candump ego.log --candump-times sent
-                                             for that unit bit for bit once more
+                                             the ego's unit of a run once more
   holdover-sim run corridor --no-report --candump ego.log
   holdover-sim replay ego.log --scenario corridor
                                              a unit that crosses intersections
@@ -79,10 +77,9 @@ Logs:
   -t z by the first 100 lines. Logs of other tools (.asc, .blf, .trc, .mf4) are
   refused by name; python-can converts them:
   python -m can.logconvert IN.blf OUT.log
-  The times of a log that `run --candump` writes are those of a wire: frames end
-  one after the other, so that some are a tick later than in the run. With
-  --candump-times sent they are those of the run, and the unit sends the same
-  bits.
+  By a log that `run --candump` writes a unit sends the same bits as in the run.
+  With --candump-times wire its frames end one after the other, as on a wire,
+  so that some are a tick later than in the run.
 
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first

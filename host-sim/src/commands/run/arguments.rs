@@ -91,7 +91,7 @@ pub struct RunSettings {
     #[arg(long, value_name = "INDEX", requires = "candump")]
     pub candump_vehicle: Option<usize>,
 
-    /// The times in that log [default: wire]. In the run frames take no time, and the units are given them when they are
+    /// The times in that log [default: sent]. In the run frames take no time, and the units are given them when they are
     /// sent
     #[arg(long, value_name = "WHICH", requires = "candump")]
     pub candump_times: Option<Times>,

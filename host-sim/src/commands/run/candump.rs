@@ -18,9 +18,9 @@ use crate::sim::time::{EPOCH_US, micros};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Times {
     /// The end of each frame on a bus of 500 kbit/s, one frame after the other
-    #[default]
     Wire,
     /// The instant of sending: a simulated node receives a frame in the same instant
+    #[default]
     Sent,
 }
 
