@@ -28,7 +28,8 @@ fn drive(envelope: bool, mute: usize, lost: f64, back: f64) -> (f64, bool, f64) 
         for (front, rear) in [(0, 1), (2, 3)] {
             least = least.min(junction.drivers[front].body.position - LENGTH - junction.drivers[rear].body.position);
         }
-        both |= (0..2).any(|one| (2..4).any(|other| is_inside(&junction.drivers[one]) && is_inside(&junction.drivers[other])));
+        both |= (0..2)
+            .any(|one| (2..4).any(|other| is_inside(&junction.drivers[one]) && is_inside(&junction.drivers[other])));
     });
     let last = junction.drivers.iter().map(|driver| driver.body.position).fold(f64::MAX, f64::min);
     (least, both, last)

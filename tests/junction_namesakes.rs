@@ -14,8 +14,7 @@ fn is_inside(driver: &Driver) -> bool {
 /// least position at the end.
 fn drive(envelope: bool, stations: [u8; 4], starts: [f64; 4], mute: Option<(usize, f64)>) -> (f64, bool, f64) {
     let way = |index: usize| index / 2;
-    let drivers =
-        (0..4).map(|index| Driver::new(stations[index], way(index), starts[index], 12.0, envelope)).collect();
+    let drivers = (0..4).map(|index| Driver::new(stations[index], way(index), starts[index], 12.0, envelope)).collect();
     let mut junction = Junction::new(drivers);
     let (mut least, mut both) = (f64::MAX, false);
     junction.run(80.0, |junction| {

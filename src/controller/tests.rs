@@ -128,7 +128,10 @@ fn beyond_its_speed_limit_it_does_not_accelerate() {
 fn in_caution_the_braking_grows_by_half_a_metre_per_second_squared_every_second() {
     let config = config();
     for (periods, expected) in [(1, 0), (101, -500), (401, -2_000), (801, -4_000), (2_000, -4_000)] {
-        assert_eq!(mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None, since: None })), expected);
+        assert_eq!(
+            mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None, since: None })),
+            expected
+        );
     }
 }
 

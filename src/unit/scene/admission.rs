@@ -213,15 +213,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// crossing by another leg. Places on different legs are not to be compared.
     fn is_namesake(&self, other: usize, sample: &Sample, approach: Option<&PeerApproach>) -> bool {
         let held = self.coordination.itinerary().and_then(|_| self.coordination.standing(other));
-        let is_by_another_leg = |(one, other): (&PeerApproach, &PeerApproach)| {
-            one.crossing == other.crossing && one.leg != other.leg
-        };
+        let is_by_another_leg =
+            |(one, other): (&PeerApproach, &PeerApproach)| one.crossing == other.crossing && one.leg != other.leg;
         if approach.zip(held).is_some_and(is_by_another_leg) {
             return true;
         }
-        let bound = self.peers.get(other).and_then(|track| {
-            Some(track.certainty().bound()?.after(sample.at, &track.reach()))
-        });
+        let bound =
+            self.peers.get(other).and_then(|track| Some(track.certainty().bound()?.after(sample.at, &track.reach())));
         bound.is_some_and(|bound| {
             let off = sample.position_error();
             sample.position.ahead(off) < bound.lowest_position()
