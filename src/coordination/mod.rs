@@ -206,6 +206,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         }
     }
 
+    /// The leg by which the ego comes to its next crossing.
+    #[must_use]
+    pub fn leg(&self) -> u8 {
+        self.crossing().map_or(0, |crossing| crossing.leg)
+    }
+
     /// Where a crossing point of the ego's way lies on the ego's axis.
     #[must_use]
     pub fn crossing_point(&self, crossing: &Crossing) -> Option<Position> {

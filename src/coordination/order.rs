@@ -3,7 +3,7 @@
 //!
 //! Every station tells when it arrived, and which station it takes to be just ahead of it (its *claim*). Each station tells its own
 //! arrival. So all stations that heard the same stations agree, whenever they heard them. Equal arrivals are decided by the number of the
-//! station. The ego yields to a station that does not say when it arrived.
+//! station, and between stations of the same number by the number of the leg. The ego yields to a station that does not say when it arrived.
 //!
 //! Stations that heard different stations do not agree, and their claims show it. Take a station that arrived later than the ego. If it
 //! claims no station, or one that is before the ego, it has not heard of the ego and heads for the ego's place. If it claims a station
@@ -64,6 +64,8 @@ pub struct Entry {
     pub arrival: Option<Arrival>,
     /// The station that it takes to be just ahead of it.
     pub claim: Predecessor,
+    /// The leg by which it comes, which decides where two stations have the same name and arrival.
+    pub leg: u8,
 }
 
 impl Entry {
@@ -76,7 +78,7 @@ impl Entry {
             (Some(_), None) => Ordering::Greater,
             (None, None) => Ordering::Equal,
         };
-        by_arrival.then(self.station.0.cmp(&other.station.0)) == Ordering::Less
+        by_arrival.then(self.station.0.cmp(&other.station.0)).then(self.leg.cmp(&other.leg)) == Ordering::Less
     }
 
     fn claims(&self, other: &Self) -> bool {

@@ -16,7 +16,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
             _ => now.plus(REVIEW),
         });
         let Some(registration) = self.registration.get() else { return false };
-        let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim() };
+        let ego = Entry { station: own, arrival: Some(registration.arrival), claim: self.claim(), leg: self.leg() };
         // No vehicle passes another on the same leg. So a vehicle that is behind the ego on its leg yields to every vehicle that the ego
         // yields to, whatever it has heard. A vehicle that is ahead on the leg takes the ego along. Otherwise three vehicles could wait
         // for one another, two by the order and two on the leg.

@@ -30,7 +30,7 @@ static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
 
 fn entry(station: u8, arrival: u32, claim: Option<u8>) -> Entry {
     let claim = claim.map_or(Predecessor::None, |station| Predecessor::Station(StationHash(station)));
-    Entry { station: StationHash(station), arrival: Some(Arrival(arrival)), claim }
+    Entry { station: StationHash(station), arrival: Some(Arrival(arrival)), claim, leg: 0 }
 }
 
 #[test]

@@ -133,6 +133,7 @@ fn is_ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     entry: &Entry,
 ) -> bool {
     let arrival = scene.coordination.registration().map(|registration| registration.arrival);
-    let own = Entry { station: scene.config.station, arrival, claim: scene.coordination.claim() };
+    let (claim, leg) = (scene.coordination.claim(), scene.coordination.leg());
+    let own = Entry { station: scene.config.station, arrival, claim, leg };
     scene.coordination.choice().ahead.contains(index) && entry.is_before(&own)
 }

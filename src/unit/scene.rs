@@ -279,7 +279,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// The entry of a peer in the order.
     pub fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
-        Some(Entry { station, arrival: standing.arrival, claim: standing.claim })
+        Some(Entry { station, arrival: standing.arrival, claim: standing.claim, leg: standing.leg })
     }
 
     /// The standstill distance behind the vehicle that the ego follows.
