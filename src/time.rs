@@ -122,14 +122,6 @@ impl Instant {
         if self.0 < 0 { 0 } else { self.0 as u64 }
     }
 
-    /// Milliseconds since the clock's start, rounded down, modulo 1024.
-    #[must_use]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 bits of what is not negative
-    pub const fn millis(self) -> u16 {
-        let micros = if self.0 < 0 { 0 } else { self.0 };
-        (quotient(micros, 1000) & 1023) as u16
-    }
-
     /// That much later (earlier if negative), saturating.
     #[must_use]
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]

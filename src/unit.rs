@@ -264,7 +264,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let effort = self.dynamics.effort(&self.scene.config, ego, is_driving, acceleration);
         let stands = ego.is_some_and(|ego| ego.speed <= Speed::ZERO);
         let hold = is_driving && stands && acceleration <= Acceleration::ZERO;
-        let (mode, tick, time_ms) = (self.mode.code(), self.outbox.next_tick(), now.millis());
+        let (mode, tick) = (self.mode.code(), self.outbox.next_tick());
+        // Since the first tick, so that it does not matter where the clock began.
+        let since = now.since(self.scene.estimator.grid().origin);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 bits
+        let time_ms = (since.as_millis() & 1023) as u16;
         Command { acceleration, effort, mode, limited, tick, hold, time_ms }
     }
 

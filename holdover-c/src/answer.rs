@@ -78,7 +78,7 @@ pub struct Command {
     pub tick: u8,
     /// 1: the brakes are to hold the vehicle, which stands; else 0.
     pub hold: u8,
-    /// The unit's clock at the tick in ms; modulo 1024.
+    /// Time since the first tick in ms; modulo 1024.
     pub time_ms: u16,
 }
 

@@ -60,7 +60,7 @@ macro_rules! meaning {
     (micros) => { "What to add to TimeSync.Seconds to get the GNSS time at which the TimeSync with this Sequence was on the bus." };
     (command_acceleration) => { "Demanded acceleration; braking is negative. Not to be used in Mode standby." };
     (hold) => { "Asks the brakes to hold the vehicle: it stands and is to go on standing." };
-    (time) => { "The unit's own clock when it made the command, modulo 1.024 s: frames that waited on their way are as far apart by it as they were made." };
+    (time) => { "Time from the unit's first period to this one by its own clock, modulo 1.024 s: frames that waited on their way are as far apart by it as they were made." };
     (control) => { "Whether the actuators take the unit's commands. Off and failed make the unit stand by (Detail actuators not ready)." };
     (accelerator) => { "Whether the driver presses the accelerator pedal: the unit stands by for as long (Detail driver accelerates)." };
     (brake) => { "Whether the driver presses the brake pedal: the unit stands by at once (Detail driver brakes), and until DriverRequest.Engaged was 0 once." };
