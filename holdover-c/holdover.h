@@ -445,7 +445,7 @@ typedef struct holdover_command_t {
   uint8_t tick;
   // 1: the brakes are to hold the vehicle, which stands; else 0.
   uint8_t hold;
-  // The unit's clock at the tick in ms; modulo 1024.
+  // Time since the first tick in ms; modulo 1024.
   uint16_t time_ms;
 } holdover_command_t;
 
