@@ -47,7 +47,8 @@ impl Display for Dbc {
         }
         f.write_str(NOTES)?;
         for (line, _, id) in self.messages() {
-            writeln!(f, "CM_ BO_ {id} \"{}\";", line.comment)?;
+            let gap = if line.tied.is_empty() || line.comment.is_empty() { "" } else { " " };
+            writeln!(f, "CM_ BO_ {id} \"{}{gap}{}\";", line.tied, line.comment)?;
             writeln!(f, "CM_ SG_ {id} Crc \"{}\";", meaning::CRC)?;
             writeln!(f, "CM_ SG_ {id} Counter \"{}\";", meaning::COUNTER)?;
             for signal in signals(line) {
