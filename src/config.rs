@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use crate::wire::driving_parameters::Limits;
-use crate::wire::{BaseId, StationHash};
+use crate::wire::{BaseId, StationHash, Transport};
 
 /// The prediction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,6 +124,8 @@ pub struct Config {
     pub station: StationHash,
     /// First CAN identifier of the catalogue.
     pub base_id: BaseId,
+    /// Which frames the bus carries.
+    pub transport: Transport,
     /// Period of the task that calls `tick`; 1 to 100 ms.
     pub period: Duration,
     /// Bumper to bumper.
@@ -151,6 +153,7 @@ impl Config {
     pub(crate) const NONE: Self = Self {
         station: StationHash(0),
         base_id: BaseId::NONE,
+        transport: Transport::Classic,
         period: Duration::ZERO,
         length: Distance::ZERO,
         lag: FineSeconds::ZERO,
@@ -197,6 +200,7 @@ impl Config {
         Self {
             station,
             base_id: BaseId::DEFAULT,
+            transport: Transport::Classic,
             period: Duration::from_millis(10),
             length: parameters::DEFAULT_LENGTH,
             lag: FineSeconds::from_millis(300),

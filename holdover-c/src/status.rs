@@ -77,6 +77,8 @@ pub enum Status {
     ConfigEnvelope = -48,
     /// `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
     ConfigCatchUp = -49,
+    /// `transport` is CAN FD, which this library is built without.
+    ConfigTransport = -50,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,
     /// The E2E checksum does not fit.
@@ -168,6 +170,7 @@ impl From<ConfigError> for Status {
             ConfigError::Link => Self::ConfigLink,
             ConfigError::Body => Self::ConfigBody,
             ConfigError::Envelope => Self::ConfigEnvelope,
+            ConfigError::Transport => Self::ConfigTransport,
         }
     }
 }
@@ -247,6 +250,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::ConfigBody, c"configuration: body"),
     (Status::ConfigEnvelope, c"configuration: envelope"),
     (Status::ConfigCatchUp, c"configuration: catch_up"),
+    (Status::ConfigTransport, c"configuration: transport"),
     (Status::RefusedLength, c"refused: length"),
     (Status::RefusedChecksum, c"refused: checksum"),
     (Status::RefusedRepeated, c"refused: repeated"),

@@ -5,6 +5,7 @@ use super::{Config, Prediction};
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
+use crate::wire::Transport;
 use crate::wire::driving_parameters::Limits;
 use crate::wire::quantity::Quantity;
 
@@ -48,6 +49,8 @@ pub enum ConfigError {
     /// than 0.1 m/s² or 0.1 m/s³, which is hardly a step of a command; or its
     /// delay is beyond 0.5 s, its tolerance beyond the whole lag, or the longest lag beyond 1.998 s.
     Envelope,
+    /// `transport` is CAN FD, which this build has no code for: it takes the feature `fd`.
+    Transport,
 }
 
 impl core::fmt::Display for ConfigError {
@@ -69,6 +72,7 @@ impl core::fmt::Display for ConfigError {
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
             Self::Envelope => "a limit of the envelope is zero, its margin is negative, its braking is below 0.1 m/s² or its jerk below 0.1 m/s³, its braking is harder than emergency braking, its delay is beyond 0.5 s, or its lag_tolerance is beyond 1 or makes a lag beyond 1.998 s",
+            Self::Transport => "transport is CAN FD, which this build has no code for; build with the feature `fd`",
         })
     }
 }
@@ -91,6 +95,7 @@ impl Config {
         let positive = |d: Duration| d > Duration::ZERO;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
         let millis = Duration::from_millis;
+        ensure(cfg!(feature = "fd") || self.transport == Transport::Classic, ConfigError::Transport)?;
         ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
         let Prediction { step, horizon, .. } = self.prediction;
         ensure((millis(1)..=millis(1000)).contains(&step), ConfigError::Step)?;

@@ -7,10 +7,10 @@
 
 pub use super::base_id::BaseId;
 
+use super::Slot;
 use super::e2e::Limits;
 use super::field::{Field, Place};
 use super::index;
-use super::Slot;
 
 mod lines;
 

@@ -8,8 +8,8 @@ use super::OnFd::{Follows, Frame, MayFollow};
 use super::Speaker::{Ego, Own, Peer};
 use super::{Content, Line};
 use crate::wire::{
-    actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route, status,
-    sync, unserved,
+    actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route,
+    status, sync, unserved,
 };
 
 /// Lines of the catalogue.
@@ -132,13 +132,15 @@ const MOTION_10_MS: &str =
     "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 20 ms.";
 const MOTION_100_MS: &str =
     "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 50 ms.";
-const ESTIMATE_FRAMES: &str = "TargetEstimateA and B make one message: use both only if their Tag is the same and they come within 20 ms.";
+const ESTIMATE_FRAMES: &str =
+    "TargetEstimateA and B make one message: use both only if their Tag is the same and they come within 20 ms.";
 const HORIZON_FRAMES: &str =
     "5 frames of one Tag within 50 ms make one message; Tag is that of the Motion it starts from.";
 const THREE_FRAMES: &str = "3 frames of one Tag within 50 ms make one message.";
 const TWO_FRAMES: &str = "2 frames of one Tag within 50 ms make one message.";
 
-const MOTION: &str = "Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms.";
+const MOTION: &str =
+    "Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms.";
 const ESTIMATE: &str = "The bound has all four ends or none; ends are distances from the estimate, rounded up.";
 const HORIZON: &str = "Part n is the state after \
     0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see DrivingParameters) after that Motion's Stamp; between them the way is a \
