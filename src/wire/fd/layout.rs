@@ -16,7 +16,7 @@ use crate::wire::index::{self, Entry};
 /// The most payloads that a frame has: two of a motion, five of a horizon, three of driving parameters.
 pub const MOST_PARTS: usize = 10;
 /// The payloads of a frame; `None` where a message is not there.
-pub(in crate::wire) type Parts = [Option<Payload>; MOST_PARTS];
+pub type Parts = [Option<Payload>; MOST_PARTS];
 
 /// A payload in a frame.
 #[derive(Clone, Copy, Debug)]
@@ -157,6 +157,16 @@ impl Layout {
             }
         }
         Ok(parts)
+    }
+
+    /// The payloads that stand in a frame's data, whatever its checksum.
+    ///
+    /// # Errors
+    /// `Length`, and `Range` if a field holds a value that may not stand in it.
+    pub fn read(&self, data: &[u8]) -> Result<Parts, Cause> {
+        let is_whole = data.len() == usize::from(self.bytes);
+        let tag = data.get(2).map_or(0, |counter| counter & 3);
+        if is_whole { self.unpack(&Bits::of(data), tag) } else { Err(Cause::Length) }
     }
 
     /// The first payload of a frame with the right length and checksum.

@@ -17,6 +17,7 @@ use arguments::DbcArguments;
 pub struct DbcOptions {
     base: BaseId,
     slots: u8,
+    fd: bool,
 }
 
 impl DbcOptions {
@@ -30,7 +31,7 @@ impl DbcOptions {
             let cause = format!("{slots} slots");
             return Err(Error::new(cause, format!("give 1 to {SLOTS}")).in_option("--slots"));
         }
-        Ok(Self { base: base_id::checked(arguments.base_id)?, slots })
+        Ok(Self { base: base_id::checked(arguments.base_id)?, slots, fd: arguments.fd })
     }
 }
 
@@ -39,5 +40,7 @@ impl DbcOptions {
 /// # Errors
 /// An output that cannot be written.
 pub fn run(options: &DbcOptions) -> Result<Verdict, Error> {
-    output::print(&Dbc::new(options.base, options.slots).to_string()).map(|()| Verdict::Pass)
+    let classic = Dbc::new(options.base, options.slots);
+    let dbc = if options.fd { classic.over_fd() } else { classic };
+    output::print(&dbc.to_string()).map(|()| Verdict::Pass)
 }

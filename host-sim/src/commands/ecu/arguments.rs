@@ -19,6 +19,10 @@ pub struct UnitArguments {
     /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
     #[arg(long, value_name = "ID", value_parser = number)]
     pub base_id: Option<u16>,
+
+    /// The bus is CAN FD, whatever the scenario says
+    #[arg(long)]
+    pub fd: bool,
 }
 
 /// The arguments of `ecu`.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use holdover::Config;
 use holdover::wire::catalogue::{CATALOGUE, Node, PEERS_OFFSET, SLOT_STRIDE};
-use holdover::wire::{BaseId, StationHash};
+use holdover::wire::{BaseId, StationHash, Transport};
 
 use super::arguments::{EcuArguments, UnitArguments};
 use crate::commands::base_id;
@@ -58,8 +58,9 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
     let base_id = base_id::checked(arguments.base_id)?;
+    let transport = if arguments.fd { Transport::Fd } else { scenario.transport };
     if let Some(station) = arguments.station {
-        return Ok(Config { base_id, ..Config::car(StationHash(station)) });
+        return Ok(Config { base_id, transport, ..Config::car(StationHash(station)) });
     }
     let vehicle = arguments.vehicle.unwrap_or(scenario.ego);
     let last = scenario.vehicles.len() - 1;
@@ -67,7 +68,7 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
         let remedy = format!("give an index from 0 to {last}");
         return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
     }
-    let config = Config { base_id, ..world::config(scenario, vehicle) };
+    let config = Config { base_id, transport, ..world::config(scenario, vehicle) };
     config.check(STEPS).map_err(|cause| {
         Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")
     })?;

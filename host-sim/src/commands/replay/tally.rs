@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use embedded_can::{Frame as _, Id};
 use holdover::Reception;
 use holdover::health::Cause;
-use holdover::wire::BaseId;
-use holdover::wire::catalogue;
+use holdover::wire::catalogue::{self, OnFd};
+use holdover::wire::{BaseId, Transport};
 
 use crate::bus::Frame;
 
@@ -14,6 +14,7 @@ use crate::bus::Frame;
 #[derive(Clone, Debug)]
 pub struct Tally {
     base: BaseId,
+    transport: Transport,
     recognised: BTreeMap<u16, u64>,
     refused: [u64; Cause::ALL.len()],
     ignored: u64,
@@ -24,7 +25,14 @@ impl Tally {
     /// Counts of 0, on a bus whose catalogue starts at `base`.
     #[must_use]
     pub fn new(base: BaseId) -> Self {
-        Self { base, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
+        let transport = Transport::Classic;
+        Self { base, transport, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
+    }
+
+    /// The same on a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { transport, ..self }
     }
 
     /// Counts a frame that the unit received.
@@ -81,7 +89,13 @@ impl Tally {
 
     fn name(&self, id: u16) -> String {
         match self.base.offset_of(id).and_then(catalogue::find) {
-            Some((_, line, slot)) => line.name.replace("{slot}", &slot.0.to_string()),
+            Some((_, line, slot)) => {
+                let name = match (self.transport, line.on_fd) {
+                    (Transport::Fd, OnFd::Frame(name)) => name,
+                    _ => line.name,
+                };
+                name.replace("{slot}", &slot.0.to_string())
+            }
             None => format!("{id:#05x}"),
         }
     }
