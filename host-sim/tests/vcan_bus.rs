@@ -48,6 +48,8 @@ fn every_kind_of_frame_arrives_as_it_was_sent_and_its_sender_is_told() {
         Frame::extended(0x1234_5678, &[9; 8]).unwrap(),
         Frame::new_remote(StandardId::new(5).unwrap(), 4).unwrap(),
         Frame::new_remote(ExtendedId::new(0x10_0000).unwrap(), 0).unwrap(),
+        Frame::fd(StandardId::new(0x490).unwrap(), 5, &[7; 64]).unwrap(),
+        Frame::fd(ExtendedId::new(0x1234_5678).unwrap(), 5, &[1; 12]).unwrap(),
     ];
     for frame in frames {
         Port::send(&mut a, frame).unwrap();
