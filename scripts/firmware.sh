@@ -87,7 +87,7 @@ replays=$built/replay
 mkdir -p "$replays"
 "$holdover_log" record "$replays" | sed 's/^/  /'
 while read -r target machine host; do
-    cargo build --locked --quiet --profile firmware --target "$target" --bin replay
+    cargo build --locked --quiet --profile firmware --target "$target" -p holdover-image --bin replay
     program=$built/$target/firmware/replay
     rm -f "$replays/sent.bin"
     (cd "$replays" && emulate -M "$machine" -serial none -semihosting-config enable=on,target=native -kernel "$program")
