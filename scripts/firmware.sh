@@ -29,7 +29,7 @@ emulate() {
 }
 
 echo "-- the image in its forms"
-for features in bxcan log bxcan,log ''; do
+for features in bxcan log bxcan,log fd ''; do
     cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$features" -- -D warnings
     firmware --features "$features"
     size -A "$built/$ecu/firmware/holdover-ecu" | awk -v features="${features:-none}" '
@@ -45,6 +45,7 @@ arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
 }
 
 echo "-- no panic in the image, from its start on"
+firmware --features no-panic,fd
 firmware --features no-panic
 echo "  linked: nothing reaches the panic handler"
 if RUSTFLAGS='--cfg seeded_panic' firmware --features no-panic --target-dir "$work/seeded" 2>"$work/seeded.txt"; then

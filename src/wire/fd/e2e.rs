@@ -43,7 +43,7 @@ fn crc(data_id: u16, data: &[u8]) -> u16 {
 
 static TABLE: [u16; 256] = table();
 
-#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
+#[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects, clippy::cast_possible_truncation)] // in const
 const fn table() -> [u16; 256] {
     let mut table = [0; 256];
     let mut byte = 0;
