@@ -82,25 +82,25 @@ pub const ABOUTS: usize = 6;
 /// What stands on an identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
-    /// [`sync::Sync`].
+    /// [`super::sync::Sync`].
     Sync,
-    /// [`sync::FollowUp`].
+    /// [`super::sync::FollowUp`].
     FollowUp,
-    /// [`command::Command`].
+    /// [`super::command::Command`].
     Command,
-    /// [`driver_request::DriverRequest`].
+    /// [`super::driver_request::DriverRequest`].
     DriverRequest,
-    /// [`actuators::ActuatorState`].
+    /// [`super::actuators::ActuatorState`].
     Actuators,
-    /// [`range_sensor::RangeSample`].
+    /// [`super::range_sensor::RangeSample`].
     Range,
-    /// [`unserved::Unserved`].
+    /// [`super::unserved::Unserved`].
     Unserved,
-    /// First frame of [`estimate::TargetEstimate`].
+    /// First frame of [`super::estimate::TargetEstimate`].
     EstimateA,
     /// Its second frame.
     EstimateB,
-    /// [`status::Status`].
+    /// [`super::status::Status`].
     Status,
     /// Something about a vehicle.
     Said(Speaker, About),
