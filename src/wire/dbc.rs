@@ -95,25 +95,21 @@ impl Described {
     }
 
     fn attributes(&self) -> impl Iterator<Item = (&'static str, u16)> {
-        let (line, limits) = (self.line, self.line.limits());
-        let of_both = [
-            ("GenMsgCycleTime", line.cycle_ms),
-            ("GenMsgTimeout", line.timeout_ms),
-            ("FramesPerCycle", line.frames.into()),
-            ("E2EDataId", data_id(line.offset_for(self.slot))),
-        ];
-        let of_profile: &[_] = if self.is_over_fd {
-            &[("E2EMaxDeltaCounter", u16::from(limits.max_delta_counter_init).saturating_add(1))]
-        } else {
-            &[
-                ("E2EMaxDeltaCounterInit", u16::from(limits.max_delta_counter_init)),
-                ("E2EMaxNoNewOrRepeatedData", u16::from(limits.max_no_new_or_repeated)),
-                ("E2ESyncCounterInit", u16::from(limits.sync_counter_init)),
-            ]
-        };
-        let is_over_fd = self.is_over_fd;
-        let of_both = of_both.into_iter().filter(move |(name, _)| !is_over_fd || *name != "FramesPerCycle");
-        of_both.chain(heapless::Vec::<_, 3>::from_slice(of_profile).unwrap_or_default())
+        let (line, limits, is_over_fd) = (self.line, self.line.limits(), self.is_over_fd);
+        let classic = |name, value| (!is_over_fd).then_some((name, value));
+        let most_lost = u16::from(limits.max_delta_counter_init);
+        [
+            Some(("GenMsgCycleTime", line.cycle_ms)),
+            Some(("GenMsgTimeout", line.timeout_ms)),
+            classic("FramesPerCycle", line.frames.into()),
+            Some(("E2EDataId", data_id(line.offset_for(self.slot)))),
+            classic("E2EMaxDeltaCounterInit", most_lost),
+            classic("E2EMaxNoNewOrRepeatedData", limits.max_no_new_or_repeated.into()),
+            classic("E2ESyncCounterInit", limits.sync_counter_init.into()),
+            is_over_fd.then_some(("E2EMaxDeltaCounter", most_lost.saturating_add(1))),
+        ]
+        .into_iter()
+        .flatten()
     }
 
     /// Rules for readers: of each line of the frame those that the line before it does not have.

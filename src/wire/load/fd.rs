@@ -53,6 +53,9 @@ pub fn worst_nanos(bit_rate: u32, data_bit_rate: u32, bytes: usize) -> u32 {
 /// begin them, with so many peers, at these bit rates (0 bit/s: saturated).
 #[must_use]
 pub fn load_ppm(bit_rate: u32, data_bit_rate: u32, peers: u16, counted: impl Fn(&Line) -> bool) -> u32 {
+    if bit_rate == 0 || data_bit_rate == 0 {
+        return u32::MAX;
+    }
     let nanos_per_s = |(place, line): (usize, &Line)| {
         let Some(layout) = layout::of(place).filter(|_| counted(line)) else { return 0 };
         let speakers = if line.is_per_slot() { u64::from(peers) } else { 1 };
@@ -78,6 +81,6 @@ mod tests {
             assert!(over_fd < classic / 2, "{peers} peers: {over_fd} of {classic}");
         }
         assert!(load_ppm(500_000, 2_000_000, 8, Line::is_per_slot) < 60_000);
-        assert_eq!(load_ppm(0, 0, 8, |_| true), u32::MAX);
+        assert_eq!([(0, 1), (1, 0)].map(|(slow, fast)| load_ppm(slow, fast, 1, |_| true)), [u32::MAX; 2]);
     }
 }
