@@ -71,6 +71,40 @@ fn the_accelerator_hands_back_for_as_long_as_it_is_pressed() {
 }
 
 #[test]
+fn a_pedal_that_nobody_reports_any_more_holds_until_the_driver_asks_anew() {
+    for pressed in [ActuatorState { brake: true, ..DRIVES }, ActuatorState { accelerator: true, ..DRIVES }] {
+        let mut road = road();
+        say(&mut road, pressed);
+        road.run(20.0);
+        assert_eq!(told(&mut road).0, ModeCode::Standby, "silence is no release");
+        road.engaged = false;
+        road.run(0.2);
+        road.engaged = true;
+        road.run(0.2);
+        assert_eq!(told(&mut road), (ModeCode::Cooperative, 0));
+        // While the message comes, a pedal that is pressed still hands back.
+        say(&mut road, pressed);
+        road.engaged = false;
+        road.run(0.1);
+        say(&mut road, pressed);
+        road.engaged = true;
+        road.run(0.1);
+        assert_eq!(told(&mut road).0, ModeCode::Standby);
+    }
+}
+
+#[test]
+fn a_failure_that_nobody_reports_any_more_holds() {
+    let mut road = road();
+    say(&mut road, ActuatorState { control: Control::Failed, ..DRIVES });
+    road.engaged = false;
+    road.run(1.0);
+    road.engaged = true;
+    road.run(0.2);
+    assert_eq!(told(&mut road), (ModeCode::Standby, 10));
+}
+
+#[test]
 fn actuators_that_take_no_commands_make_the_unit_stand_by() {
     for control in [Control::Off, Control::Failed] {
         let mut road = road();

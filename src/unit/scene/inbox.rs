@@ -28,12 +28,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 if self.request.as_ref().map(|held| held.predecessor) != Some(request.predecessor) {
                     self.ranging.note_named(at);
                 }
-                self.actuators.ask(request.engaged);
+                self.actuators.ask(at, request.engaged);
                 self.request.set(*request);
                 self.requested_at = at;
             }
             Message::Actuators(state) => {
-                if self.actuators.take(*state, self.is_asked()) {
+                if self.actuators.take(at, *state, self.is_asked()) {
                     health.count(Cause::DriverOverride);
                 }
             }

@@ -31,7 +31,7 @@ pub static CATALOGUE: [Line; LINES] = [
         .says("Effort selects Force (driving) or BrakeTorque (braking). Not to be used in Mode standby."),
     Line::new("ActuatorState", 0x03, Content::Actuators, Vehicle, actuators::FIELDS).every(20, 0).says(
         "What the actuators make of MotionCommand. Not needed: a unit that never hears it takes the actuators to be ready. Once heard, \
-         what it said last holds.",
+         what it said last holds; a pedal until DriverRequest.Engaged is off later than 200 ms after the last frame.",
     ),
     Line::new("EgoMotionA", 0x04, Said(Ego, MotionA), Vehicle, motion::FIELDS_A)
         .every(10, 50)
