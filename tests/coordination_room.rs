@@ -3,6 +3,7 @@
 
 mod rig;
 
+use holdover::time::Duration;
 use rig::junction::{CROSSING, Driver, HALF, Junction};
 use rig::plant::Plant;
 
@@ -90,6 +91,35 @@ fn who_stands_before_a_conflict_area_enters_it_when_everyone_ahead_in_the_order_
         });
         assert!(!overlap, "{speed} m/s, {stands} m before it");
         assert!(junction.drivers.iter().all(|driver| driver.body.position > 250.0));
+    }
+}
+
+/// The ego follows a vehicle that passes first and comes at speed. The law makes up for the higher speed of the vehicle ahead, so the ego
+/// accelerates, and is at the area earlier than its present speed says.
+#[test]
+fn who_accelerates_behind_a_faster_one_in_the_order_enters_the_area_when_that_one_has_left_it() {
+    // Both look ahead for 3 s.
+    let mut config = rig::config();
+    config.prediction.step = Duration::from_millis(50);
+    config.prediction.horizon = Duration::from_millis(3_000);
+    for speed in [3.2, 3.6, 4.0, 4.5] {
+        for before in [7.0, 8.0, 9.0, 10.0] {
+            for away in [0.0, 3.0, 6.0, 9.0, 12.0, 15.0, 18.0] {
+                let at = CROSSING - HALF - before;
+                let other = Driver::of(config, 1, 1, 60.0, 10.7, false);
+                let ego = Driver { target_speed: 11.0, ..Driver::of(config, 2, 0, 120.0, 8.0, false) };
+                let mut junction = Junction::new(vec![ego, other]);
+                let overlap = overlaps(&mut junction, 30.0, |_, drivers| {
+                    let [ego, other] = drivers else { panic!("two") };
+                    if other.body.position < CROSSING - away {
+                        ego.body = Plant { position: at, speed, acceleration: 2.0, ..ego.body };
+                    }
+                });
+                let case = format!("{speed} m/s, {before} m before the area, the other {away} m before the crossing");
+                assert!(!overlap, "{case}");
+                assert!(junction.drivers.iter().all(|driver| driver.body.position > 250.0), "{case}");
+            }
+        }
     }
 }
 

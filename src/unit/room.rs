@@ -10,7 +10,7 @@ use super::vantage::Vantage;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle};
 use crate::fixed::{quotient, saturate_i32};
-use crate::model::State;
+use crate::model::{State, catch_up};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
 
@@ -89,11 +89,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))
     }
 
-    /// The time that the ego takes to a place ahead at its present speed, rounded.
+    /// The shortest time in which the ego gets to a place ahead, rounded: it accelerates as it may in normal driving, up to the speed at
+    /// which it catches up. By its present speed alone it would be there later than it will be, and find out too late to stop.
     fn time_to(&self, place: Position) -> Duration {
-        let mm = i64::from(place.ahead_of(self.front).to_mm());
-        let mm_per_s = i64::from(self.speed.to_mm_per_s()).max(1);
-        Duration::from_micros(quotient(mm.saturating_mul(1_000_000), mm_per_s))
+        let (config, speed) = (&self.scene.config, i64::from(self.speed.to_mm_per_s()));
+        let mm = i64::from(place.ahead_of(self.front).to_mm()).max(0);
+        let acceleration = i64::from(config.limits.acceleration.to_mm_per_s2()).max(1);
+        let top = i64::from(catch_up(self.scene.target_speed(), config.law.catch_up).to_mm_per_s()).max(speed).max(1);
+        let squared = |speed: i64| speed.saturating_mul(speed);
+        let gained = acceleration.saturating_mul(2).saturating_mul(mm);
+        let faster = squared(speed).saturating_add(gained);
+        let micros = if faster <= squared(top) {
+            let then = i64::try_from(faster.unsigned_abs().isqrt()).unwrap_or(top);
+            quotient(mm.saturating_mul(2_000_000), speed.saturating_add(then).max(1))
+        } else {
+            let reached = quotient(squared(top).saturating_sub(squared(speed)), acceleration.saturating_mul(2));
+            quotient(top.saturating_sub(speed).saturating_mul(1_000_000), acceleration)
+                .saturating_add(quotient(mm.saturating_sub(reached).saturating_mul(1_000_000), top))
+        };
+        Duration::from_micros(micros)
     }
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that

@@ -94,7 +94,11 @@ pub struct Driver {
 
 impl Driver {
     pub fn new(station: u8, way: usize, at: f64, speed: f64, envelope: bool) -> Self {
-        let mut config = config();
+        Self::of(config(), station, way, at, speed, envelope)
+    }
+
+    /// The same, with this configuration.
+    pub fn of(mut config: Config, station: u8, way: usize, at: f64, speed: f64, envelope: bool) -> Self {
         config.station = StationHash(station);
         config.envelope = envelope.then_some(holdover::config::Envelope::CAR);
         let mut rig = Rig::new(&config);

@@ -1,0 +1,76 @@
+"""dbc_check.py FILE...: the DBC files as other tools read them.
+
+cantools reads each file strictly. canmatrix turns it into a DBC, a KCD, a SYM and an ARXML file, and each of these, read back, has
+the same identifiers, lengths and signals, as far as canmatrix keeps them in that format. A warning of either tool is a failure. Exit code: 0 all is the same, 1 something is not.
+"""
+
+import logging
+import sys
+import tempfile
+from pathlib import Path
+
+import canmatrix.convert
+import canmatrix.formats
+import cantools
+
+
+class Warnings(logging.Handler):
+    """What the tools had to say."""
+
+    def __init__(self):
+        super().__init__(logging.WARNING)
+        self.said = []
+
+    def emit(self, record):
+        self.said.append(f"{record.name}: {record.getMessage()}")
+
+
+def signals(path, is_whole=True):
+    """Every signal of a file; if not whole, by its place alone."""
+    matrix = next(iter(canmatrix.formats.loadp(str(path)).values()))
+    return {
+        (
+            frame.arbitration_id.id,
+            frame.arbitration_id.extended,
+            frame.size,
+            signal.start_bit,
+        )
+        + ((frame.name, signal.size, signal.is_signed, float(signal.factor), float(signal.offset)) if is_whole else ())
+        # A SYM file has a name of its own for the signal that selects the part.
+        + ((signal.name,) if is_whole and not signal.is_multiplexer else ())
+        for frame in matrix.frames
+        for signal in frame.signals
+    }
+
+
+# In an ARXML file canmatrix keeps one definition of all signals of one name, and it reads no scales back.
+FORMATS = {"dbc": True, "kcd": True, "sym": True, "arxml": False}
+
+
+def check(path):
+    """What is wrong with a file."""
+    database = cantools.database.load_file(path, strict=True)
+    wrong = []
+    named = [signal for message in database.messages for signal in message.signals]
+    wrong += [f"{signal.name} has no comment" for signal in named if not signal.comment]
+    with tempfile.TemporaryDirectory() as folder:
+        for suffix, is_whole in FORMATS.items():
+            other = Path(folder) / f"other.{suffix}"
+            canmatrix.convert.convert(str(path), str(other))
+            ours, theirs = signals(path, is_whole), signals(other, is_whole)
+            wrong += [f"not in {suffix}: {signal}" for signal in sorted(ours - theirs)]
+            wrong += [f"only in {suffix}: {signal}" for signal in sorted(theirs - ours)]
+    print(f"{path}: {len(database.messages)} messages, {len(named)} signals, the same in {', '.join(FORMATS)}")
+    return wrong
+
+
+def main(paths):
+    warnings = Warnings()
+    logging.getLogger().addHandler(warnings)
+    wrong = [f"{path}: {what}" for path in paths for what in check(path)] + warnings.said
+    print(*wrong, sep="\n", end="\n" if wrong else "")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main([Path(name) for name in sys.argv[1:]]))
