@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use crate::wire::driving_parameters::Limits;
-use crate::wire::{BaseId, StationHash};
+use crate::wire::{Identifiers, StationHash};
 
 /// The prediction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,8 +122,8 @@ impl Envelope {
 pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
-    /// First CAN identifier of the catalogue.
-    pub base_id: BaseId,
+    /// Where the lines of the catalogue lie on the bus.
+    pub identifiers: Identifiers,
     /// Period of the task that calls `tick`; 1 to 100 ms.
     pub period: Duration,
     /// Bumper to bumper.
@@ -150,7 +150,7 @@ impl Config {
     /// Of a unit that is not started: all zero, and refused by every check.
     pub(crate) const NONE: Self = Self {
         station: StationHash(0),
-        base_id: BaseId::NONE,
+        identifiers: Identifiers::NONE,
         period: Duration::ZERO,
         length: Distance::ZERO,
         lag: FineSeconds::ZERO,
@@ -196,7 +196,7 @@ impl Config {
     pub const fn car(station: StationHash) -> Self {
         Self {
             station,
-            base_id: BaseId::DEFAULT,
+            identifiers: Identifiers::DEFAULT,
             period: Duration::from_millis(10),
             length: parameters::DEFAULT_LENGTH,
             lag: FineSeconds::from_millis(300),

@@ -12,14 +12,14 @@
 //! Intact is a data frame of 8 bytes with the right checksum; what is not intact falls under 3. GNSS time and the unit's
 //! own clock are thereby the same.
 
-use embedded_can::{Frame, Id};
+use embedded_can::Frame;
 
 use crate::time::Instant;
 use crate::unit::{Answer, OnboardUnit};
 use crate::wire::bits::Payload;
 use crate::wire::catalogue::{self, Content};
 use crate::wire::sync::{FollowUp, Sync};
-use crate::wire::{BaseId, Frame as WireFrame, e2e};
+use crate::wire::{Frame as WireFrame, Identifiers, e2e};
 
 /// The shell of a unit in lock step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl LockStep {
         unit: &mut OnboardUnit<PEERS, SAMPLES, STEPS>,
         frame: &impl Frame,
     ) -> Option<Answer> {
-        match (step(unit.config().base_id, frame), self.kept) {
+        match (step(&unit.config().identifiers, frame), self.kept) {
             (Some(Step::Mark(frame, sync)), _) => {
                 self.kept = Some((frame, sync));
                 None
@@ -72,9 +72,9 @@ impl LockStep {
 }
 
 /// What step of the time synchronisation an intact frame is.
-fn step(base: BaseId, frame: &impl Frame) -> Option<Step> {
-    let Id::Standard(id) = frame.id() else { return None };
-    let offset = base.offset_of(id.as_raw())?;
+fn step(identifiers: &Identifiers, frame: &impl Frame) -> Option<Step> {
+    let id = frame.id().into();
+    let offset = identifiers.offset_of(id)?;
     let (_, line, _) = catalogue::find(offset)?;
     let data: [u8; 8] = if frame.is_remote_frame() { None } else { frame.data().try_into().ok() }?;
     let [_, counted, ..] = data;
@@ -83,7 +83,7 @@ fn step(base: BaseId, frame: &impl Frame) -> Option<Step> {
     }
     let payload = [Payload::from_bytes(data)];
     match line.content {
-        Content::Sync => Some(Step::Mark(WireFrame { id: id.as_raw(), data }, Sync::decode(&payload))),
+        Content::Sync => Some(Step::Mark(WireFrame { id, data }, Sync::decode(&payload))),
         Content::FollowUp => Some(Step::FollowUp(FollowUp::decode(&payload))),
         _ => None,
     }
@@ -108,7 +108,7 @@ mod tests {
     impl Bench {
         fn new() -> Self {
             let unit = Unit::new(&Config::car(StationHash(1))).unwrap();
-            Self { unit, shell: LockStep::new(), sender: Sender::new(BaseId::DEFAULT) }
+            Self { unit, shell: LockStep::new(), sender: Sender::new(Identifiers::DEFAULT) }
         }
 
         fn frame(&mut self, message: &Message) -> WireFrame {

@@ -29,7 +29,7 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::Command;
-use crate::wire::{BaseId, Frame, Received, Receiver, Role};
+use crate::wire::{Frame, Identifiers, Received, Receiver, Role};
 use association::Association;
 use gate::{Gate, Last};
 use outbox::{Outbox, Report};
@@ -73,14 +73,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[must_use]
     pub const fn idle() -> Self {
         Self {
-            receiver: Receiver::new(BaseId::NONE, Role::Unit),
+            receiver: Receiver::new(Identifiers::NONE, Role::Unit),
             scene: Scene::idle(),
             association: Association::NONE,
             mode: Mode::Standby,
             controller: Controller::idle(),
             gate: Gate::new(),
             dynamics: Inversion::new(),
-            outbox: Outbox::new(BaseId::NONE),
+            outbox: Outbox::new(Identifiers::NONE),
             health: Health::new(),
             last_tick: None,
         }
@@ -94,14 +94,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(STEPS)?;
         // Field by field, because the whole of it would pass over the stack.
-        self.receiver = Receiver::new(config.base_id, Role::Unit);
+        self.receiver = Receiver::new(config.identifiers, Role::Unit);
         self.scene.start(config);
         self.association = Association::NONE;
         self.mode = Mode::Standby;
         self.controller = Controller::new(config.period);
         self.gate = Gate::new();
         self.dynamics = Inversion::new();
-        self.outbox = Outbox::new(config.base_id);
+        self.outbox = Outbox::new(config.identifiers);
         self.health = Health::new();
         self.last_tick = None;
         Ok(())

@@ -6,11 +6,11 @@ use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::catalogue::{CATALOGUE, data_id};
-use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
+use holdover::wire::{Frame, Identifiers, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
 use messages::{from_unit, geo, knots, motion, parameters, to_unit};
 use proptest::prelude::*;
 
-const BASE: BaseId = BaseId::DEFAULT;
+const BASE: Identifiers = Identifiers::DEFAULT;
 
 fn frames_of<const PEERS: usize>(sender: &mut Sender<PEERS>, message: &Message) -> Vec<Frame> {
     let mut frames = Vec::new();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, Signal, ValueDescription, ValueType};
 use holdover::wire::catalogue::{CATALOGUE, data_id};
 use holdover::wire::command::Effort;
-use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot};
 use messages::{from_unit, to_unit};
 use proptest::prelude::*;
 
@@ -52,7 +52,8 @@ fn name_of(id: u16, signal: &str, raw: i64) -> Option<String> {
 fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
     let (mut names, mut readings) = (Vec::new(), BTreeMap::new());
     for frame in frames {
-        let message = file().messages.iter().find(|message| message.id == MessageId::Standard(frame.id)).unwrap();
+        let message =
+            file().messages.iter().find(|message| message.id == MessageId::Standard(frame.id.number() as u16)).unwrap();
         if !names.contains(&message.name) {
             names.push(message.name.clone());
         }
@@ -67,7 +68,7 @@ fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
                 continue;
             }
             let raw = raw(signal, &frame.data);
-            let reading = match name_of(frame.id, &signal.name, raw) {
+            let reading = match name_of(frame.id.number() as u16, &signal.name, raw) {
                 Some(name) => Reading::Name(name),
                 None => Reading::Value(raw as f64 * signal.factor + signal.offset),
             };
@@ -282,7 +283,7 @@ proptest! {
     #[test]
     fn every_signal_of_every_message_reads_in_the_file_as_it_was_meant(message in prop_oneof![to_unit(8), from_unit()]) {
         let mut frames = Vec::new();
-        Sender::<8>::new(BaseId::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
+        Sender::<8>::new(Identifiers::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
         let (names, readings) = decoded(&frames);
         let expected = expected_of(&message).0;
         prop_assert_eq!(names, names_of(&message));
@@ -311,7 +312,7 @@ fn the_file_tells_cycles_and_protection_of_every_message() {
     for line in &CATALOGUE {
         for slot in 0..if line.is_per_slot() { 8 } else { 1 } {
             let offset = line.offset_for(Slot(slot));
-            let id = BaseId::DEFAULT.plus(offset);
+            let id = Identifiers::DEFAULT.at(offset).number() as u16;
             assert_eq!(attribute(id, "GenMsgCycleTime"), i64::from(line.cycle_ms));
             assert_eq!(attribute(id, "GenMsgTimeout"), i64::from(line.timeout_ms));
             assert_eq!(attribute(id, "E2EDataId"), i64::from(data_id(offset)));

@@ -22,7 +22,7 @@ use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
 use crate::wire::status::{INTERFACE, Status};
-use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
+use crate::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender};
 
 /// The driving parameters are sent once in this many own motions.
 const PARAMETERS_EVERY: u8 = 5;
@@ -56,9 +56,9 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    pub(super) const fn new(base_id: BaseId) -> Self {
+    pub(super) const fn new(identifiers: Identifiers) -> Self {
         Self {
-            sender: Sender::new(base_id),
+            sender: Sender::new(identifiers),
             tick: 0,
             tag: 0,
             page: 0,

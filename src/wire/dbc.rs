@@ -1,34 +1,36 @@
-//! The catalogue as a DBC file for everyone else's tools: a base identifier and a number of slots enter, text leaves
+//! The catalogue as a DBC file for everyone else's tools: its identifiers and a number of slots enter, text leaves
 //! ([`core::fmt::Display`]). `holdover.dbc` at the root of the package is this for base 0x480 and 8 slots.
 
 use core::fmt::{Display, Formatter, Result};
 
 use super::Slot;
-use super::catalogue::{BaseId, CATALOGUE, Line, Node, SLOTS, data_id};
+use super::catalogue::{CATALOGUE, Line, Node, SLOTS, data_id};
 use super::field::{Field, Place, TAG};
+use super::identifiers::Identifiers;
 use super::meaning;
+use super::message_name::MessageName;
 
 /// The DBC of a bus.
 #[derive(Clone, Copy, Debug)]
 pub struct Dbc {
-    base: BaseId,
+    identifiers: Identifiers,
     slots: u8,
 }
 
 impl Dbc {
-    /// With this base and so many slots (at most those that there are identifiers for).
+    /// With these identifiers and so many slots (at most those that there are identifiers for).
     #[must_use]
-    pub fn new(base: BaseId, slots: u8) -> Self {
-        Self { base, slots: slots.min(u8::try_from(SLOTS).unwrap_or(u8::MAX)) }
+    pub fn new(identifiers: Identifiers, slots: u8) -> Self {
+        Self { identifiers, slots: slots.min(u8::try_from(SLOTS).unwrap_or(u8::MAX)) }
     }
 
     /// Every message: its line, slot and identifier.
-    fn messages(&self) -> impl Iterator<Item = (&'static Line, Slot, u16)> {
-        let Self { base, slots } = *self;
+    fn messages(&self) -> impl Iterator<Item = (&'static Line, Slot, u32)> {
+        let Self { identifiers, slots } = *self;
         let single = CATALOGUE.iter().filter(|line| !line.is_per_slot()).map(|line| (line, Slot(0)));
         let peers = (0..slots)
             .flat_map(|slot| CATALOGUE.iter().filter(|line| line.is_per_slot()).map(move |line| (line, Slot(slot))));
-        single.chain(peers).map(move |(line, slot)| (line, slot, base.plus(line.offset_for(slot))))
+        single.chain(peers).map(move |(line, slot)| (line, slot, identifiers.at(line.offset_for(slot)).in_dbc()))
     }
 }
 
@@ -36,7 +38,7 @@ impl Display for Dbc {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         f.write_str(HEAD)?;
         for (line, slot, id) in self.messages() {
-            writeln!(f, "BO_ {id} {}: 8 {}", Name(line, slot), node(line.sender))?;
+            writeln!(f, "BO_ {id} {}: 8 {}", MessageName::of(line, slot), node(line.sender))?;
             let receivers = if matches!(line.sender, Node::Unit) { "Modem,Vehicle" } else { "Unit" };
             writeln!(f, " SG_ Crc : 0|8@1+ (1,0) [0|255] \"\" {receivers}")?;
             writeln!(f, " SG_ Counter : 8|4@1+ (1,0) [0|14] \"\" {receivers}")?;
@@ -146,18 +148,6 @@ const fn node(node: Node) -> &'static str {
         Node::Unit => "Unit",
         Node::Modem => "Modem",
         Node::Vehicle => "Vehicle",
-    }
-}
-
-/// The name of a message in a slot.
-struct Name(&'static Line, Slot);
-
-impl Display for Name {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        match self.0.name.split_once("{slot}") {
-            Some((before, after)) => write!(f, "{before}{}{after}", self.1.0),
-            None => f.write_str(self.0.name),
-        }
     }
 }
 

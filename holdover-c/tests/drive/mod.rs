@@ -124,7 +124,7 @@ fn said(ms: u64) -> Vec<Message> {
 
 /// The script, with what goes wrong on a bus.
 pub fn drive() -> Vec<Row> {
-    let mut sender = Sender::<1>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<1>::new(Identifiers::DEFAULT);
     let mut rows = Vec::new();
     for ms in 0..END_US / 1000 {
         for message in said(ms) {

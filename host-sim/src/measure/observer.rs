@@ -6,7 +6,7 @@ use std::io;
 
 use holdover::time::Instant;
 use holdover::units::Position;
-use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said};
+use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said};
 
 use super::heard::{Heard, HeardParameters};
 use crate::bus::memory::MemoryNode;
@@ -25,10 +25,10 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// A listener on a bus whose catalogue starts at `base`.
+    /// A listener on a bus with these identifiers.
     #[must_use]
-    pub fn new(base: BaseId) -> Self {
-        Self { receiver: Receiver::new(base, Role::Unit), parameters: BTreeMap::new() }
+    pub fn new(identifiers: Identifiers) -> Self {
+        Self { receiver: Receiver::new(identifiers, Role::Unit), parameters: BTreeMap::new() }
     }
 
     /// Takes in a frame that was on the bus at `at_s`. Returns the motion that it completes, with the latest driving
@@ -72,7 +72,7 @@ impl Tap {
     #[must_use]
     pub fn of(world: &World<'_>) -> Self {
         let measured = world.measured();
-        Self { measured, node: world.vehicles()[measured.by].listen(), observer: Observer::new(BaseId::DEFAULT) }
+        Self { measured, node: world.vehicles()[measured.by].listen(), observer: Observer::new(Identifiers::DEFAULT) }
     }
 
     /// The vehicle whose position is estimated, and the vehicle that estimates it.

@@ -2,14 +2,14 @@
 
 use clap::Args;
 
-use crate::commands::base_id::number;
+use crate::commands::identifiers::IdentifierArguments;
 
 /// The arguments of `dbc`.
 #[derive(Clone, Debug, Args)]
 pub struct DbcArguments {
-    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
-    #[arg(long, value_name = "ID", value_parser = number)]
-    pub base_id: Option<u16>,
+    /// Where the messages lie on the bus.
+    #[command(flatten)]
+    pub identifiers: IdentifierArguments,
 
     /// Slots of peers, 1 to 16; the firmware has 8
     #[arg(long, value_name = "N", default_value_t = 8)]

@@ -7,7 +7,7 @@ use holdover::time::Duration;
 use holdover::units::Position;
 use holdover::wire::catalogue::{About, Content, Speaker};
 use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::{BaseId, Message, Said, Sender};
+use holdover::wire::{Identifiers, Message, Said, Sender};
 
 use super::fault::{Fault, Kind};
 use super::rig::Rig;
@@ -25,7 +25,7 @@ const OFF_M: i64 = 50;
 /// The fault injector.
 pub struct FaultInjector {
     faults: Vec<Played>,
-    base: BaseId,
+    identifiers: Identifiers,
     sender: Sender<0>,
     motion: [Option<Frame>; 2],
     /// Time of the next act of a fault that acts a hundred times a second.
@@ -74,9 +74,16 @@ impl Played {
 impl FaultInjector {
     /// An injector with these faults.
     #[must_use]
-    pub fn new(faults: &[Fault], base: BaseId) -> Self {
+    pub fn new(faults: &[Fault], identifiers: Identifiers) -> Self {
         let faults = faults.iter().copied().map(Played::new).collect();
-        Self { faults, base, sender: Sender::new(base), motion: [None; 2], next_s: 0.0, altered: Altered::default() }
+        Self {
+            faults,
+            identifiers,
+            sender: Sender::new(identifiers),
+            motion: [None; 2],
+            next_s: 0.0,
+            altered: Altered::default(),
+        }
     }
 
     /// Switches the faults that are due at this time. Returns whether the device was powered up anew.
@@ -148,7 +155,7 @@ impl FaultInjector {
 
     /// Takes in a frame that the harness has sent.
     pub fn overhear(&mut self, frame: &Frame) {
-        match line_of(self.base, frame).map(|line| line.content) {
+        match line_of(&self.identifiers, frame).map(|line| line.content) {
             Some(Content::Said(Speaker::Ego, About::MotionA)) => self.motion[0] = Some(*frame),
             Some(Content::Said(Speaker::Ego, About::MotionB)) => self.motion[1] = Some(*frame),
             _ => {}

@@ -3,7 +3,7 @@
 use holdover::time::Instant;
 use holdover::wire::command::Command;
 use holdover::wire::estimate::TargetEstimate;
-use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role};
+use holdover::wire::{Frame, Identifiers, Message, Received, Receiver, Role};
 
 /// The command and the estimate of one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,14 +16,14 @@ pub struct Said {
 
 /// The content of the frames of one answer, without a check of their counters.
 #[must_use]
-pub fn said(base: BaseId, frames: &[Frame]) -> Option<Said> {
+pub fn said(identifiers: &Identifiers, frames: &[Frame]) -> Option<Said> {
     let (mut command, mut estimate) = (None, None);
     // Twice, because a receiver does not trust the first frame of an identifier. The repeated counters are then
     // refused.
-    let mut receiver = Receiver::<1>::new(base, Role::Modem);
+    let mut receiver = Receiver::<1>::new(*identifiers, Role::Modem);
     for round in 0..2 {
         for frame in frames {
-            match receiver.receive(Instant::ZERO, &counted(base, frame, round)) {
+            match receiver.receive(Instant::ZERO, &counted(identifiers, frame, round)) {
                 Ok(Received::Whole(Message::Command(said))) => command = Some(said),
                 Ok(Received::Whole(Message::Estimate(said))) => estimate = Some(said),
                 _ => {}
@@ -33,8 +33,8 @@ pub fn said(base: BaseId, frames: &[Frame]) -> Option<Said> {
     Some(Said { command: command?, estimate })
 }
 
-fn counted(base: BaseId, frame: &Frame, counter: u8) -> Frame {
-    let offset = base.offset_of(frame.id).unwrap_or(0);
+fn counted(identifiers: &Identifiers, frame: &Frame, counter: u8) -> Frame {
+    let offset = identifiers.offset_of(frame.id).unwrap_or(0);
     let data_id = holdover::wire::catalogue::data_id(offset);
     Frame { id: frame.id, data: holdover::wire::e2e::protect(frame.data, data_id, counter) }
 }

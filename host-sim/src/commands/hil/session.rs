@@ -9,7 +9,7 @@
 use std::io;
 
 use holdover::time::{Duration, Instant};
-use holdover::wire::BaseId;
+use holdover::wire::Identifiers;
 use holdover::wire::bits::Payload;
 use holdover::wire::catalogue::{About, Content, Node, Speaker};
 use holdover::wire::motion::Motion;
@@ -77,7 +77,7 @@ impl Setup {
 
 /// The listener on the bus.
 pub(super) struct BusListener {
-    base: BaseId,
+    identifiers: Identifiers,
     config: Config,
     seat: MemoryNode,
     pub monitor: Monitor,
@@ -94,10 +94,10 @@ pub(super) struct BusListener {
 impl BusListener {
     pub fn new(config: &Config, seat: MemoryNode) -> Result<Self, ConfigError> {
         Ok(Self {
-            base: config.base_id,
+            identifiers: config.identifiers,
             config: *config,
             seat,
-            monitor: Monitor::new(config.base_id, config.period),
+            monitor: Monitor::new(config.identifiers, config.period),
             twin: Twin::new(config)?,
             told: None,
             deviation: Deviation::default(),
@@ -120,7 +120,7 @@ impl BusListener {
     pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
         match event {
             Event::Sent(frame) => {
-                match line_of(self.base, &frame).map(|line| line.content) {
+                match line_of(&self.identifiers, &frame).map(|line| line.content) {
                     Some(Content::Said(Speaker::Ego, About::MotionA)) => self.first_half = payload(&frame),
                     Some(Content::Said(Speaker::Ego, About::MotionB)) => {
                         let motion = Motion::decode(&[self.first_half, payload(&frame)]);
@@ -130,7 +130,7 @@ impl BusListener {
                 }
                 self.twin.hear(at, frame);
             }
-            Event::Received(frame) => match line_of(self.base, &frame) {
+            Event::Received(frame) => match line_of(&self.identifiers, &frame) {
                 Some(line) if line.sender == Node::Unit => self.device(at, &frame, local)?,
                 line => {
                     self.foreign += u64::from(line.is_some());
@@ -184,10 +184,10 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let seat = world.give_seat(scenario.ego, setup.alias());
     let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
-    let mut talk = Talk::new(port, config.base_id);
+    let mut talk = Talk::new(port, config.identifiers);
     let mut trace = world.trace();
     let mut paper = PaperBeside::of(&world, scenario);
-    let mut injector = FaultInjector::new(&setup.faults, config.base_id);
+    let mut injector = FaultInjector::new(&setup.faults, config.identifiers);
     rig.power(true)?;
     let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
     let period = config.period;
@@ -311,10 +311,10 @@ fn wait_for_device<P: Port>(
     let end = talk.now().plus(setup.wait);
     while talk.now() < end {
         let (mut heard, until) = (false, talk.now().plus(Duration::from_millis(20)).min(end));
-        let base = listener.base;
+        let identifiers = listener.identifiers;
         talk.pump(until, |_, event| {
             heard |= matches!(event, Event::Received(frame)
-                if line_of(base, &frame).is_some_and(|line| line.sender == Node::Unit));
+                if line_of(&identifiers, &frame).is_some_and(|line| line.sender == Node::Unit));
         })?;
         if heard {
             return Ok(None);

@@ -5,12 +5,12 @@
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 
-use embedded_can::{Frame as _, Id};
+use embedded_can::Frame as _;
 use holdover::time::{Duration, Instant};
 use holdover::wire::bits::Payload;
 use holdover::wire::catalogue::{self, Content, Line};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, e2e};
+use holdover::wire::{Identifiers, e2e};
 
 use super::fault::Kind;
 use crate::bus::Frame;
@@ -53,15 +53,14 @@ pub struct Altered {
 
 /// The line of the catalogue for a frame.
 #[must_use]
-pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
-    let Id::Standard(id) = frame.id() else { return None };
-    catalogue::find(base.offset_of(id.as_raw())?).map(|(_, line, _)| line)
+pub fn line_of(identifiers: &Identifiers, frame: &Frame) -> Option<&'static Line> {
+    catalogue::find(identifiers.offset_of(frame.id().into())?).map(|(_, line, _)| line)
 }
 
 /// The harness's side of the bus.
 pub struct Talk<P> {
     port: P,
-    base: BaseId,
+    identifiers: Identifiers,
     /// The time of the bus at the beginning of the run.
     origin: Instant,
     queue: VecDeque<Frame>,
@@ -80,12 +79,12 @@ pub struct Talk<P> {
 }
 
 impl<P: Port> Talk<P> {
-    /// The side of the bus at a port, with a catalogue that begins at `base`.
-    pub fn new(port: P, base: BaseId) -> Self {
+    /// The side of the bus at a port, with the catalogue on these identifiers.
+    pub fn new(port: P, identifiers: Identifiers) -> Self {
         let now = port.now();
         Self {
             port,
-            base,
+            identifiers,
             origin: now,
             queue: VecDeque::new(),
             burst: (now, BURST),
@@ -181,7 +180,7 @@ impl<P: Port> Talk<P> {
             if left == 0 {
                 return Ok(Some(next));
             }
-            let frame = match line_of(self.base, &frame).map(|line| line.content) {
+            let frame = match line_of(&self.identifiers, &frame).map(|line| line.content) {
                 Some(Content::Sync) => {
                     self.mark = Some((Sync::decode(&[payload(&frame)]), now, None));
                     frame
@@ -214,7 +213,7 @@ impl<P: Port> Talk<P> {
     fn note(&mut self, at: Instant, event: &Event) {
         let Event::Sent(frame) = event else { return };
         self.counts.confirmed += 1;
-        if line_of(self.base, frame).is_some_and(|line| line.content == Content::Sync)
+        if line_of(&self.identifiers, frame).is_some_and(|line| line.content == Content::Sync)
             && let Some((_, _, marked)) = &mut self.mark
         {
             *marked = Some(at);
@@ -229,9 +228,9 @@ impl<P: Port> Talk<P> {
         let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload(frame)]) };
         let [dated] = follow_up.encode();
         let counter = frame.data().get(1).map_or(0, |byte| byte & 15);
-        let (Id::Standard(id), Some(line)) = (frame.id(), line_of(self.base, frame)) else { return *frame };
+        let Some(line) = line_of(&self.identifiers, frame) else { return *frame };
         let data = e2e::protect(dated.to_bytes(), catalogue::data_id(line.offset), counter);
-        Frame::standard(id.as_raw(), &data).unwrap_or(*frame)
+        embedded_can::Frame::new(frame.id(), &data).unwrap_or(*frame)
     }
 
     /// The frame to send instead, if it is this frame's turn to be altered.

@@ -42,7 +42,7 @@ impl Player {
     pub fn new(config: &Config, compares: bool) -> Result<Self, ConfigError> {
         let unit = Unit::new(config)?;
         let deaf = compares.then(|| unit.clone());
-        Ok(Self { unit, deaf, timeline: Timeline::new(config.period), tally: Tally::new(config.base_id) })
+        Ok(Self { unit, deaf, timeline: Timeline::new(config.period), tally: Tally::new(config.identifiers) })
     }
 
     /// Sets out on a way through intersections, before the first line.

@@ -9,7 +9,7 @@ use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 /// The ego's station; a peer's is the number of its slot.
 pub const EGO: StationHash = StationHash(100);
@@ -30,7 +30,7 @@ pub struct Road {
 impl Road {
     /// With so many peers, up to 8.
     pub fn new(peers: u8) -> Self {
-        Self { peers, sender: Sender::new(BaseId::DEFAULT), tag: 0, sequence: 0 }
+        Self { peers, sender: Sender::new(Identifiers::DEFAULT), tag: 0, sequence: 0 }
     }
 
     fn say(&mut self, message: &Message, hear: &mut impl FnMut(&Frame)) {
