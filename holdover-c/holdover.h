@@ -101,6 +101,8 @@ enum holdover_status_t
   HOLDOVER_CONFIG_ENVELOPE = -48,
   // `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
   HOLDOVER_CONFIG_CATCH_UP = -49,
+  // `transport` is CAN FD, which this library is built without.
+  HOLDOVER_CONFIG_TRANSPORT = -50,
   // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
   HOLDOVER_REFUSED_LENGTH = -64,
   // The E2E checksum does not fit.

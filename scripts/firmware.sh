@@ -29,7 +29,7 @@ emulate() {
 }
 
 echo "-- the image in its forms"
-for features in bxcan log bxcan,log ''; do
+for features in bxcan log bxcan,log fd ''; do
     cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$features" -- -D warnings
     firmware --features "$features"
     size -A "$built/$ecu/firmware/holdover-ecu" | awk -v features="${features:-none}" '
@@ -45,6 +45,7 @@ arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
 }
 
 echo "-- no panic in the image, from its start on"
+firmware --features no-panic,fd
 firmware --features no-panic
 echo "  linked: nothing reaches the panic handler"
 if RUSTFLAGS='--cfg seeded_panic' firmware --features no-panic --target-dir "$work/seeded" 2>"$work/seeded.txt"; then
@@ -87,7 +88,7 @@ replays=$built/replay
 mkdir -p "$replays"
 "$holdover_log" record "$replays" | sed 's/^/  /'
 while read -r target machine host; do
-    cargo build --locked --quiet --profile firmware --target "$target" --bin replay
+    cargo build --locked --quiet --profile firmware --target "$target" -p holdover-image --bin replay
     program=$built/$target/firmware/replay
     rm -f "$replays/sent.bin"
     (cd "$replays" && emulate -M "$machine" -serial none -semihosting-config enable=on,target=native -kernel "$program")

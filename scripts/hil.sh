@@ -3,10 +3,11 @@
 #
 #   kernel   vcan.sh gives a command a vcan0, and keeps what it says of exit code, output and time
 #   tests    the simulator's tests that need a SocketCAN interface
-#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time
+#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time, over classic CAN and CAN FD
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
 #   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
-#   node     the first node, a Python program that knows the DBC alone, against the process and the emulated Cortex-M4F
+#   node     the first node, a Python program that knows the DBC alone, against the process, over classic CAN and CAN FD, and the
+#            emulated Cortex-M4F. The emulated boards' controllers have classic CAN alone
 #
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
@@ -125,12 +126,15 @@ conclude() {
 }
 
 check_ecu() {
-    echo "-- a process of Linux, real time"
-    judge vcan0
-    conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1"
-    echo "-- a process of Linux, lock step"
-    judge vcan0 --lock-step
-    scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step"
+    local fd
+    for fd in '' --fd; do
+        echo "-- a process of Linux, real time${fd:+, CAN FD}"
+        judge vcan0 $fd
+        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $fd"
+        echo "-- a process of Linux, lock step${fd:+, CAN FD}"
+        judge vcan0 --lock-step $fd
+        scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step $fd"
+    done
 }
 
 check_m4() {
@@ -173,6 +177,9 @@ check_node() {
     echo "-- the first node and a process of Linux"
     conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 & "$@"; code=$?; kill $!; exit $code' \
         "$sim" "${node[@]}"
+    echo "-- the first node and a process of Linux, CAN FD"
+    conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 --fd & "$@"; code=$?; kill $!; exit $code' \
+        "$sim" "${node[@]}" --fd
     echo "-- the first node and an emulated Cortex-M4F over slcan"
     conclude scripts/device-m4.sh "$work/$target-real-time" -- "${node[@]}" --channel slcan0
 }

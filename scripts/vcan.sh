@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # vcan.sh [OPTION...] [--] COMMAND [ARG...]
 #
-# Runs a command under a Linux kernel that has a virtual CAN interface `vcan0`, on any Linux machine and in any CI:
+# Runs a command under a Linux kernel that has a virtual CAN interface `vcan0`, for classic CAN and CAN FD, on any Linux machine and
+# in any CI:
 #
 #   1. directly, where `vcan0` is up already, or where this user may make it (it is removed again afterwards);
 #   2. otherwise in user-mode Linux: a kernel that is an ordinary process. It boots in two seconds on the machine's own
@@ -59,6 +60,7 @@ guest() {
     done
     busybox ip link set lo up
     busybox ip link add dev vcan0 type vcan
+    busybox ip link set vcan0 mtu 72 # of CAN FD
     busybox ip link set vcan0 up
     # By way of pipes, so that no program takes them for a terminal with somebody in front of it.
     local status=0 out err pid
@@ -114,6 +116,7 @@ make_vcan() {
         as_root ip link add dev vcan0 type vcan 2>/dev/null || return 1
         trap 'as_root ip link delete vcan0' EXIT
     fi
+    as_root ip link set vcan0 mtu 72 2>/dev/null || true # of CAN FD, which an interface that is up has already or not at all
     as_root ip link set vcan0 up 2>/dev/null
 }
 

@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use crate::wire::driving_parameters::Limits;
-use crate::wire::{Identifiers, StationHash};
+use crate::wire::{Identifiers, StationHash, Transport};
 
 /// The prediction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,8 +122,10 @@ impl Envelope {
 pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
-    /// Where the lines of the catalogue lie on the bus.
+    /// First CAN identifier of the catalogue.
     pub identifiers: Identifiers,
+    /// Which frames the bus carries.
+    pub transport: Transport,
     /// Period of the task that calls `tick`; 1 to 100 ms.
     pub period: Duration,
     /// Bumper to bumper.
@@ -151,6 +153,7 @@ impl Config {
     pub(crate) const NONE: Self = Self {
         station: StationHash(0),
         identifiers: Identifiers::NONE,
+        transport: Transport::Classic,
         period: Duration::ZERO,
         length: Distance::ZERO,
         lag: FineSeconds::ZERO,
@@ -197,6 +200,7 @@ impl Config {
         Self {
             station,
             identifiers: Identifiers::DEFAULT,
+            transport: Transport::Classic,
             period: Duration::from_millis(10),
             length: parameters::DEFAULT_LENGTH,
             lag: FineSeconds::from_millis(300),

@@ -9,17 +9,20 @@
 //! 3. Any other frame is received at `T` and one period: when the next pair is expected. Before the first pair it is
 //!    dropped.
 //!
-//! Intact is a data frame of 8 bytes with the right checksum; what is not intact falls under 3. GNSS time and the unit's
+//! Intact is a data frame of its length with the right checksum; what is not intact falls under 3. GNSS time and the unit's
 //! own clock are thereby the same.
 
 use embedded_can::Frame;
 
+use crate::config::Config;
 use crate::time::Instant;
 use crate::unit::{Answer, OnboardUnit};
 use crate::wire::bits::Payload;
 use crate::wire::catalogue::{self, Content};
+#[cfg(feature = "fd")]
+use crate::wire::fd;
 use crate::wire::sync::{FollowUp, Sync};
-use crate::wire::{Frame as WireFrame, Identifiers, e2e};
+use crate::wire::{Data, Frame as WireFrame, Transport, e2e};
 
 /// The shell of a unit in lock step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -48,7 +51,7 @@ impl LockStep {
         unit: &mut OnboardUnit<PEERS, SAMPLES, STEPS>,
         frame: &impl Frame,
     ) -> Option<Answer> {
-        match (step(&unit.config().identifiers, frame), self.kept) {
+        match (step(unit.config(), frame), self.kept) {
             (Some(Step::Mark(frame, sync)), _) => {
                 self.kept = Some((frame, sync));
                 None
@@ -72,16 +75,18 @@ impl LockStep {
 }
 
 /// What step of the time synchronisation an intact frame is.
-fn step(identifiers: &Identifiers, frame: &impl Frame) -> Option<Step> {
+fn step(config: &Config, frame: &impl Frame) -> Option<Step> {
     let id = frame.id().into();
-    let offset = identifiers.offset_of(id)?;
-    let (_, line, _) = catalogue::find(offset)?;
-    let data: [u8; 8] = if frame.is_remote_frame() { None } else { frame.data().try_into().ok() }?;
-    let [_, counted, ..] = data;
-    if e2e::protect(data, catalogue::data_id(offset), counted) != data {
-        return None;
-    }
-    let payload = [Payload::from_bytes(data)];
+    let offset = config.identifiers.offset_of(id)?;
+    let (_place, line, _) = catalogue::find(offset)?;
+    let data = if frame.is_remote_frame() { None } else { Data::new(frame.data()) }?;
+    let payload = [match config.transport {
+        Transport::Classic => intact(catalogue::data_id(offset), &data)?,
+        #[cfg(feature = "fd")]
+        Transport::Fd => fd::layout::of(_place)?.intact(catalogue::data_id(offset), &data)?,
+        #[cfg(not(feature = "fd"))]
+        Transport::Fd => return None,
+    }];
     match line.content {
         Content::Sync => Some(Step::Mark(WireFrame { id, data }, Sync::decode(&payload))),
         Content::FollowUp => Some(Step::FollowUp(FollowUp::decode(&payload))),
@@ -89,12 +94,18 @@ fn step(identifiers: &Identifiers, frame: &impl Frame) -> Option<Step> {
     }
 }
 
+/// The payload of a classic frame with the right checksum.
+fn intact(data_id: u16, data: &[u8]) -> Option<Payload> {
+    let data: [u8; 8] = data.try_into().ok()?;
+    let [_, counted, ..] = data;
+    (e2e::protect(data, data_id, counted) == data).then(|| Payload::from_bytes(data))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Config;
     use crate::health::Cause;
-    use crate::wire::{Message, Sender, StationHash};
+    use crate::wire::{Identifiers, Message, Sender, StationHash};
 
     type Unit = OnboardUnit<1, 4, 400>;
 

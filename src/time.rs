@@ -197,6 +197,13 @@ impl Stamp {
         self.0
     }
 
+    /// Whether this stamp is later than the other, of which it is less than half of [`PERIOD`](Self::PERIOD) away.
+    #[must_use]
+    pub const fn is_after(self, other: Self) -> bool {
+        let ahead = Self::from_raw(self.0.wrapping_sub(other.0)).0;
+        ahead > 0 && ahead < 1 << (Self::BITS - 1)
+    }
+
     /// The only GNSS time with this stamp inside `(reference + 1.1 s - 13.1072 s, reference + 1.1 s]`; the time itself,
     /// not before the epoch.
     #[must_use]
@@ -221,6 +228,12 @@ mod tests {
             let back = time.stamp().unwrap_near(reference).as_micros();
             assert!(back.abs_diff(time.as_micros()) <= 50, "{offset}");
         }
+    }
+
+    #[test]
+    fn of_two_stamps_the_later_is_told_across_their_turn() {
+        let after = |a, b| Stamp::from_raw(a).is_after(Stamp::from_raw(b));
+        assert!(after(1, 0) && after(5, (1 << 17) - 5) && !after((1 << 17) - 5, 5) && !after(7, 7));
     }
 
     #[test]

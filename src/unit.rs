@@ -95,6 +95,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         config.check(STEPS)?;
         // Field by field, because the whole of it would pass over the stack.
         self.receiver = Receiver::new(config.identifiers, Role::Unit);
+        #[cfg(feature = "fd")]
+        self.receiver.set_transport(config.transport);
         self.scene.start(config);
         self.association = Association::NONE;
         self.mode = Mode::Standby;
@@ -102,6 +104,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.gate = Gate::new();
         self.dynamics = Inversion::new();
         self.outbox = Outbox::new(config.identifiers);
+        #[cfg(feature = "fd")]
+        self.outbox.set_transport(config.transport);
         self.health = Health::new();
         self.last_tick = None;
         Ok(())

@@ -83,3 +83,17 @@ fn the_load_of_the_bus_is_the_one_that_the_catalogue_makes() {
     let stated = format!("at most {all:.1} % of the bus, the peers' messages {peers:.1} %");
     assert!(page.contains(&stated), "docs/INTEGRATION.md does not say: {stated}");
 }
+
+#[cfg(feature = "fd")]
+#[test]
+fn the_loads_of_both_buses_are_those_that_the_catalogue_makes() {
+    use holdover::wire::load::fd;
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/INTEGRATION.md")).unwrap();
+    let percent = |ppm: u32| format!("{:.1} %", f64::from(ppm) / 10_000.0);
+    for peers in [1, 4, 8, 16] {
+        let classic = load_ppm(500_000, peers, |_| true);
+        let over_fd = fd::load_ppm(500_000, 2_000_000, peers, |_| true);
+        let stated = format!("| {peers} | {} | {} |", percent(classic), percent(over_fd));
+        assert!(page.contains(&stated), "docs/INTEGRATION.md does not say: {stated}");
+    }
+}

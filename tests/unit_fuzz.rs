@@ -113,7 +113,7 @@ fn play(config: &Config, events: Vec<Event>) -> Result<(), TestCaseError> {
                 sender.send(&message, &mut |frame| frames.push(frame)).expect("the catalogue has a line for it");
             }
             Event::Sealed(offset, counter, data) => {
-                let frame = Frame { id: Identifiers::DEFAULT.at(offset), data };
+                let frame = Frame { id: Identifiers::DEFAULT.at(offset), data: data.into() };
                 frames.push(resealed(frame, Some(counter), |_| ()));
             }
             Event::Any(frame) => drop_result(unit.receive(now, &frame)),

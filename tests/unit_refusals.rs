@@ -380,7 +380,7 @@ fn frames_of_others_are_ignored_and_change_nothing() {
 #[test]
 fn every_count_is_told_on_the_bus_under_its_name() {
     let (mut unit, mut traffic) = settled();
-    let wrong = Frame { id: holdover::wire::Identifiers::DEFAULT.at(4), data: [0xAA; 8] };
+    let wrong = Frame { id: holdover::wire::Identifiers::DEFAULT.at(4), data: [0xAA; 8].into() };
     (0..7).for_each(|_| drop_result(unit.receive(traffic.now(), &wrong)));
     assert!(unit.health().of(Cause::Checksum) >= 7);
     let mut told = std::collections::BTreeMap::new();

@@ -25,7 +25,7 @@ fn acquainted<const PEERS: usize>(role: Role) -> (Sender<PEERS>, Receiver<PEERS>
     for line in &CATALOGUE {
         for slot in 0..if line.is_per_slot() { PEERS as u8 } else { 1 } {
             let offset = line.offset_for(Slot(slot));
-            let frame = Frame { id: BASE.plus(offset), data: e2e::protect([0; 8], data_id(offset), 14) };
+            let frame = Frame { id: BASE.at(offset), data: e2e::protect([0; 8], data_id(offset), 14).into() };
             let heard = receiver.receive(Instant::ZERO, &frame);
             assert!(matches!(heard, Err(Cause::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
         }
@@ -133,7 +133,7 @@ proptest! {
         let mut receiver = Receiver::<16>::new(BASE, role);
         let mut counter = 0;
         for word in words {
-            let frame = Frame { id: BASE.plus(offset), data: e2e::protect(word, data_id(offset), counter) };
+            let frame = Frame { id: BASE.at(offset), data: e2e::protect(word, data_id(offset), counter).into() };
             counter = e2e::next(counter);
             match receiver.receive(Instant::ZERO, &frame) {
                 Ok(Received::Whole(message)) => {

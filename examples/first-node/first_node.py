@@ -2,8 +2,8 @@
 """A first node: everything around one holdover unit on a CAN bus, in half a minute.
 
 The program is the vehicle (EgoMotion, DriverRequest), its modem (TimeSync, TimeFollowUp), and one vehicle ahead that the
-modem hears (Peer0Motion, Peer0DrivingParameters). It knows the unit by `holdover.dbc` alone. It engages the unit and moves
-its vehicle as the unit commands. The vehicle ahead begins to accelerate, falls silent for 16.5 s, and speaks again. So the
+modem hears (Peer0Motion, Peer0DrivingParameters). It knows the unit by `holdover.dbc` alone, or over CAN FD (`--fd`) by
+`holdover-fd.dbc`. It engages the unit and moves its vehicle as the unit commands. The vehicle ahead begins to accelerate, falls silent for 16.5 s, and speaks again. So the
 unit goes from standby to cooperative, holdover, fallback and back. The program prints what it saw.
 
     pip install -r examples/first-node/requirements.txt
@@ -26,8 +26,9 @@ from typing import Any
 import can
 import cantools
 from e2e.p01 import e2e_p01_check, e2e_p01_protect
+from e2e.p05 import e2e_p05_check, e2e_p05_protect
 
-DBC = Path(__file__).resolve().parents[2] / "holdover.dbc"
+ROOT = Path(__file__).resolve().parents[2]
 Signals = dict[str, Any]
 
 # GNSS time counts from 1980-01-06 and has no leap seconds; UTC has had 18 since. It goes on by a clock that never steps.
@@ -42,13 +43,17 @@ CRUISE, WANTED = 12.0, 14.0  # m/s: the speed of both vehicles at first, and wha
 LENGTH, LAG, TIME_GAP, STANDSTILL = 4.8, 0.3, 1.6, 2.0  # m, s, s, m: of both vehicles
 
 
-# 1. The bus. Every frame has AUTOSAR E2E Profile 1A: a checksum in byte 0, a counter, 0 to 14, in the low half of byte 1.
-#    The DBC's attributes have the data id, the cycle time and the timeout of each message.
+# 1. The bus. Every frame has AUTOSAR E2E Profile 1A: a checksum in byte 0, a counter, 0 to 14, in the low half of byte 1. Over CAN FD
+#    it is Profile 5: a checksum in bytes 0 and 1, a counter, 0 to 255, in byte 2. The DBC's attributes have the data id, the
+#    cycle time and the timeout of each message.
 class Bus:
     """Messages of the DBC by name: signals enter and leave, protected and checked."""
 
-    def __init__(self, bus: can.BusABC, dbc: Any) -> None:
-        self.bus, self.dbc = bus, dbc
+    def __init__(self, bus: can.BusABC, dbc: Any, fd: bool) -> None:
+        self.bus, self.dbc, self.fd = bus, dbc, fd
+        self.protect, self.check = (e2e_p05_protect, e2e_p05_check) if fd else (e2e_p01_protect, e2e_p01_check)
+        self.counters = 256 if fd else 15
+        self.most_lost = "E2EMaxDeltaCounter" if fd else "E2EMaxDeltaCounterInit"
         self.of_unit = {message.frame_id: message for message in dbc.messages if "Unit" in message.senders}
         bus.set_filters([{"can_id": i, "can_mask": 0x7FF, "extended": False} for i in self.of_unit])
         self.next_counter: dict[str, int] = {}  # of what we send
@@ -61,9 +66,10 @@ class Bus:
     def send(self, name: str, **signals: float | str) -> None:
         message, counter = self.dbc.get_message_by_name(name), self.next_counter.get(name, 0)
         data = bytearray(message.encode({"Crc": 0, "Counter": counter, **signals}))
-        e2e_p01_protect(data, self.attribute(name, "E2EDataId"), increment_counter=False)
-        self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, is_extended_id=False))
-        self.next_counter[name] = (counter + 1) % 15  # each identifier counts all of its frames
+        self.protect(data, self.attribute(name, "E2EDataId"), increment_counter=False)
+        kind = {"is_extended_id": False, "is_fd": self.fd, "bitrate_switch": self.fd}
+        self.bus.send(can.Message(arbitration_id=message.frame_id, data=data, **kind))
+        self.next_counter[name] = (counter + 1) % self.counters  # each identifier counts all of its frames
 
     def receive(self, timeout: float) -> tuple[str, Signals] | None:
         """The next message of the unit, if one comes in time and its checksum is right."""
@@ -71,13 +77,13 @@ class Bus:
         if frame is None or (message := self.of_unit.get(frame.arbitration_id)) is None:
             return None
         name, self.received = message.name, self.received + 1
-        if len(frame.data) != 8 or not e2e_p01_check(frame.data, self.attribute(name, "E2EDataId")):
+        if len(frame.data) != message.length or not self.check(frame.data, self.attribute(name, "E2EDataId")):
             self.broken += 1
             return None
         signals = message.decode(bytes(frame.data))
         counter = signals["Counter"]
-        step = (counter - self.last_counter.get(name, counter - 1)) % 15
-        self.gaps += not 1 <= step <= self.attribute(name, "E2EMaxDeltaCounterInit")
+        step = (counter - self.last_counter.get(name, counter - 1)) % self.counters
+        self.gaps += not 1 <= step <= self.attribute(name, self.most_lost)
         self.last_counter[name] = counter
         return name, signals
 
@@ -99,12 +105,20 @@ class Vehicle:
         if self.speed == 0.0:
             self.acceleration = max(self.acceleration, 0.0)
 
+    def motion(self, station: int, gnss: float) -> tuple[dict[str, float], dict[str, float]]:
+        """Both halves of its motion; the stamp says when all of it was true, modulo 13.1072 s."""
+        place = {"Position": self.position, "Stamp": int(gnss * 10_000) % 2**17 / 10_000, "Station": station}
+        change = {"Speed": self.speed, "Acceleration": self.acceleration, "Demand": self.demand}
+        return place, change | {"PositionAccuracy": 0.1, "SpeedAccuracy": 0.04}
+
     def tell(self, bus: Bus, name: str, station: int, tag: int, gnss: float) -> None:
-        """Two frames of one tag, one right after the other, are one motion: the unit takes both or none."""
-        stamp = int(gnss * 10_000) % 2**17 / 10_000  # when all of this was true, modulo 13.1072 s
-        bus.send(f"{name}MotionA", Tag=tag, Position=self.position, Stamp=stamp, Station=station)
-        motion = {"Speed": self.speed, "Acceleration": self.acceleration, "Demand": self.demand}
-        bus.send(f"{name}MotionB", Tag=tag, **motion, PositionAccuracy=0.1, SpeedAccuracy=0.04)
+        """Two frames of one tag, one right after the other, are one motion: the unit takes both or none. Over CAN FD it is one."""
+        place, change = self.motion(station, gnss)
+        if bus.fd:
+            bus.send(f"{name}Motion", **place, **change)
+        else:
+            bus.send(f"{name}MotionA", Tag=tag, **place)
+            bus.send(f"{name}MotionB", Tag=tag, **change)
 
 
 def free_road(speed: float, target_speed: float) -> float:
@@ -118,6 +132,9 @@ PARAMETERS: list[dict[str, float | str]] = [
     {"TimeGap": TIME_GAP, "Gain": 0.5, "Damping": 2.0, "Lag": LAG, "CatchUp": 0.0},
     {"AccelerationLimit": 2.5, "BrakingLimit": 4.0, "JerkLimit": 5.0, "EmergencyBraking": 8.0, "HorizonLength": 0.0},
 ]
+
+# What stands over CAN FD in place of a horizon that is absent.
+NO_HORIZON = {f"{name}{knot}": 0.0 for name in ("Displacement", "Speed", "Acceleration", "Bow") for knot in range(5)}
 
 
 def number(value: Any) -> float:
@@ -211,10 +228,18 @@ class Node:
         self.wanted = CRUISE if due < FASTER else WANTED
         if SILENT <= due < BACK:
             return
+        parameters = [PARAMETERS[0] | {"TargetSpeed": self.wanted}, *PARAMETERS[1:]]
+        if self.bus.fd:
+            # Motion, driving parameters and horizon are one message: here without a horizon, and each time with the parameters.
+            if self.turn("Peer0State", due) is not None:
+                place, change = self.peer.motion(PEER_STATION, at)
+                said = parameters[0] | parameters[1] | parameters[2]
+                self.bus.send("Peer0State", **place, **change, HorizonValid="absent", **NO_HORIZON, ParametersValid="present", **said)
+            return
         if (turn := self.turn("Peer0MotionA", due)) is not None:
             self.peer.tell(self.bus, "Peer0", PEER_STATION, turn % 4, at)
         if (turn := self.turn("Peer0DrivingParameters", due)) is not None:
-            for part, signals in enumerate([PARAMETERS[0] | {"TargetSpeed": self.wanted}, *PARAMETERS[1:]]):
+            for part, signals in enumerate(parameters):
                 self.bus.send("Peer0DrivingParameters", Tag=turn % 4, Part=part, **signals)
 
     def hear(self, timeout: float) -> None:
@@ -225,7 +250,11 @@ class Node:
             self.obey(str(signals["Mode"]), signals["Acceleration"])
         elif name == "TargetEstimateA":
             self.estimate = signals
-        elif name == "TargetEstimateB" and signals["Tag"] == self.estimate.get("Tag") and self.mode == "holdover":
+        elif name in ("TargetEstimate", "TargetEstimateB") and self.mode == "holdover":
+            if self.bus.fd:
+                self.estimate = signals
+            elif signals["Tag"] != self.estimate.get("Tag"):
+                return
             ahead = self.peer.position + self.peer.speed * (time.monotonic() - self.driven) - self.estimate["Position"]
             self.seen.estimates += 1
             self.seen.largest_error = max(self.seen.largest_error, abs(ahead))
@@ -277,12 +306,14 @@ def main() -> int:
     parser.add_argument("--interface", default="socketcan", help="of python-can (default: socketcan)")
     parser.add_argument("--channel", default="vcan0", help="of that interface (default: vcan0)")
     parser.add_argument("--bitrate", type=int, help="for interfaces that need one: 500000")
+    parser.add_argument("--fd", action="store_true", help="the bus is CAN FD")
     arguments = parser.parse_args()
     options = {name: value for name, value in vars(arguments).items() if value is not None}
+    dbc = ROOT / ("holdover-fd.dbc" if arguments.fd else "holdover.dbc")
     with can.Bus(**options) as raw:
-        bus = Bus(raw, cantools.database.load_file(DBC))
+        bus = Bus(raw, cantools.database.load_file(dbc), arguments.fd)
         if bus.receive(5.0) is None:
-            remedy = f"holdover-sim ecu --bus {arguments.channel} --station {STATION}"
+            remedy = f"holdover-sim ecu --bus {arguments.channel} --station {STATION}{' --fd' * arguments.fd}"
             print(f"no unit on {arguments.channel}; remedy: {remedy}", file=sys.stderr)
             return 1
         node = Node(bus)

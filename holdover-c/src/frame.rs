@@ -22,13 +22,9 @@ pub struct Frame {
 
 impl From<&holdover::wire::Frame> for Frame {
     fn from(frame: &holdover::wire::Frame) -> Self {
-        Self {
-            id: frame.id.number(),
-            extended: u8::from(frame.id.is_extended()),
-            remote: 0,
-            length: 8,
-            data: frame.data,
-        }
+        let mut data = [0; 8];
+        data.iter_mut().zip(frame.data.iter()).for_each(|(to, from)| *to = *from);
+        Self { id: frame.id.number(), extended: u8::from(frame.id.is_extended()), remote: 0, length: 8, data }
     }
 }
 

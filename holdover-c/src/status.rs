@@ -78,10 +78,12 @@ pub enum Status {
     ConfigEnvelope = -48,
     /// `catch_up` is outside 0 to 0.75, or no multiple of 0.05.
     ConfigCatchUp = -49,
+    /// `transport` is CAN FD, which this library is built without.
+    ConfigTransport = -50,
     /// An identifier that was placed has more than its 11 or 29 bits, with all its 16 slots, or no kind.
-    ConfigIdentifierRange = -50,
+    ConfigIdentifierRange = -51,
     /// Two messages have the same identifier, all 16 slots counted. `holdover-sim dbc --place` names them.
-    ConfigIdentifierShared = -51,
+    ConfigIdentifierShared = -52,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,
     /// The E2E checksum does not fit.
@@ -175,6 +177,7 @@ impl From<ConfigError> for Status {
             ConfigError::Link => Self::ConfigLink,
             ConfigError::Body => Self::ConfigBody,
             ConfigError::Envelope => Self::ConfigEnvelope,
+            ConfigError::Transport => Self::ConfigTransport,
         }
     }
 }
@@ -254,6 +257,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::ConfigBody, c"configuration: body"),
     (Status::ConfigEnvelope, c"configuration: envelope"),
     (Status::ConfigCatchUp, c"configuration: catch_up"),
+    (Status::ConfigTransport, c"configuration: transport"),
     (Status::ConfigIdentifierRange, c"configuration: an identifier has more bits than its kind, or no kind"),
     (Status::ConfigIdentifierShared, c"configuration: two messages have the same identifier"),
     (Status::RefusedLength, c"refused: length"),

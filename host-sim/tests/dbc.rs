@@ -1,4 +1,4 @@
-//! `holdover.dbc` against the frames: random messages are encoded by the core's sender, their raw frames are decoded by
+//! `holdover.dbc` and `holdover-fd.dbc` against the frames: random messages are encoded by the core's sender, their raw frames are decoded by
 //! what an independent parser reads in the file, and every signal of every message is compared with the message.
 
 #[allow(dead_code)] // shared with the core's own tests
@@ -6,12 +6,16 @@
 mod messages;
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, Signal, ValueDescription, ValueType};
+use embedded_can::Id;
 use holdover::wire::catalogue::{CATALOGUE, data_id};
 use holdover::wire::command::Effort;
-use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot};
-use messages::{from_unit, to_unit};
+use holdover::wire::fd::State;
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, Transport};
+use messages::{from_unit, knots, motion, parameters, to_unit};
+use proptest::option;
 use proptest::prelude::*;
 
 /// What a signal says: a physical value, or the name that the file gives to the raw value.
@@ -21,15 +25,22 @@ enum Reading {
     Name(String),
 }
 
+fn read(name: &str) -> Dbc {
+    let text = std::fs::read_to_string(format!("{}/../{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    Dbc::try_from(text.as_str()).unwrap()
+}
+
 fn file() -> &'static Dbc {
-    static FILE: std::sync::LazyLock<Dbc> = std::sync::LazyLock::new(|| {
-        let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../holdover.dbc")).unwrap();
-        Dbc::try_from(text.as_str()).unwrap()
-    });
+    static FILE: LazyLock<Dbc> = LazyLock::new(|| read("holdover.dbc"));
     &FILE
 }
 
-fn raw(signal: &Signal, data: &[u8; 8]) -> i64 {
+fn file_fd() -> &'static Dbc {
+    static FILE: LazyLock<Dbc> = LazyLock::new(|| read("holdover-fd.dbc"));
+    &FILE
+}
+
+fn raw(signal: &Signal, data: &[u8]) -> i64 {
     assert_eq!(signal.byte_order, ByteOrder::LittleEndian);
     let bit = |place: u64| i64::from(data[(place / 8) as usize] >> (place % 8) & 1);
     let bits = (0..signal.size).fold(0, |sum, place| sum | bit(signal.start_bit + place) << place);
@@ -37,11 +48,16 @@ fn raw(signal: &Signal, data: &[u8; 8]) -> i64 {
     if negative { bits - (1 << signal.size) } else { bits }
 }
 
-fn name_of(id: u16, signal: &str, raw: i64) -> Option<String> {
-    file().value_descriptions.iter().find_map(|described| match described {
-        ValueDescription::Signal { message_id, name, value_descriptions }
-            if *message_id == MessageId::Standard(id) && name == signal =>
-        {
+fn id_of(frame: &Frame) -> MessageId {
+    match frame.id.into() {
+        Id::Standard(id) => MessageId::Standard(id.as_raw()),
+        Id::Extended(id) => MessageId::Extended(id.as_raw()),
+    }
+}
+
+fn name_of(file: &Dbc, id: MessageId, signal: &str, raw: i64) -> Option<String> {
+    file.value_descriptions.iter().find_map(|described| match described {
+        ValueDescription::Signal { message_id, name, value_descriptions } if *message_id == id && name == signal => {
             value_descriptions.iter().find(|value| value.id == raw).map(|value| value.description.clone())
         }
         _ => None,
@@ -49,11 +65,12 @@ fn name_of(id: u16, signal: &str, raw: i64) -> Option<String> {
 }
 
 /// Message name, and the readings of all its frames' signals; the E2E header and the part are left out.
-fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
+fn decoded(file: &Dbc, frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
     let (mut names, mut readings) = (Vec::new(), BTreeMap::new());
     for frame in frames {
-        let message =
-            file().messages.iter().find(|message| message.id == MessageId::Standard(frame.id.number() as u16)).unwrap();
+        let id = id_of(frame);
+        let message = file.messages.iter().find(|message| message.id == id).unwrap();
+        assert_eq!(message.size, frame.data.len() as u64, "{}", message.name);
         if !names.contains(&message.name) {
             names.push(message.name.clone());
         }
@@ -68,7 +85,7 @@ fn decoded(frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
                 continue;
             }
             let raw = raw(signal, &frame.data);
-            let reading = match name_of(frame.id.number() as u16, &signal.name, raw) {
+            let reading = match name_of(file, id, &signal.name, raw) {
                 Some(name) => Reading::Name(name),
                 None => Reading::Value(raw as f64 * signal.factor + signal.offset),
             };
@@ -153,6 +170,18 @@ fn expected_of_said(said: &Said) -> Expected {
                 .value(&format!("Acceleration{n}"), si!(knot.acceleration))
                 .value(&format!("Bow{n}"), si!(knot.bow))
         }),
+        Said::State(state) => {
+            let present = |there: bool| if there { "present" } else { "absent" };
+            let parts = [
+                Some(Said::Motion(state.motion)),
+                state.parameters.map(Said::DrivingParameters),
+                state.horizon.map(Said::Horizon),
+            ];
+            let readings = parts.iter().flatten().flat_map(|part| expected_of_said(part).0);
+            Expected(readings.collect())
+                .name("HorizonValid", present(state.horizon.is_some()))
+                .name("ParametersValid", present(state.parameters.is_some()))
+        }
         Said::Geo(g) => e
             .value("Tag", g.tag)
             .value("Latitude", f64::from(g.latitude) / 1e7)
@@ -261,6 +290,7 @@ fn names_of(message: &Message) -> Vec<String> {
         Said::Horizon(_) => vec![format!("{speaker}Horizon")],
         Said::Geo(_) => vec![format!("{speaker}Position")],
         Said::Route(_) => vec![format!("{speaker}Route")],
+        Said::State(_) => vec![format!("{speaker}State")],
     };
     match message {
         Message::Ego(said) => of_said("Ego".into(), said),
@@ -278,23 +308,53 @@ fn names_of(message: &Message) -> Vec<String> {
     }
 }
 
+fn are_as_meant(readings: &BTreeMap<String, Reading>, expected: &BTreeMap<String, Reading>) -> bool {
+    assert_eq!(readings.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    readings.iter().all(|(name, reading)| match (reading, &expected[name]) {
+        // a quantity is within half a word of its format of the decimal that it stands for
+        (Reading::Value(read), Reading::Value(meant)) => (read - meant).abs() < 1e-6,
+        (read, meant) => read == meant,
+    })
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
     #[test]
     fn every_signal_of_every_message_reads_in_the_file_as_it_was_meant(message in prop_oneof![to_unit(8), from_unit()]) {
         let mut frames = Vec::new();
         Sender::<8>::new(Identifiers::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
-        let (names, readings) = decoded(&frames);
+        let (names, readings) = decoded(file(), &frames);
         let expected = expected_of(&message).0;
         prop_assert_eq!(names, names_of(&message));
-        prop_assert_eq!(readings.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
-        for (name, reading) in &readings {
-            match (reading, &expected[name]) {
-                // a quantity is within half a word of its format of the decimal that it stands for
-                (Reading::Value(read), Reading::Value(meant)) => prop_assert!((read - meant).abs() < 1e-6, "{}: {} {}", name, read, meant),
-                (read, meant) => prop_assert_eq!(read, meant, "{}", name),
-            }
+        prop_assert!(are_as_meant(&readings, &expected));
+    }
+
+    #[test]
+    fn every_signal_of_every_message_over_can_fd_reads_in_its_file_as_it_was_meant(
+        message in prop_oneof![to_unit(8), from_unit()], motion in motion(), parameters in option::of(parameters()), horizon in option::of(knots()),
+    ) {
+        let state = |said: Said| match said {
+            Said::Motion(_) | Said::DrivingParameters(_) | Said::Horizon(_) => Said::State(State { motion, parameters, horizon }),
+            other => other,
+        };
+        let message = match message {
+            Message::Peer(slot, said) => Message::Peer(slot, state(said)),
+            Message::Own(said) => Message::Own(state(said)),
+            other => other,
+        };
+        let mut frames = Vec::new();
+        Sender::<8>::new(Identifiers::DEFAULT).over(Transport::Fd).send(&message, &mut |frame| frames.push(frame)).unwrap();
+        let (names, mut readings) = decoded(file_fd(), &frames);
+        let mut expected = expected_of(&message).0;
+        expected.remove("Tag");
+        // What is not there is not read.
+        if readings.contains_key("HorizonValid") {
+            readings.retain(|name, _| expected.contains_key(name));
         }
+        let whole = |name: String| name.replace("EgoMotionA", "EgoMotion").replace("TargetEstimateA", "TargetEstimate");
+        let meant: Vec<_> = names_of(&message).into_iter().map(whole).filter(|name| !name.ends_with('B')).collect();
+        prop_assert_eq!(names, meant);
+        prop_assert!(are_as_meant(&readings, &expected));
     }
 }
 

@@ -3,7 +3,7 @@
 use embedded_can::{Frame as _, Id};
 use holdover::Config;
 use holdover::time::Duration;
-use holdover::wire::{StationHash, e2e};
+use holdover::wire::{StationHash, Transport, e2e};
 use holdover_sim::bus::{Frame, Port};
 use holdover_sim::commands::hil::judge::{LATENCY_P99_MS, Results, judge};
 use holdover_sim::commands::hil::lock_step;
@@ -64,6 +64,37 @@ fn in_lock_step_device_and_twin_say_the_same_bit_for_bit() {
     assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
     assert_eq!((results.deviation.ticks, results.deviation.different_frames), (2100, 0));
     assert!(results.deviation.frames > 3 * 2100, "{}", results.deviation.frames);
+}
+
+/// The same over CAN FD.
+const SHORT_FD: &str = "duration_s = 4\n[bus]\nkind = \"fd\"\n[channel]\noutages = []\nloss = 0.0";
+
+#[test]
+fn over_can_fd_a_good_device_passes_and_says_what_its_twin_says() {
+    let setup = setup(SHORT_FD, &[]);
+    let results = step(&setup, |_| {});
+    assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
+    assert_eq!((results.deviation.ticks, results.deviation.different_frames), (500, 0));
+    let results = run(&setup, |_| {});
+    assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
+    assert!(results.device.commands >= 400 && results.deviation.position_m < 0.02);
+    assert!(results.timing.latency.max_ms.unwrap() < 10.5);
+}
+
+#[test]
+fn over_can_fd_faults_of_the_bus_are_played_and_a_device_of_the_other_bus_is_found_silent() {
+    for (fault, is_refused) in [("corrupt@1:1", "checksum"), ("truncate@1:1", "length"), ("foreign@1:1", "")] {
+        let setup = setup(&SHORT_FD.replace("= 4", "= 12"), &[fault]);
+        let results = run(&setup, |_| {});
+        assert!(results.faults.len() == 1, "{fault}");
+        assert!(
+            is_refused.is_empty() || results.device.refusals.contains_key(is_refused),
+            "{:?}",
+            results.device.refusals
+        );
+    }
+    let results = run(&setup(SHORT_FD, &[]), |behaviour| behaviour.config.transport = Transport::Classic);
+    assert_eq!(results.verdict, "failed");
 }
 
 #[test]

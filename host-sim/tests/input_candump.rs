@@ -46,6 +46,12 @@ fn a_screen_line_is_the_same_frame_with_or_without_a_time() {
     assert_eq!(only("  can1  TX B E  044   [5]  2A 36 6C 2B BA").content, content);
 }
 
+const TWELVE: [u8; 12] = [0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88, 0x99, 0xAA, 0xBB, 0xCC];
+
+fn fd(flags: u8, data: &[u8]) -> Content {
+    Content::Frame(Frame::fd(StandardId::new(0x123).unwrap(), flags, data).unwrap())
+}
+
 #[test]
 fn every_kind_of_frame_is_recognised_in_both_forms() {
     let extended = Content::Frame(Frame::extended(0x12345678, &[0x11]).unwrap());
@@ -58,14 +64,14 @@ fn every_kind_of_frame_is_recognised_in_both_forms() {
         ("(1.0) can0 00000123#11", Content::Frame(Frame::extended(0x123, &[0x11]).unwrap())),
         ("(1.0) can0 123#R", remote(0x123, 0)),
         ("(1.0) can0 123#R8", remote(0x123, 8)),
-        ("(1.0) can0 123##0112233445566778899AABBCC", Content::Fd),
+        ("(1.0) can0 123##0112233445566778899AABBCC", fd(0, &TWELVE)),
         ("(1.0) can0 00123#81:00:12345678#11223344", Content::Xl),
         ("(1.0) can0 20000004#0004000000000000", Content::ErrorFrame),
         ("  can0  123   [0] ", data_frame(0x123, &[])),
         ("  can0  12345678   [1]  11", extended),
         ("  can0  123   [4]  remote request", remote(0x123, 4)),
-        ("  can0  123  [12]  11 22 33 44 55 66 77 88 99 AA BB CC", Content::Fd),
-        ("  can0  123  [08]  11 22 33 44 55 66 77 88", Content::Fd),
+        ("  can0  123  [12]  11 22 33 44 55 66 77 88 99 AA BB CC", fd(5, &TWELVE)),
+        ("  can0  123  [08]  11 22 33 44 55 66 77 88", fd(5, &TWELVE[..8])),
         ("  can0  20000004   [8]  00 04 00 00 00 00 00 00   ERRORFRAME", Content::ErrorFrame),
     ];
     for (line, content) in cases {

@@ -5,9 +5,9 @@ use std::io;
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::Instant;
+use holdover_sim::bus::Frame;
 use holdover_sim::bus::candump::LogWriter;
 use holdover_sim::bus::port::{BusError, Event, Port};
-use holdover_sim::bus::{FdFrame, Frame};
 use holdover_sim::commands::record::interruption::Interruption;
 use holdover_sim::commands::record::{Recorded, record};
 
@@ -41,8 +41,8 @@ fn every_frame_is_recorded_can_fd_too_and_a_signal_ends_it_with_a_complete_log()
     let extended = Id::Extended(ExtendedId::new(0x123).unwrap());
     let events = [
         Event::Received(Frame::standard(0x123, &[0xAB]).unwrap()),
-        Event::Fd(FdFrame::new(standard, 5, &[0xAA, 0xBB, 0xCC]).unwrap()),
-        Event::Fd(FdFrame::new(extended, 0x14, &[0x11; 64]).unwrap()),
+        Event::Received(Frame::fd(standard, 5, &[0xAA, 0xBB, 0xCC]).unwrap()),
+        Event::Received(Frame::fd(extended, 0x14, &[0x11; 64]).unwrap()),
         Event::Error(BusError::BUS_OFF),
     ];
     let interruption = Interruption::default();
@@ -55,9 +55,4 @@ fn every_frame_is_recorded_can_fd_too_and_a_signal_ends_it_with_a_complete_log()
     let lines = ["123#AB", "123##5AABBCC", &format!("00000123##4{}", "11".repeat(64)), "20000040#0000000000000000"];
     let expected: String = lines.map(|line| format!("(0000000001.500000) can0 {line}\n")).concat();
     assert_eq!(String::from_utf8(log).unwrap(), expected);
-}
-
-#[test]
-fn no_can_fd_frame_has_more_than_64_bytes() {
-    assert_eq!(FdFrame::new(StandardId::ZERO, 0, &[0; 65]), None);
 }

@@ -75,6 +75,15 @@ fn in_lock_step_the_process_and_its_twin_say_the_same_bit_for_bit_for_all_of_the
 
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn in_lock_step_over_can_fd_the_process_and_its_twin_say_the_same_bit_for_bit() {
+    let (code, results) = once(&["--fd", "--lock-step", "--device", &device("--lock-step --fd")]);
+    assert_eq!((code, &results["verdict"], &results["reasons"]), (0, &"passed".into(), &serde_json::json!([])));
+    assert_eq!(results["deviation"]["ticks"], 2100);
+    assert_eq!(results["deviation"]["different_frames"], 0);
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn in_lock_step_a_unit_that_is_another_one_than_its_twin_is_found() {
     let (_folder, file) = scenario("duration_s = 3\n[channel]\noutages = []\nloss = 0.0");
     let (code, results) = once(&[&file, "--lock-step", "--device", &device("--lock-step --vehicle 3")]);

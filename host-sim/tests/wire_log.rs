@@ -55,6 +55,14 @@ fn a_log_of_a_string_has_every_frame_once_one_after_the_other_by_identifier() {
 }
 
 #[test]
+fn a_log_of_a_string_over_can_fd_has_so_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = folder.path().join("fd.toml");
+    std::fs::write(&scenario, "duration_s = 30\n[bus]\nkind = \"fd\"\n").unwrap();
+    could_have_been(logs(folder.path(), &["run", scenario.to_str().unwrap()]), Duration::from_millis(10));
+}
+
+#[test]
 fn a_log_of_a_corridor_has_every_frame_once_one_after_the_other_by_identifier() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = folder.path().join("short.toml");

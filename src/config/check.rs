@@ -5,9 +5,9 @@ use super::{Config, Prediction};
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
-use crate::wire::IdentifierError;
 use crate::wire::driving_parameters::Limits;
 use crate::wire::quantity::Quantity;
+use crate::wire::{IdentifierError, Transport};
 
 /// Why a configuration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub enum ConfigError {
     /// than 0.1 m/s² or 0.1 m/s³, which is hardly a step of a command; or its
     /// delay is beyond 0.5 s, its tolerance beyond the whole lag, or the longest lag beyond 1.998 s.
     Envelope,
+    /// `transport` is CAN FD, which this build has no code for: it takes the feature `fd`.
+    Transport,
 }
 
 impl core::fmt::Display for ConfigError {
@@ -73,6 +75,7 @@ impl core::fmt::Display for ConfigError {
             Self::Link => "a time of the link is out of range",
             Self::Body => "the vehicle's body is out of range (mass 300 to 40,000 kg, gear ratio above 0)",
             Self::Envelope => "a limit of the envelope is zero, its margin is negative, its braking is below 0.1 m/s² or its jerk below 0.1 m/s³, its braking is harder than emergency braking, its delay is beyond 0.5 s, or its lag_tolerance is beyond 1 or makes a lag beyond 1.998 s",
+            Self::Transport => "transport is CAN FD, which this build has no code for; build with the feature `fd`",
         })
     }
 }
@@ -96,6 +99,7 @@ impl Config {
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
         let millis = Duration::from_millis;
         self.identifiers.check().map_err(ConfigError::Identifiers)?;
+        ensure(cfg!(feature = "fd") || self.transport == Transport::Classic, ConfigError::Transport)?;
         ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
         let Prediction { step, horizon, .. } = self.prediction;
         ensure((millis(1)..=millis(1000)).contains(&step), ConfigError::Step)?;

@@ -14,9 +14,13 @@ use crate::model::{Aim, Reading, VehicleModel};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
+#[cfg(feature = "fd")]
+use crate::wire::Transport;
 use crate::wire::command::Command;
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::estimate::{Ends, TargetEstimate};
+#[cfg(feature = "fd")]
+use crate::wire::fd::State;
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
@@ -67,6 +71,11 @@ impl Outbox {
             at_once: 0,
             parameters: Held::Nothing,
         }
+    }
+
+    #[cfg(feature = "fd")]
+    pub(super) fn set_transport(&mut self, transport: Transport) {
+        self.sender.set_transport(transport);
     }
 
     /// The number of this tick's command.
@@ -170,20 +179,50 @@ impl Outbox {
             speed_accuracy: ego.speed_accuracy,
             station: scene.config.station,
         };
+        #[cfg(feature = "fd")]
+        if scene.config.transport == Transport::Fd {
+            return self.send_state(scene, ego, motion, report, health, frames);
+        }
         self.emit(&Message::Own(Said::Motion(motion)), health, frames);
         if let Some(route) = route(scene, tag, ego) {
             self.emit(&Message::Own(Said::Route(route)), health, frames);
         }
-        if report.mode != Mode::Standby {
-            let parameters = parameters(scene, report);
-            if self.are_parameters_due(parameters) {
-                self.emit(&Message::Own(Said::DrivingParameters(parameters)), health, frames);
-            }
+        if let Some(parameters) = self.due_parameters(scene, report) {
+            self.emit(&Message::Own(Said::DrivingParameters(parameters)), health, frames);
         }
         if report.mode.is_by_law() {
             let knots = own_knots(scene, tag, ego);
             self.emit(&Message::Own(Said::Horizon(knots)), health, frames);
         }
+    }
+
+    /// Sends the same over CAN FD: what the motion begins is one message.
+    #[cfg(feature = "fd")]
+    fn send_state<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &mut self,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        ego: &Sample,
+        motion: Motion,
+        report: &Report<'_>,
+        health: &mut Health,
+        frames: &mut Vec<Frame, MAX_FRAMES>,
+    ) {
+        let parameters = self.due_parameters(scene, report);
+        let horizon = report.mode.is_by_law().then(|| own_knots(scene, motion.tag, ego));
+        self.emit(&Message::Own(Said::State(State { motion, parameters, horizon })), health, frames);
+        if let Some(route) = route(scene, motion.tag, ego) {
+            self.emit(&Message::Own(Said::Route(route)), health, frames);
+        }
+    }
+
+    /// The driving parameters, when they are due.
+    fn due_parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &mut self,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        report: &Report<'_>,
+    ) -> Option<DrivingParameters> {
+        let parameters = (report.mode != Mode::Standby).then(|| parameters(scene, report))?;
+        self.are_parameters_due(parameters).then_some(parameters)
     }
 
     /// Adds the frames of a message to those of this tick. A frame that cannot be sent is lost, and counted.

@@ -1,17 +1,18 @@
 //! The message catalogue: every identifier of the unit's bus with its sender, times, E2E parameters and fields. An
 //! identifier enters and its line leaves; receiver, sender, DBC and bus load all read the one table.
 //!
-//! Identifiers are `base + offset`, unless [`super::Identifiers`] places them elsewhere; the low ones win the bus. Peers have [`SLOT_STRIDE`] identifiers a slot. The E2E
-//! data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
+//! Identifiers are `base + offset` unless [`super::Identifiers`] places them elsewhere; the low ones win the bus. Peers have
+//! [`SLOT_STRIDE`] offsets a slot. The E2E data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
 //! which the CRC is one to one, so a frame that strays to another identifier of the block never passes.
 
+use super::Slot;
 use super::e2e::Limits;
 use super::field::{Field, Place};
 use super::index;
-use super::{
-    Slot, actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route,
-    status, sync, unserved,
-};
+
+mod lines;
+
+pub use lines::{CATALOGUE, LINES};
 
 /// Identifiers that the catalogue takes up, from the base on.
 pub const BLOCK: u16 = 0xC0;
@@ -79,25 +80,25 @@ pub const ABOUTS: usize = 6;
 /// What stands on an identifier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
-    /// [`sync::Sync`].
+    /// [`super::sync::Sync`].
     Sync,
-    /// [`sync::FollowUp`].
+    /// [`super::sync::FollowUp`].
     FollowUp,
-    /// [`command::Command`].
+    /// [`super::command::Command`].
     Command,
-    /// [`driver_request::DriverRequest`].
+    /// [`super::driver_request::DriverRequest`].
     DriverRequest,
-    /// [`actuators::ActuatorState`].
+    /// [`super::actuators::ActuatorState`].
     Actuators,
-    /// [`range_sensor::RangeSample`].
+    /// [`super::range_sensor::RangeSample`].
     Range,
-    /// [`unserved::Unserved`].
+    /// [`super::unserved::Unserved`].
     Unserved,
-    /// First frame of [`estimate::TargetEstimate`].
+    /// First frame of [`super::estimate::TargetEstimate`].
     EstimateA,
     /// Its second frame.
     EstimateB,
-    /// [`status::Status`].
+    /// [`super::status::Status`].
     Status,
     /// Something about a vehicle.
     Said(Speaker, About),
@@ -137,8 +138,24 @@ pub struct Line {
     pub within_ms: u16,
     /// The fields of all its frames.
     pub fields: &'static [Field],
-    /// Rules for readers of the DBC.
+    /// What ties its frames, where it needs several of classic CAN: the first of the rules for readers of the DBC.
+    pub tied: &'static str,
+    /// The other rules.
     pub comment: &'static str,
+    /// Where it stands on a bus of CAN FD.
+    pub on_fd: OnFd,
+}
+
+/// Where a message of the catalogue stands on a bus of CAN FD, whose frames have room for all parts of a message, and for
+/// several messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnFd {
+    /// It begins a frame, which has this name.
+    Frame(&'static str),
+    /// It follows the line before it, in the same frame.
+    Follows,
+    /// The same, and a signal of this name says whether it does.
+    MayFollow(&'static str),
 }
 
 impl Line {
@@ -173,145 +190,54 @@ pub const fn data_id(offset: u16) -> u16 {
     DATA_ID_BASE.wrapping_add(offset)
 }
 
-const fn line(name: &'static str, offset: u16, content: Content, sender: Node, fields: &'static [Field]) -> Line {
-    let (cycle_ms, timeout_ms, frames) = timing(content);
-    let (within_ms, comment) = (within(content), comment(content));
-    Line { name, content, offset, sender, cycle_ms, timeout_ms, frames, within_ms, fields, comment }
-}
-
-/// Cycle, timeout and frames per cycle. The timeout of what the unit receives is that after which it reacts, by the default
-/// configuration, and 0 where no loss of that message alone has a reaction of its own: what was said last holds. The timeout of
-/// what it sends is 5 cycles of what comes every 10 ms, else 3.
-#[allow(clippy::cast_possible_truncation)] // 5 knots
-const fn timing(content: Content) -> (u16, u16, u8) {
-    match content {
-        Content::Sync | Content::FollowUp => (500, 5000, 1),
-        Content::Command | Content::EstimateA | Content::EstimateB => (10, 50, 1),
-        Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => (10, 50, 1),
-        Content::Range => (20, 200, 1),
-        Content::Unserved => (200, 600, 1),
-        Content::Actuators => (20, 0, 1),
-        Content::DriverRequest | Content::Status => (100, 300, 1),
-        Content::Said(Speaker::Peer, About::MotionA | About::MotionB) => (100, 250, 1),
-        Content::Said(_, About::MotionA | About::MotionB) => (100, 300, 1),
-        Content::Said(speaker, About::Horizon) => (100, held(speaker, 300), horizon::KNOTS as u8),
-        Content::Said(speaker, About::Geo) => (100, held(speaker, 300), 2),
-        Content::Said(speaker, About::DrivingParameters) => (500, held(speaker, 1500), 3),
-        Content::Said(speaker, About::Route) => (200, held(speaker, 600), 2),
-    }
-}
-
-/// No timeout of what the unit receives.
-const fn held(speaker: Speaker, timeout_ms: u16) -> u16 {
-    if matches!(speaker, Speaker::Own) { timeout_ms } else { 0 }
-}
-
-/// How far apart the frames of one message may come: half of what a tag takes to come round, four cycles, where the cycle is
-/// 10 ms, and half a cycle, which is more than a bus ever holds them back, where it is longer.
-const fn within(content: Content) -> u16 {
-    match content {
-        Content::Sync
-        | Content::FollowUp
-        | Content::Command
-        | Content::DriverRequest
-        | Content::Actuators
-        | Content::Range
-        | Content::Unserved
-        | Content::Status => 0,
-        Content::EstimateA | Content::EstimateB => 20,
-        Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => 20,
-        Content::Said(..) => 50,
-    }
-}
-
-const fn comment(content: Content) -> &'static str {
-    match content {
-        Content::Sync => "First step of the time synchronisation: its reception is the instant that FollowUp dates.",
-        Content::FollowUp => {
-            "Second step: the Sync with the same Sequence was on the bus at Sync.Seconds plus Micros of GNSS time."
-        }
-        Content::Command => "Effort selects Force (driving) or BrakeTorque (braking). Not to be used in Mode standby.",
-        Content::DriverRequest => "What the driver or the planner wants.",
-        Content::Actuators => {
-            "What the actuators make of MotionCommand. Not needed: a unit that never hears it takes the actuators to be ready. Once heard, \
-             what it said last holds."
-        }
-        Content::Range => "Not sent while nothing is measured ahead, or worse than the accuracies can say.",
-        Content::Unserved => {
-            "Sent on a route only. Legs by which the next vehicle into the conflict area, or one that is in it, has no slot; Ahead is the way of \
-             the rear bumper of the nearest one ahead that has none to the crossing point; Stations counts all without one that could be met."
-        }
-        Content::EstimateA | Content::EstimateB => {
-            "TargetEstimateA and B make one message: use both only if their Tag is the same and they come within 20 ms. The bound has all four ends \
-             or none; ends are distances from the estimate, rounded up."
-        }
-        Content::Status => "A page per cause of refusal, one after the other.",
-        Content::Said(Speaker::Ego, About::MotionA | About::MotionB) => {
-            "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 20 ms. \
-             Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms."
-        }
-        Content::Said(_, About::MotionA | About::MotionB) => {
-            "MotionA and MotionB make one message: use both only if their Tag is the same and they come within 50 ms. \
-             Position is modulo 2^25 mm: take the one nearest to your own. Stamp is GNSS time modulo 2^17 of 0.1 ms."
-        }
-        Content::Said(_, About::Horizon) => {
-            "5 frames of one Tag within 50 ms make one message; Tag is that of the Motion it starts from. Part n is the state after \
-             0.175, 0.375, 0.6, 0.8, 1 of HorizonLength (see DrivingParameters) after that Motion's Stamp; between them the way is a \
-             quintic through position, speed and acceleration, plus Bow midway (64*Bow*s^3*(1-s)^3). At Speed 0 \
-             Acceleration b tells when the vehicle came to rest: t = 12*D / (3*v + sqrt(9*v^2 + 12*(a-b)*D)) after part \
-             n-1, whose speed and acceleration are v and a, on the way D between the two."
-        }
-        Content::Said(_, About::DrivingParameters) => {
-            "3 frames of one Tag within 50 ms make one message. All limits are magnitudes."
-        }
-        Content::Said(_, About::Geo) => "2 frames of one Tag within 50 ms make one message.",
-        Content::Said(_, About::Route) => {
-            "2 frames of one Tag within 50 ms make one message. Arrival is GNSS time modulo 2^20 of 10 ms."
+impl Line {
+    /// In one frame of either bus, never sent and never missing, with nothing to say; what follows says otherwise.
+    const fn new(name: &'static str, offset: u16, content: Content, sender: Node, fields: &'static [Field]) -> Self {
+        Self {
+            name,
+            content,
+            offset,
+            sender,
+            cycle_ms: 0,
+            timeout_ms: 0,
+            frames: 1,
+            within_ms: 0,
+            fields,
+            tied: "",
+            comment: "",
+            on_fd: OnFd::Frame(name),
         }
     }
+
+    /// Sent so often, and missing after this. The timeout of what the unit receives is that after which it reacts, by the default
+    /// configuration, and 0 where no loss of that message alone has a reaction of its own: what was said last holds. The timeout of
+    /// what it sends is 5 cycles of what comes every 10 ms, else 3.
+    const fn every(self, cycle_ms: u16, timeout_ms: u16) -> Self {
+        Self { cycle_ms, timeout_ms, ..self }
+    }
+
+    /// In so many frames.
+    const fn of(self, frames: u8) -> Self {
+        Self { frames, ..self }
+    }
+
+    /// All frames of one message come within this: half of what a tag takes to come round, four cycles, where the cycle is
+    /// 10 ms, and half a cycle, which is more than a bus ever holds them back, where it is longer. The text tells readers of the
+    /// DBC.
+    const fn within(self, within_ms: u16, tied: &'static str) -> Self {
+        Self { within_ms, tied, ..self }
+    }
+
+    /// With these rules for readers of the DBC.
+    const fn says(self, comment: &'static str) -> Self {
+        Self { comment, ..self }
+    }
+
+    /// With this place on a bus of CAN FD.
+    const fn fd(self, on_fd: OnFd) -> Self {
+        Self { on_fd, ..self }
+    }
 }
-
-use About::{DrivingParameters, Geo, Horizon, MotionA, MotionB, Route};
-use Node::{Modem, Unit, Vehicle};
-use Speaker::{Ego, Own, Peer};
-
-/// Lines of the catalogue.
-pub const LINES: usize = 25;
-
-/// The catalogue, by offset.
-pub static CATALOGUE: [Line; LINES] = [
-    line("TimeSync", 0x00, Content::Sync, Modem, sync::SYNC_FIELDS),
-    line("TimeFollowUp", 0x01, Content::FollowUp, Modem, sync::FOLLOW_UP_FIELDS),
-    line("MotionCommand", 0x02, Content::Command, Unit, command::FIELDS),
-    line("ActuatorState", 0x03, Content::Actuators, Vehicle, actuators::FIELDS),
-    line("EgoMotionA", 0x04, Content::Said(Ego, MotionA), Vehicle, motion::FIELDS_A),
-    line("EgoMotionB", 0x05, Content::Said(Ego, MotionB), Vehicle, motion::FIELDS_B),
-    line("DriverRequest", 0x06, Content::DriverRequest, Vehicle, driver_request::FIELDS),
-    line("EgoPosition", 0x07, Content::Said(Ego, Geo), Vehicle, geo::FIELDS),
-    line("RangeSensor", 0x08, Content::Range, Vehicle, range_sensor::FIELDS),
-    line("PeersUnserved", 0x09, Content::Unserved, Modem, unserved::FIELDS),
-    line("TargetEstimateA", 0x0A, Content::EstimateA, Unit, estimate::FIELDS_A),
-    line("TargetEstimateB", 0x0B, Content::EstimateB, Unit, estimate::FIELDS_B),
-    line("OwnMotionA", 0x10, Content::Said(Own, MotionA), Unit, motion::FIELDS_A),
-    line("OwnMotionB", 0x11, Content::Said(Own, MotionB), Unit, motion::FIELDS_B),
-    line("OwnHorizon", 0x12, Content::Said(Own, Horizon), Unit, horizon::FIELDS),
-    line("OwnDrivingParameters", 0x13, Content::Said(Own, DrivingParameters), Unit, driving_parameters::FIELDS),
-    line("OwnPosition", 0x14, Content::Said(Own, Geo), Unit, geo::FIELDS),
-    line("OwnRoute", 0x15, Content::Said(Own, Route), Unit, route::FIELDS),
-    line("Health", 0x18, Content::Status, Unit, status::FIELDS),
-    line("Peer{slot}MotionA", 0x40, Content::Said(Peer, MotionA), Modem, motion::FIELDS_A),
-    line("Peer{slot}MotionB", 0x41, Content::Said(Peer, MotionB), Modem, motion::FIELDS_B),
-    line("Peer{slot}Horizon", 0x42, Content::Said(Peer, Horizon), Modem, horizon::FIELDS),
-    line(
-        "Peer{slot}DrivingParameters",
-        0x43,
-        Content::Said(Peer, DrivingParameters),
-        Modem,
-        driving_parameters::FIELDS,
-    ),
-    line("Peer{slot}Position", 0x44, Content::Said(Peer, Geo), Modem, geo::FIELDS),
-    line("Peer{slot}Route", 0x45, Content::Said(Peer, Route), Modem, route::FIELDS),
-];
 
 /// The line of an offset, its place in the catalogue, and its slot (0 where there are none).
 #[must_use]
@@ -364,7 +290,7 @@ mod tests {
             for field in line.fields {
                 let what = format!("{} {}", line.name, field.name);
                 let same = line.fields.iter().filter(|other| other.name == field.name).count();
-                assert!(same == 1 || line.content == Content::Said(Ego, DrivingParameters), "{what}");
+                assert!(same == 1 || line.content == Content::Said(Speaker::Ego, About::DrivingParameters), "{what}");
                 for raw in [Some(field.min), Some(field.max), field.none].into_iter().flatten() {
                     assert_eq!(field.raw(field.with_raw(Payload::EMPTY, raw)), raw, "{what}");
                 }

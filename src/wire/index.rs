@@ -5,6 +5,8 @@
 use super::Slot;
 use super::bits::Payload;
 use super::catalogue::{ABOUTS, CATALOGUE, Content, LINES, Node, PEERS_OFFSET, SLOT_STRIDE, Speaker};
+#[cfg(feature = "fd")]
+use super::field::TAG;
 use super::field::{Field, Place};
 use crate::health::Cause;
 use crate::time::Duration;
@@ -223,7 +225,21 @@ pub(super) fn find_content(content: Content) -> Option<(usize, &'static Entry)> 
     Some((place, ENTRIES.get(place)?))
 }
 
+/// The entry at a place in the catalogue.
+#[cfg(feature = "fd")]
+pub(super) fn at(place: usize) -> Option<&'static Entry> {
+    ENTRIES.get(place)
+}
+
 impl Entry {
+    /// A payload that is empty but for the tag and for what says which part it is.
+    #[cfg(feature = "fd")]
+    pub(super) fn head(&self, part: u8, tag: u8) -> Payload {
+        let (start, length) = self.selector;
+        let tagged = Payload::EMPTY.with(TAG.start, TAG.length, tag.into());
+        tagged.with(start.into(), length.into(), part.into())
+    }
+
     /// Which part of its message a frame is.
     #[allow(clippy::cast_possible_truncation)] // a selector has at most 8 bits
     pub(super) fn part_of(&self, payload: Payload) -> u8 {

@@ -2,6 +2,9 @@
 
 use super::catalogue::{CATALOGUE, Line};
 
+#[cfg(feature = "fd")]
+pub mod fd;
+
 /// Bits that an 8-byte standard frame takes up at worst: 1 start, 11 identifier, 3 control (RTR, IDE, r0), 4 length, 64
 /// data and 15 CRC make 98 bits that are stuffed, at worst a bit after the first 5 and then after every 4:
 /// `(98 - 1) / 4 = 24`. CRC delimiter, acknowledge slot and delimiter, 7 end of frame: 10 that are not. 3 bits of

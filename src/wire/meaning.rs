@@ -17,6 +17,9 @@ macro_rules! meaning {
     (speed_accuracy) => { "95 % of the errors of Speed are below this. The receiver takes three times as much for certain." };
     (part) => { "Which frame of the message this is." };
     (displacement) => { "Way from Position of the Motion of the same Tag to where the front bumper will be at this knot." };
+    (displacement_fd) => { "Way from Position to where the front bumper will be at this knot." };
+    (horizon_valid) => { "Whether a horizon is in this frame; where it is absent its signals are ignored." };
+    (parameters_valid) => { "Whether driving parameters are in this frame: send them every 500 ms, and twice at once when they change. Where they are absent their signals are ignored, and the last ones hold." };
     (knot_speed) => { "Speed at this knot." };
     (knot_acceleration) => { "Acceleration at this knot. At Speed 0 it is that with which the vehicle came to rest since the knot before, and tells when (see the message)." };
     (bow) => { "How far the vehicle, midway in time since the knot before, is ahead of the quintic curve through the two knots." };
@@ -89,15 +92,28 @@ macro_rules! meaning {
 
 pub(super) use meaning;
 
-/// Of the end-to-end checksum, which every frame has.
-pub(super) const CRC: &str = "End-to-end checksum, AUTOSAR Profile 1A: CRC-8 (polynomial 0x1D, start and final xor 0) over E2EDataId, low byte first, and bytes 1 to 7.";
-/// Of the end-to-end counter, which every frame has.
-pub(super) const COUNTER: &str =
-    "End-to-end counter: counts 0 to 14 and begins again, over all frames of this identifier.";
+/// Of the end-to-end checksum and counter, which every frame has.
+pub(super) const fn header(is_over_fd: bool) -> [&'static str; 2] {
+    if is_over_fd { [CRC_FD, COUNTER_FD] } else { [CRC, COUNTER] }
+}
+
+const CRC: &str = "End-to-end checksum, AUTOSAR Profile 1A: CRC-8 (polynomial 0x1D, start and final xor 0) over E2EDataId, low byte first, and bytes 1 to 7.";
+const COUNTER: &str = "End-to-end counter: counts 0 to 14 and begins again, over all frames of this identifier.";
+const CRC_FD: &str = "End-to-end checksum, AUTOSAR Profile 5: CRC-16 (polynomial 0x1021, start 0xFFFF, final xor 0) over all bytes after it and then E2EDataId, low byte first.";
+const COUNTER_FD: &str = "End-to-end counter: counts 0 to 255 and begins again, over all frames of this identifier.";
 
 /// What a signal of a message means; empty for a signal that there is not.
 #[must_use]
-pub fn signal(content: Content, name: &str) -> &'static str {
+pub fn signal(content: Content, name: &str, is_over_fd: bool) -> &'static str {
+    match (content, name) {
+        (_, "HorizonValid") => meaning!(horizon_valid),
+        (_, "ParametersValid") => meaning!(parameters_valid),
+        (Content::Said(_, About::Horizon), "Displacement") if is_over_fd => meaning!(displacement_fd),
+        _ => field(content, name),
+    }
+}
+
+fn field(content: Content, name: &str) -> &'static str {
     match content {
         Content::Sync | Content::FollowUp => match name {
             "Sequence" => meaning!(sequence),

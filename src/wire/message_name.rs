@@ -30,9 +30,18 @@ impl MessageName {
 impl Display for MessageName {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let Some((_, line, slot)) = catalogue::find(self.offset) else { return write!(f, "offset {:#x}", self.offset) };
-        match line.name.split_once("{slot}") {
-            Some((before, after)) => write!(f, "{before}{}{after}", slot.0),
-            None => f.write_str(line.name),
+        Name(line.name, slot).fmt(f)
+    }
+}
+
+/// A name of the catalogue with its slot, if it has one.
+pub(super) struct Name(pub &'static str, pub Slot);
+
+impl Display for Name {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self.0.split_once("{slot}") {
+            Some((before, after)) => write!(f, "{before}{}{after}", self.1.0),
+            None => f.write_str(self.0),
         }
     }
 }

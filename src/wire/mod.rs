@@ -1,7 +1,7 @@
-//! The unit's CAN messages: classic CAN frames enter and typed messages leave ([`Receiver`]), and the other way round
-//! ([`Sender`]).
+//! The unit's CAN messages: frames enter and typed messages leave ([`Receiver`]), and the other way round ([`Sender`]). The bus
+//! is classic CAN, or with the feature `fd` CAN FD ([`Transport`]).
 //!
-//! Contract of every decoder here: any 8 bytes in, a value or a named [`Cause`](crate::health::Cause) out; no panic, no allocation.
+//! Contract of every decoder here: any bytes in, a value or a named [`Cause`](crate::health::Cause) out; no panic, no allocation.
 //! Every message has a named field table, and `decode` and `encode` are inverse on every representable value.
 
 pub mod actuators;
@@ -16,6 +16,8 @@ pub mod driver_request;
 pub mod driving_parameters;
 pub mod e2e;
 pub mod estimate;
+#[cfg(feature = "fd")]
+pub mod fd;
 pub mod field;
 pub mod frame;
 pub mod geo;
@@ -39,7 +41,7 @@ mod tie;
 pub mod unserved;
 
 pub use base_id::BaseId;
-pub use frame::Frame;
+pub use frame::{Data, Frame};
 pub use identifier::Identifier;
 pub use identifiers::{IdentifierError, Identifiers};
 pub use message_name::MessageName;
@@ -85,6 +87,21 @@ pub enum Said {
     Geo(geo::GeoPosition),
     /// Where it is on its route.
     Route(route::Route),
+    /// The first three in one, as CAN FD has them. Over classic CAN each is sent by itself, in this order: motion, driving parameters,
+    /// horizon.
+    #[cfg(feature = "fd")]
+    State(fd::State),
+}
+
+/// Which frames the bus carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Transport {
+    /// Classic CAN: 8 bytes, E2E Profile 1.
+    #[default]
+    Classic,
+    /// CAN FD: up to 64 bytes, E2E Profile 5. Needs the feature `fd`.
+    Fd,
 }
 
 /// A whole message.

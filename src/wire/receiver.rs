@@ -29,6 +29,9 @@ use super::{Message, Said, Slot};
 use crate::health::Cause;
 use crate::time::Instant;
 
+#[cfg(feature = "fd")]
+mod over_fd;
+
 /// On which side of the bus the receiver stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -116,6 +119,8 @@ pub struct Receiver<const PEERS: usize> {
     own: Parts,
     estimate: Assembly<2, 0>,
     peers: [Peer; PEERS],
+    #[cfg(feature = "fd")]
+    fd: over_fd::OverFd<PEERS>,
 }
 
 impl<const PEERS: usize> Receiver<PEERS> {
@@ -129,14 +134,16 @@ impl<const PEERS: usize> Receiver<PEERS> {
             own: Parts::NEW,
             estimate: Assembly::NEW,
             peers: [const { Peer::NEW }; PEERS],
+            #[cfg(feature = "fd")]
+            fd: over_fd::OverFd::NEW,
         }
     }
 
     /// Takes one frame received at `at`.
     ///
     /// # Errors
-    /// `UnknownSlot`, `Length` (also for a remote frame), the E2E refusals (`Checksum`, `CounterRange`, `Repeated`,
-    /// `CounterGap`, `NotYetTrusted`), `Range`, `Torn`, tested in this order.
+    /// `UnknownSlot`, `Length` (also for a remote frame, and for one of the other kind of bus), the E2E refusals (`Checksum`,
+    /// `CounterRange`, `Repeated`, `CounterGap`, `NotYetTrusted`), `Range`, `Torn`, tested in this order.
     pub fn receive(&mut self, at: Instant, frame: &impl Frame) -> Result<Received, Cause> {
         match self.role {
             Role::Unit => self.receive_as::<true>(at, frame),
@@ -157,6 +164,10 @@ impl<const PEERS: usize> Receiver<PEERS> {
         let Some((place, entry, slot)) = index::find(offset) else { return Ok(Received::Foreign) };
         if !role.hears(entry.sender) {
             return Ok(Received::Foreign);
+        }
+        #[cfg(feature = "fd")]
+        if self.fd.is_used() {
+            return self.receive_over_fd::<UNIT>(place, entry, slot, offset, frame);
         }
         if entry.content.is_per_slot() && usize::from(slot.0) >= PEERS {
             return Err(Cause::UnknownSlot);
@@ -195,18 +206,9 @@ impl<const PEERS: usize> Receiver<PEERS> {
     ) -> Result<Option<Message>, Cause> {
         let (part, tag) = (entry.part_of(payload), super::field::TAG.byte(payload));
         let piece = Piece { at, within: entry.within, part, tag, counter, payload };
-        let whole = [payload];
         Ok(match entry.content {
-            Content::Sync => Some(Message::Sync(Sync::decode(&whole))),
-            Content::FollowUp => Some(Message::FollowUp(FollowUp::decode(&whole))),
-            Content::Command | Content::Status | Content::EstimateA | Content::EstimateB if UNIT => None,
+            Content::EstimateA | Content::EstimateB if UNIT => None,
             Content::Said(Speaker::Own, _) if UNIT => None,
-            Content::Command => Some(Message::Command(Command::decode(&whole))),
-            Content::DriverRequest => Some(Message::DriverRequest(DriverRequest::decode(&whole))),
-            Content::Actuators => Some(Message::Actuators(ActuatorState::decode(&whole))),
-            Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
-            Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
-            Content::Status => Some(Message::Status(Status::decode(&whole)?)),
             Content::EstimateA => self.add_estimate(&piece.of(0))?,
             Content::EstimateB => self.add_estimate(&piece.of(1))?,
             Content::Said(Speaker::Ego, about) => self.own.add(about, &piece)?.map(Message::Ego),
@@ -215,6 +217,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
                 let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Cause::UnknownSlot)?;
                 peer.parts.add(about, &piece)?.map(|said| Message::Peer(slot, said))
             }
+            single => decode_single::<UNIT>(single, payload)?,
         })
     }
 
@@ -226,7 +229,25 @@ impl<const PEERS: usize> Receiver<PEERS> {
     }
 }
 
-#[cfg(test)]
+/// The message of a content that one frame of classic CAN has room for; `None` for every other.
+#[inline(always)] // into the one place of each bus
+fn decode_single<const UNIT: bool>(content: Content, payload: Payload) -> Result<Option<Message>, Cause> {
+    let whole = [payload];
+    Ok(match content {
+        Content::Sync => Some(Message::Sync(Sync::decode(&whole))),
+        Content::FollowUp => Some(Message::FollowUp(FollowUp::decode(&whole))),
+        Content::Command | Content::Status if UNIT => None,
+        Content::Command => Some(Message::Command(Command::decode(&whole))),
+        Content::DriverRequest => Some(Message::DriverRequest(DriverRequest::decode(&whole))),
+        Content::Actuators => Some(Message::Actuators(ActuatorState::decode(&whole))),
+        Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
+        Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
+        Content::Status => Some(Message::Status(Status::decode(&whole)?)),
+        Content::EstimateA | Content::EstimateB | Content::Said(..) => None,
+    })
+}
+
+#[cfg(all(test, not(feature = "fd")))]
 mod tests {
     use super::*;
 

@@ -12,6 +12,9 @@ use super::identifiers::Identifiers;
 use super::index::{self, Entry};
 use super::{Frame, Message, Said, Slot, e2e};
 
+#[cfg(feature = "fd")]
+mod over_fd;
+
 /// Why a message was not sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -30,6 +33,8 @@ pub struct Sender<const PEERS: usize> {
     counters: [u8; LINES],
     parameters_tag: u8,
     peers: [Peer; PEERS],
+    #[cfg(feature = "fd")]
+    transport: super::Transport,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +51,14 @@ impl<const PEERS: usize> Sender<PEERS> {
     /// Nothing sent yet: every counter starts at 0.
     #[must_use]
     pub const fn new(identifiers: Identifiers) -> Self {
-        Self { identifiers, counters: [0; LINES], parameters_tag: 0, peers: [const { Peer::NEW }; PEERS] }
+        Self {
+            identifiers,
+            counters: [0; LINES],
+            parameters_tag: 0,
+            peers: [const { Peer::NEW }; PEERS],
+            #[cfg(feature = "fd")]
+            transport: super::Transport::Classic,
+        }
     }
 
     /// Emits the message's frames, in order.
@@ -80,9 +92,7 @@ impl<const PEERS: usize> Sender<PEERS> {
             Message::Command(command) => self.emit(Content::Command, none, &command.encode(), emit),
             Message::Status(status) => self.emit(Content::Status, none, &status.encode(), emit),
             Message::Estimate(estimate) => {
-                let [a, b] = estimate.encode();
-                self.emit(Content::EstimateA, none, &[a], emit)?;
-                self.emit(Content::EstimateB, none, &[b], emit)
+                self.emit_pair([Content::EstimateA, Content::EstimateB], none, &estimate.encode(), emit)
             }
             Message::Own(said) => self.say(Speaker::Own, none, said, emit),
             _ => Err(Unsent::NoLine),
@@ -92,9 +102,8 @@ impl<const PEERS: usize> Sender<PEERS> {
     fn say(&mut self, speaker: Speaker, slot: Slot, said: &Said, emit: &mut impl FnMut(Frame)) -> Result<(), Unsent> {
         match said {
             Said::Motion(motion) => {
-                let [a, b] = motion.encode();
-                self.emit(Content::Said(speaker, About::MotionA), slot, &[a], emit)?;
-                self.emit(Content::Said(speaker, About::MotionB), slot, &[b], emit)
+                let halves = [About::MotionA, About::MotionB].map(|about| Content::Said(speaker, about));
+                self.emit_pair(halves, slot, &motion.encode(), emit)
             }
             Said::Horizon(knots) => self.emit(Content::Said(speaker, About::Horizon), slot, &knots.encode(), emit),
             Said::Geo(position) => self.emit(Content::Said(speaker, About::Geo), slot, &position.encode(), emit),
@@ -103,7 +112,26 @@ impl<const PEERS: usize> Sender<PEERS> {
                 let tag = self.parameters_tag(speaker, slot)?;
                 self.emit(Content::Said(speaker, About::DrivingParameters), slot, &parameters.encode(tag), emit)
             }
+            #[cfg(feature = "fd")]
+            Said::State(state) => self.say_state(speaker, slot, state, emit),
         }
+    }
+
+    /// Emits a message of two halves, which have identifiers of their own on classic CAN and share one frame of CAN FD.
+    fn emit_pair(
+        &mut self,
+        [first, second]: [Content; 2],
+        slot: Slot,
+        halves: &[Payload; 2],
+        emit: &mut impl FnMut(Frame),
+    ) -> Result<(), Unsent> {
+        #[cfg(feature = "fd")]
+        if self.is_over_fd() {
+            return self.emit(first, slot, halves, emit);
+        }
+        let [a, b] = *halves;
+        self.emit(first, slot, &[a], emit)?;
+        self.emit(second, slot, &[b], emit)
     }
 
     fn parameters_tag(&mut self, speaker: Speaker, slot: Slot) -> Result<u8, Unsent> {
@@ -122,12 +150,16 @@ impl<const PEERS: usize> Sender<PEERS> {
         payloads: &[Payload],
         emit: &mut impl FnMut(Frame),
     ) -> Result<(), Unsent> {
+        #[cfg(feature = "fd")]
+        if self.is_over_fd() {
+            return self.emit_over_fd(content, slot, payloads.iter().map(|payload| Some(*payload)), emit);
+        }
         let (place, entry) = index::find_content(content).ok_or(Unsent::NoLine)?;
         let offset = entry.offset_for(slot);
         let id = self.identifiers.at(offset);
         let counter = self.counter(place, entry, slot)?;
         for payload in payloads {
-            emit(Frame { id, data: e2e::protect(payload.to_bytes(), catalogue::data_id(offset), *counter) });
+            emit(Frame { id, data: e2e::protect(payload.to_bytes(), catalogue::data_id(offset), *counter).into() });
             *counter = e2e::next(*counter);
         }
         Ok(())

@@ -209,10 +209,10 @@ pub fn leads() -> DrivingParameters {
 
 /// The frame once more with other data under a checksum that fits, and with that counter or its own.
 pub fn resealed(frame: Frame, counter: Option<u8>, change: impl FnOnce(&mut [u8; 8])) -> Frame {
-    let mut data = frame.data;
+    let mut data: [u8; 8] = frame.data[..].try_into().expect("of classic CAN");
     change(&mut data);
     let data_id = catalogue::data_id(Identifiers::DEFAULT.offset_of(frame.id).expect("of the block"));
-    Frame { id: frame.id, data: e2e::protect(data, data_id, counter.unwrap_or(frame.data[1] & 0x0F)) }
+    Frame { id: frame.id, data: e2e::protect(data, data_id, counter.unwrap_or(frame.data[1] & 0x0F)).into() }
 }
 
 /// The pages of health among what a unit sent.

@@ -7,7 +7,7 @@ use holdover::config;
 use holdover::model;
 use holdover::time::Duration;
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
-use holdover::wire::{BaseId, StationHash, driving_parameters};
+use holdover::wire::{BaseId, StationHash, Transport, driving_parameters};
 
 use super::{Body, Config, Envelope, Law, Limits, Link, Model, Prediction};
 use crate::status::Status;
@@ -39,6 +39,7 @@ impl TryFrom<&Config> for config::Config {
         Ok(Self {
             station: StationHash(plain.station),
             identifiers: plain.identifiers.on(BaseId::new(plain.base_id).ok_or(Status::ConfigBaseId)?)?,
+            transport: Transport::Classic,
             period: micros(plain.period_us),
             length: Distance::from_mm(milli(plain.length_mm)),
             lag: FineSeconds::from_millis(milli(plain.lag_ms)),

@@ -4,10 +4,12 @@
 //! (1436509052.249713) vcan0 044#2A366C2BBA           candump -l, the form that is written
 //!  (1436509052.249713)  vcan0  044   [5]  2A 36 6C 2B BA    candump's screen with -t a, or without the time
 //!  (001.249713)  vcan0  044   [5]  2A 36 6C 2B BA           the same with -t z, or with -t d, whose times are summed up
+//! (1436509052.249713) vcan0 044##5112233445566778899AABBCC  CAN FD, with its flags
+//!  (1436509052.249713)  vcan0  044  [12]  11 22 33 44 55 66 77 88 99 AA BB CC    the same on the screen, without them
 //! ```
 //! Both forms may be mixed. Three digits are a standard identifier, eight an extended one. `#R` and `remote request`
-//! are remote frames. CAN FD (`##`, or two digits in the brackets), CAN XL and error frames are recognised, so that a
-//! log of a real bus can be read to its end, but a classic node cannot be given such frames. Direction flags (`-x`),
+//! are remote frames. CAN XL and error frames are recognised, so that a log of a real bus can be read to its end, but a
+//! node cannot be given such frames. Direction flags (`-x`),
 //! the text column (`-a`) and blank lines are skipped. Logs in the formats of other tools are refused by name. Anything
 //! else is an error with its line.
 
@@ -48,10 +50,8 @@ pub struct Entry {
 /// The content of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Content {
-    /// A classic data or remote frame.
+    /// A frame, classic or CAN FD.
     Frame(Frame),
-    /// A CAN FD frame.
-    Fd,
     /// A CAN XL frame.
     Xl,
     /// An error frame of the controller.

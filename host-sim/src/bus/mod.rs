@@ -6,7 +6,6 @@
 
 pub mod candump;
 pub mod fault;
-pub mod fd;
 pub mod frame;
 pub mod memory;
 pub mod port;
@@ -16,7 +15,6 @@ pub mod socketcan;
 pub mod wire;
 
 use crate::error::Error;
-pub use fd::FdFrame;
 pub use frame::Frame;
 use holdover::time::Instant;
 pub use port::Port;
@@ -41,7 +39,7 @@ pub fn open(name: &str) -> Result<Box<dyn Port>, Error> {
     Err(Error::new(cause, "run this command on Linux").in_option("--bus"))
 }
 
-/// One node of a classic CAN bus.
+/// One node of a CAN bus, classic or CAN FD.
 pub trait Bus {
     /// Puts a frame on the bus at the time `at`.
     ///

@@ -4,7 +4,7 @@
 //! [`Bus`](super::Bus) is for a caller that sets the time itself; a port is for a caller that has to keep up with the
 //! bus.
 
-use super::{FdFrame, Frame};
+use super::Frame;
 use holdover::time::Instant;
 use std::io;
 
@@ -15,8 +15,6 @@ pub enum Event {
     Sent(Frame),
     /// A frame of another node.
     Received(Frame),
-    /// A CAN FD frame of another node. A classic node hears none, but a recording has them.
-    Fd(FdFrame),
     /// An error of the bus, reported by the controller or by a node that plays one.
     Error(BusError),
     /// The interface has gone down. Until it is up again, no frame can be received or sent.
@@ -60,7 +58,7 @@ impl BusError {
     }
 }
 
-/// One node of a classic CAN bus in real time.
+/// One node of a CAN bus in real time.
 pub trait Port {
     /// The bus's time.
     fn now(&self) -> Instant;

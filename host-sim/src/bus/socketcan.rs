@@ -6,14 +6,15 @@
 //! same bits comes at the same time, the two are taken for one another, which makes no difference.
 
 use super::port::{BusError, Event, Port};
-use super::{Bus, FdFrame, Frame};
+use super::{Bus, Frame};
 use crate::error::{Error, quoted};
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::Instant;
 use holdover::wire::Identifier;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use socketcan::{
-    CanAnyFrame, CanErrorFrame, CanFdSocket, CanFilter, CanFrame, EmbeddedFrame, Frame as _, Socket, SocketOptions,
+    CanAnyFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, CanFrame, EmbeddedFrame, Frame as _, Socket,
+    SocketOptions, id::FdFlags,
 };
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
@@ -62,7 +63,7 @@ impl SocketCan {
         Ok(Self { socket, awaited: VecDeque::new(), early: None })
     }
 
-    /// Lets the kernel pass only error frames, and frames with these standard identifiers, of any kind and length.
+    /// Lets the kernel pass only error frames, and frames with these identifiers, of any kind and length.
     ///
     /// # Errors
     /// Errors of the system.
@@ -98,8 +99,7 @@ impl SocketCan {
         };
         let at = stamps.socket.map_or_else(|| self.now(), instant);
         let event = match read(&frame) {
-            Some(Read::Fd(frame)) => Event::Fd(frame),
-            Some(Read::Classic(frame)) => match self.awaited.iter().position(|sent| *sent == frame) {
+            Some(frame) => match self.awaited.iter().position(|sent| is_same(sent, &frame)) {
                 Some(place) => {
                     self.awaited.remove(place);
                     Event::Sent(frame)
@@ -111,7 +111,7 @@ impl SocketCan {
         Ok(Some((at, event)))
     }
 
-    fn write(&self, frame: &CanFrame) -> io::Result<()> {
+    fn write(&self, frame: &CanAnyFrame) -> io::Result<()> {
         let given_up = SystemTime::now() + QUEUE_PATIENCE;
         loop {
             match self.socket.write_frame(frame) {
@@ -138,7 +138,7 @@ impl Port for SocketCan {
 
     fn send_error(&mut self, error: BusError) -> io::Result<()> {
         let frame = CanErrorFrame::new_error(error.classes, &error.data).map_err(io::Error::other)?;
-        self.write(&CanFrame::Error(frame))
+        self.write(&CanAnyFrame::Error(frame))
     }
 
     fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>> {
@@ -181,7 +181,7 @@ impl Bus for SocketCan {
                     return Ok(None);
                 }
                 Event::Received(frame) => return Ok(Some((at, frame))),
-                Event::Sent(_) | Event::Fd(_) | Event::Error(_) | Event::Down => {}
+                Event::Sent(_) | Event::Error(_) | Event::Down => {}
             }
         }
         Ok(None)
@@ -193,19 +193,19 @@ fn instant(time: SystemTime) -> Instant {
     Instant::from_micros(u64::try_from(since.as_micros()).unwrap_or(u64::MAX))
 }
 
-/// A frame of another node.
-enum Read {
-    Classic(Frame),
-    Fd(FdFrame),
+/// Whether they are the same but for flags, of which a kernel may add some.
+fn is_same(a: &Frame, b: &Frame) -> bool {
+    let bits = |frame: &Frame| (frame.id(), frame.is_fd(), frame.is_remote_frame(), frame.dlc());
+    bits(a) == bits(b) && a.data() == b.data()
 }
 
 /// The frame; `None` if it reports an error.
-fn read(frame: &CanAnyFrame) -> Option<Read> {
+fn read(frame: &CanAnyFrame) -> Option<Frame> {
     let id = identifier(frame)?;
     match frame {
-        CanAnyFrame::Normal(data) => Frame::new(id, EmbeddedFrame::data(data)).map(Read::Classic),
-        CanAnyFrame::Remote(remote) => Frame::new_remote(id, EmbeddedFrame::dlc(remote)).map(Read::Classic),
-        CanAnyFrame::Fd(fd) => FdFrame::new(id, fd.flags().bits(), EmbeddedFrame::data(fd)).map(Read::Fd),
+        CanAnyFrame::Normal(data) => Frame::new(id, EmbeddedFrame::data(data)),
+        CanAnyFrame::Remote(remote) => Frame::new_remote(id, EmbeddedFrame::dlc(remote)),
+        CanAnyFrame::Fd(fd) => Frame::fd(id, fd.flags().bits(), EmbeddedFrame::data(fd)),
         CanAnyFrame::Error(_) => None,
     }
 }
@@ -224,12 +224,16 @@ fn error(frame: &CanAnyFrame) -> BusError {
     BusError { classes: frame.raw_id() & 0x1FFF_FFFF, data }
 }
 
-fn linux(frame: &Frame) -> io::Result<CanFrame> {
-    let made = match frame.is_remote_frame() {
-        true => <CanFrame as EmbeddedFrame>::new_remote(frame.id(), frame.dlc()),
-        false => <CanFrame as EmbeddedFrame>::new(frame.id(), frame.data()),
+fn linux(frame: &Frame) -> io::Result<CanAnyFrame> {
+    let made = match (frame.is_fd(), frame.is_remote_frame()) {
+        (true, _) => {
+            let flags = FdFlags::from_bits_truncate(frame.flags());
+            CanFdFrame::with_flags(frame.id(), frame.data(), flags).map(CanAnyFrame::Fd)
+        }
+        (false, true) => <CanFrame as EmbeddedFrame>::new_remote(frame.id(), frame.dlc()).map(CanAnyFrame::from),
+        (false, false) => <CanFrame as EmbeddedFrame>::new(frame.id(), frame.data()).map(CanAnyFrame::from),
     };
-    made.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "not a classic frame"))
+    made.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "no frame of CAN"))
 }
 
 fn is_queue_full(error: &io::Error) -> bool {

@@ -1,9 +1,10 @@
 //! Times on a wire: frames enter with the instants at which their senders wanted to send them; the same frames leave with
-//! the instants at which they would have been whole on a classic CAN bus of 500 kbit/s.
+//! the instants at which they would have been whole on a bus of 500 kbit/s, classic CAN or CAN FD; the data phase of CAN FD has
+//! 2 Mbit/s.
 //!
 //! One frame is on the bus at a time. Of the frames that wait, the one with the dominant identifier is next; frames of one
 //! identifier stay in order. Every frame takes its own bits, with the stuff bits that its content and its CRC need, and
-//! three bits of intermission follow. Neither errors nor full mailboxes are modelled.
+//! three bits of intermission follow. In CAN FD the stuff bits around the CRC are fixed, so that its value does not matter. Neither errors nor full mailboxes are modelled.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -13,8 +14,9 @@ use holdover::time::{Duration, Instant};
 
 use super::Frame;
 
-/// Time of a bit at 500 kbit/s, in µs.
-const BIT_US: u32 = 2;
+/// Time of a bit at 500 kbit/s, and at 2 Mbit/s, in ns.
+const BIT_NS: u32 = 2_000;
+const DATA_BIT_NS: u32 = 500;
 /// Delimiter of the CRC, acknowledgement with its delimiter, and end of frame. They are not stuffed.
 const TAIL_BITS: u32 = 1 + 2 + 7;
 /// Bits between two frames.
@@ -52,11 +54,43 @@ pub fn on_wire(mut wanted: Vec<(Instant, Frame)>) -> Vec<(Instant, Frame)> {
 /// The time for which the frame is on the bus, from its first bit to the end of the end of frame.
 #[must_use]
 pub fn length(frame: &Frame) -> Duration {
-    micros(bits(frame))
+    match frame.is_fd() {
+        true => fd_length(frame),
+        false => micros(bits(frame)),
+    }
 }
 
 fn micros(bits: u32) -> Duration {
-    Duration::from_micros(i64::from(bits * BIT_US))
+    nanos(bits * BIT_NS)
+}
+
+/// To the next microsecond.
+fn nanos(nanos: u32) -> Duration {
+    Duration::from_micros(i64::from(nanos.div_ceil(1_000)))
+}
+
+/// The time of a frame of CAN FD: with the higher bit rate, if its flags say so, from the error state indicator to the CRC.
+fn fd_length(frame: &Frame) -> Duration {
+    const BIT_RATE_SWITCH: u8 = 1;
+    let switch = u32::from(frame.flags() & BIT_RATE_SWITCH);
+    let mut stuffing = Stuffing::default();
+    stuffing.put(0, 1); // start of frame
+    match frame.id() {
+        // Identifier, no remote request, standard, CAN FD, reserved, bit rate switch.
+        Id::Standard(id) => stuffing.put(u32::from(id.as_raw()) << 5 | 0b0_0100 | switch, 16),
+        Id::Extended(id) => {
+            stuffing.put((id.as_raw() >> 18) << 2 | 0b11, 13);
+            stuffing.put((id.as_raw() & 0x3_FFFF) << 4 | 0b0100 | switch, 22);
+        }
+    }
+    let arbitration = stuffing.bits;
+    let data = frame.data();
+    let code = holdover::wire::load::fd::code_of(data.len());
+    stuffing.put(code, 5); // error state indicator, length
+    data.iter().for_each(|byte| stuffing.put(u32::from(*byte), 8));
+    let fast = stuffing.bits - arbitration + holdover::wire::load::fd::crc_field_bits(data.len());
+    let bit_ns = if switch == 1 { DATA_BIT_NS } else { BIT_NS };
+    nanos((arbitration + TAIL_BITS) * BIT_NS + fast * bit_ns)
 }
 
 /// The number of bits of a frame, stuff bits among them.
@@ -152,6 +186,31 @@ mod tests {
     }
 
     #[test]
+    fn a_frame_of_can_fd_has_its_bits_at_two_rates() {
+        let micros = |flags, length| {
+            let frame = Frame::fd(StandardId::new(0x555).unwrap(), flags, &[0x55; 64][..length]).unwrap();
+            super::length(&frame).as_micros()
+        };
+        // 17 bits of arbitration and 10 at the end; without stuff bits in 0x55: 5 and 8 N bits, 27 or 32 of the CRC. 0b10100 of
+        // the header, then the code of the length, has no five equal bits at 8 and 64 bytes.
+        assert_eq!(micros(5, 8), 27 * 2 + (5 + 64 + 27) / 2);
+        assert_eq!(micros(4, 8), (27 + 5 + 64 + 27) * 2);
+        assert!((27 * 2 + (5 + 512 + 32) / 2..27 * 2 + (5 + 512 + 32) / 2 + 3).contains(&micros(5, 64)));
+    }
+
+    #[test]
+    fn no_frame_of_the_catalogue_takes_longer_than_the_worst_case() {
+        for (length, fill) in
+            [12, 16, 64].into_iter().flat_map(|length| [0, 0xFF, 0x3C, 0x0F].map(|fill| (length, fill)))
+        {
+            let frame = Frame::fd(StandardId::ZERO, 5, &[fill; 64][..length]).unwrap();
+            let worst = holdover::wire::load::fd::worst_nanos(500_000, 2_000_000, length);
+            let took = super::length(&frame).plus(super::micros(INTERMISSION_BITS)).as_micros();
+            assert!(took <= i64::from(worst.div_ceil(1_000)), "{length} {fill}: {took} us of {worst} ns");
+        }
+    }
+
+    #[test]
     fn of_the_frames_that_wait_the_dominant_identifier_is_next_and_equals_stay_in_order() {
         let (first, second) = (Frame::standard(5, &[1]).unwrap(), Frame::standard(5, &[2]).unwrap());
         let wanted = vec![(at(0), frame(9)), (at(1), frame(7)), (at(2), first), (at(3), second), (at(9000), frame(1))];
@@ -159,7 +218,7 @@ mod tests {
         let order: Vec<Frame> = sent.iter().map(|(_, frame)| *frame).collect();
         assert_eq!(order, [frame(9), first, second, frame(7), frame(1)]);
         assert_eq!(sent[0].0, at(0).plus(length(&frame(9))));
-        assert_eq!(sent[1].0, sent[0].0.plus(micros(3)).plus(length(&first)));
+        assert_eq!(sent[1].0, sent[0].0.plus(micros(INTERMISSION_BITS)).plus(length(&first)));
         assert_eq!(sent[4].0, at(9000).plus(length(&frame(1))));
     }
 

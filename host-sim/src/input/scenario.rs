@@ -3,6 +3,7 @@
 //! Every key has a default, and the defaults together are the paper's scenario. `scenarios/paper.toml` states and
 //! explains all keys. The values of a [`Scenario`] have been checked, so its users need not check again.
 
+pub(crate) mod bus;
 mod draw;
 pub(crate) mod envelope;
 pub(crate) mod keys;
@@ -19,6 +20,7 @@ use crate::input::impairment::ChannelModel;
 use crate::input::kind::{Difference, Kind};
 use crate::input::library;
 use crate::input::recording::Motion;
+use holdover::wire::Transport;
 use std::path::{Path, PathBuf};
 
 /// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the nearest eight.
@@ -49,6 +51,8 @@ pub struct Scenario {
     pub channel: ChannelModel,
     /// The envelope of every unit.
     pub envelope: Envelope,
+    /// The frames on every vehicle's own bus.
+    pub transport: Transport,
 }
 
 /// The motion of the leader.

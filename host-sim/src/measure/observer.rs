@@ -6,7 +6,9 @@ use std::io;
 
 use holdover::time::Instant;
 use holdover::units::Position;
-use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said};
+use holdover::wire::driving_parameters::DrivingParameters;
+use holdover::wire::motion::Motion;
+use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said, Slot, Transport};
 
 use super::heard::{Heard, HeardParameters};
 use crate::bus::memory::MemoryNode;
@@ -31,32 +33,51 @@ impl Observer {
         Self { receiver: Receiver::new(identifiers, Role::Unit), parameters: BTreeMap::new() }
     }
 
+    /// The same on a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { receiver: self.receiver.over(transport), ..self }
+    }
+
     /// Takes in a frame that was on the bus at `at_s`. Returns the motion that it completes, with the latest driving
     /// parameters of the same slot. `near` is a position near which positions are unwrapped.
     pub fn observe(&mut self, at_s: f64, frame: &Frame, near: Position) -> Option<Heard> {
         let at = Instant::from_micros(gnss(at_s).as_micros()); // GNSS time has no values before its start
         match self.receiver.receive(at, frame) {
             Ok(Received::Whole(Message::Peer(slot, Said::DrivingParameters(parameters)))) => {
-                let predecessor = match parameters.predecessor {
-                    Predecessor::Station(station) => index_of(station),
-                    Predecessor::None | Predecessor::Unknown => None,
-                };
-                self.parameters.insert(slot.0, HeardParameters::from_parameters(&parameters, predecessor));
+                self.note(slot, &parameters);
                 None
             }
-            Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => {
-                let time = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
-                let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
-                let vehicle = index_of(motion.station)?;
-                let position = motion.position.nearest_to(near);
-                let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, &motion);
-                Some(match self.parameters.get(&slot.0) {
-                    Some(parameters) => heard.with_parameters(*parameters),
-                    None => heard,
-                })
+            Ok(Received::Whole(Message::Peer(slot, Said::Motion(motion)))) => self.heard(at_s, slot, &motion, near),
+            Ok(Received::Whole(Message::Peer(slot, Said::State(state)))) => {
+                let heard = self.heard(at_s, slot, &state.motion, near);
+                if let Some(parameters) = &state.parameters {
+                    self.note(slot, parameters);
+                }
+                heard
             }
             _ => None,
         }
+    }
+
+    fn note(&mut self, slot: Slot, parameters: &DrivingParameters) {
+        let predecessor = match parameters.predecessor {
+            Predecessor::Station(station) => index_of(station),
+            Predecessor::None | Predecessor::Unknown => None,
+        };
+        self.parameters.insert(slot.0, HeardParameters::from_parameters(parameters, predecessor));
+    }
+
+    fn heard(&self, at_s: f64, slot: Slot, motion: &Motion, near: Position) -> Option<Heard> {
+        let time = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
+        let stamp_s = (time as i64 - EPOCH_US as i64) as f64 * 1e-6;
+        let vehicle = index_of(motion.station)?;
+        let position = motion.position.nearest_to(near);
+        let heard = Heard::from_motion(at_s, stamp_s, vehicle, position, motion);
+        Some(match self.parameters.get(&slot.0) {
+            Some(parameters) => heard.with_parameters(*parameters),
+            None => heard,
+        })
     }
 }
 
@@ -72,7 +93,9 @@ impl Tap {
     #[must_use]
     pub fn of(world: &World<'_>) -> Self {
         let measured = world.measured();
-        Self { measured, node: world.vehicles()[measured.by].listen(), observer: Observer::new(Identifiers::DEFAULT) }
+        let by = &world.vehicles()[measured.by];
+        let observer = Observer::new(Identifiers::DEFAULT).over(by.unit.config().transport);
+        Self { measured, node: by.listen(), observer }
     }
 
     /// The vehicle whose position is estimated, and the vehicle that estimates it.

@@ -1,6 +1,8 @@
 //! The description of a corridor: its roads and intersections, the traffic, and the channel. [`super::read`] reads it
 //! from a scenario file; the values here have been checked.
 
+use holdover::wire::Transport;
+
 use crate::input::scenario::{Envelope, Span};
 use crate::sim::ground::Point;
 
@@ -33,6 +35,8 @@ pub struct Corridor {
     pub wrong: Wrong,
     /// The envelope of every unit.
     pub envelope: Envelope,
+    /// The frames on every vehicle's own bus.
+    pub transport: Transport,
     /// Limits for the verdict.
     pub limits: Limits,
     /// The roads; 1 to 32.

@@ -19,7 +19,7 @@ fn frames_that_an_answer_has_no_room_for_are_counted() {
     for room in 0..=3 {
         let mut unit = unit();
         let mut frames = Vec::new();
-        frames.resize(MAX_FRAMES - room, Frame { id: 0, data: [0; 8] }).unwrap();
+        frames.resize(MAX_FRAMES - room, Frame { id: Identifiers::DEFAULT.at(0), data: [0; 8].into() }).unwrap();
         // A command and a page of health make two frames.
         unit.outbox.send_answer(&Command::NONE, None, &mut unit.health, &mut frames);
         unit.send_own(Instant::ZERO, None, &mut frames);

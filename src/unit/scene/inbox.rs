@@ -3,8 +3,12 @@
 
 use super::Scene;
 use crate::health::{Cause, Health};
+#[cfg(feature = "fd")]
+use crate::peers::Track;
 use crate::peers::{Sample, timely};
 use crate::time::Instant;
+#[cfg(feature = "fd")]
+use crate::wire::fd::State;
 use crate::wire::motion::Motion;
 use crate::wire::{Message, Said, Slot};
 
@@ -63,6 +67,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     fn take_peer(&mut self, at: Instant, slot: Slot, said: &Said, health: &mut Health) -> Result<(), Cause> {
         let index = usize::from(slot.0);
+        #[cfg(feature = "fd")]
+        if let Said::State(state) = said {
+            return self.take_state(at, slot, state, health);
+        }
         if !matches!(said, Said::Motion(_)) {
             let is_disputed = self.peers.get_mut(slot)?.is_disputed();
             // After a long silence a place is not refused like these two: it waits for the motion of its stamp, and holds from that on.
@@ -96,6 +104,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             Said::Route(route) => {
                 self.peers.get_mut(slot)?;
                 self.take_peer_route(at, slot, route);
+            }
+            #[cfg(feature = "fd")]
+            Said::State(_) => {}
+        }
+        Ok(())
+    }
+
+    /// Takes in a motion, and what came with it. If the motion is refused, so is the rest; the rest may be refused by itself.
+    #[cfg(feature = "fd")]
+    fn take_state(&mut self, at: Instant, slot: Slot, state: &State, health: &mut Health) -> Result<(), Cause> {
+        let State { motion, parameters, horizon } = *state;
+        self.take_peer(at, slot, &Said::Motion(motion), health)?;
+        // A motion that a later one has overtaken is not driven from: neither is its horizon.
+        let newest = self.peers.get(usize::from(slot.0)).and_then(Track::newest);
+        let is_overtaken = newest.is_some_and(|newest| newest.stamp.is_after(motion.stamp));
+        let rest = [parameters.map(Said::DrivingParameters), horizon.filter(|_| !is_overtaken).map(Said::Horizon)];
+        for said in rest.iter().flatten() {
+            if let Err(cause) = self.take_peer(at, slot, said, health) {
+                health.count(cause);
             }
         }
         Ok(())

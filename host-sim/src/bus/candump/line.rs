@@ -11,6 +11,9 @@ use std::str::SplitAsciiWhitespace;
 const ERROR_FLAG: u32 = 0x2000_0000;
 /// The most bytes of an FD frame.
 const FD_BYTES: usize = 64;
+const FD_LIMIT: &str = "a CAN FD frame has at most 64; correct the line";
+/// Those of an FD frame with a bit rate switch.
+const FD_FLAGS: u8 = 5;
 
 /// A line.
 #[derive(Debug)]
@@ -87,25 +90,29 @@ fn logged(id: &str, data: &str) -> Result<Content, Error> {
         return Ok(Content::Xl);
     }
     let id = Identifier::parse(id)?;
-    if data.starts_with('#') {
-        return Ok(Content::Fd);
+    if let Some(data) = data.strip_prefix('#') {
+        let flags = data.chars().next().and_then(|flags| flags.to_digit(16)).ok_or_else(cut_off)?;
+        return id.fd(flags as u8, &bytes_of::<FD_BYTES>(&data[1..], FD_LIMIT)?);
     }
     if let Some(dlc) = data.strip_prefix('R') {
         return remote(id, if dlc.is_empty() { "0" } else { dlc });
     }
     // `_9` to `_F` after eight bytes is a raw length code, which also means eight.
     let data = data.split_once('_').map_or(data, |(data, _)| data);
-    let mut bytes = heapless::Vec::<u8, 8>::new();
+    id.frame(&bytes_of::<8>(data, "a classic frame has at most 8; correct the line")?)
+}
+
+/// The bytes of hexadecimal digits.
+fn bytes_of<const MOST: usize>(data: &str, limit: &str) -> Result<heapless::Vec<u8, MOST>, Error> {
+    let mut bytes = heapless::Vec::new();
     if !data.len().is_multiple_of(2) {
         return Err(Error::new(format!("the data {} has half a byte", quoted(data)), "complete or delete the line"));
     }
     for pair in data.as_bytes().chunks_exact(2) {
         let byte = hex_byte(pair).ok_or_else(|| not_data(data))?;
-        bytes.push(byte).map_err(|_| {
-            Error::new(format!("{} bytes of data", data.len() / 2), "a classic frame has at most 8; correct the line")
-        })?;
+        bytes.push(byte).map_err(|_| Error::new(format!("{} bytes of data", data.len() / 2), limit))?;
     }
-    id.frame(&bytes)
+    Ok(bytes)
 }
 
 /// `id   [length]  bytes…`
@@ -121,18 +128,21 @@ fn shown(id: &str, mut words: SplitAsciiWhitespace) -> Result<Content, Error> {
     if data.next() == Some("remote") {
         return remote(id, digits);
     }
-    // candump shows the length of FD frames in two digits.
-    if digits.len() > 1 {
-        return Ok(Content::Fd);
-    }
-    let mut bytes = heapless::Vec::<u8, 8>::new();
+    let mut bytes = heapless::Vec::<u8, FD_BYTES>::new();
     for word in words.by_ref().take(count) {
         let byte = Some(word.as_bytes()).filter(|word| word.len() == 2).and_then(hex_byte);
         let byte = byte.ok_or_else(|| not_data(word))?;
-        bytes.push(byte).map_err(|_| Error::new(format!("{count} bytes of data"), "a classic frame has at most 8"))?;
+        bytes.push(byte).map_err(|_| Error::new(format!("{count} bytes of data"), FD_LIMIT))?;
     }
     if bytes.len() < count {
         return Err(cut_off());
+    }
+    // candump shows the length of FD frames in two digits, and not their flags.
+    if digits.len() > 1 {
+        return id.fd(FD_FLAGS, &bytes);
+    }
+    if count > 8 {
+        return Err(Error::new(format!("{count} bytes of data"), "a classic frame has at most 8"));
     }
     id.frame(&bytes)
 }
@@ -172,6 +182,11 @@ impl Identifier {
             let cause = format!("the identifier is {}", quoted(text));
             Error::new(cause, "give 3 hexadecimal digits up to 7FF, or 8 up to 1FFFFFFF")
         })
+    }
+
+    fn fd(self, flags: u8, data: &[u8]) -> Result<Content, Error> {
+        let Self::Of(id) = self else { return Ok(Content::ErrorFrame) };
+        Frame::fd(id, flags, data).map(Content::Frame).ok_or_else(cut_off)
     }
 
     fn frame(self, data: &[u8]) -> Result<Content, Error> {

@@ -1,8 +1,8 @@
 //! Writes candump logs: frames with their times enter, lines in the form of `candump -l` leave.
 
 use super::Interface;
+use crate::bus::Frame;
 use crate::bus::port::BusError;
-use crate::bus::{FdFrame, Frame};
 use embedded_can::{Frame as _, Id};
 use holdover::time::Instant;
 use std::fmt::Write as _;
@@ -34,16 +34,6 @@ impl<W: Write> LogWriter<W> {
     pub fn write(&mut self, at: Instant, frame: &Frame) -> io::Result<()> {
         self.line.clear();
         self.format(at, frame).map_err(io::Error::other)?;
-        self.out.write_all(self.line.as_bytes())
-    }
-
-    /// Writes one CAN FD frame.
-    ///
-    /// # Errors
-    /// Errors of the writer.
-    pub fn write_fd(&mut self, at: Instant, frame: &FdFrame) -> io::Result<()> {
-        self.line.clear();
-        self.format_fd(at, frame).map_err(io::Error::other)?;
         self.out.write_all(self.line.as_bytes())
     }
 
@@ -90,19 +80,13 @@ impl<W: Write> LogWriter<W> {
         }
     }
 
-    fn format_fd(&mut self, at: Instant, frame: &FdFrame) -> std::fmt::Result {
-        self.begin(at)?;
-        self.identify(frame.id())?;
-        write!(self.line, "#{:X}", frame.flags())?;
-        frame.data().iter().try_for_each(|byte| write!(self.line, "{byte:02X}"))?;
-        self.line.push('\n');
-        Ok(())
-    }
-
     fn format(&mut self, at: Instant, frame: &Frame) -> std::fmt::Result {
         self.begin(at)?;
         self.identify(frame.id())?;
         let line = &mut self.line;
+        if frame.is_fd() {
+            write!(line, "#{:X}", frame.flags())?;
+        }
         match (frame.is_remote_frame(), frame.dlc()) {
             (true, 0) => line.push('R'),
             (true, dlc) => write!(line, "R{dlc}")?,

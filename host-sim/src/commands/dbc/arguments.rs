@@ -14,12 +14,17 @@ pub struct DbcArguments {
     /// Slots of peers, 1 to 16; the firmware has 8
     #[arg(long, value_name = "N", default_value_t = 8)]
     pub slots: u8,
+
+    /// The bus is CAN FD
+    #[arg(long)]
+    pub fd: bool,
 }
 
 /// The end of `dbc --help`.
 pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim dbc > bus.dbc                              as holdover.dbc, which comes with the source
+  holdover-sim dbc --fd > bus.dbc                         as holdover-fd.dbc
   holdover-sim dbc --base-id 0x300 --slots 16 > bus.dbc   for another bus
 
 The unit's base is `base_id` in its configuration, and --base-id of ecu and hil.

@@ -16,6 +16,7 @@ use arguments::DbcArguments;
 pub struct DbcOptions {
     identifiers: Identifiers,
     slots: u8,
+    fd: bool,
 }
 
 impl DbcOptions {
@@ -29,7 +30,7 @@ impl DbcOptions {
             let cause = format!("{slots} slots");
             return Err(Error::new(cause, format!("give 1 to {SLOTS}")).in_option("--slots"));
         }
-        Ok(Self { identifiers: arguments.identifiers.read()?, slots })
+        Ok(Self { identifiers: arguments.identifiers.read()?, slots, fd: arguments.fd })
     }
 }
 
@@ -38,5 +39,7 @@ impl DbcOptions {
 /// # Errors
 /// An output that cannot be written.
 pub fn run(options: &DbcOptions) -> Result<Verdict, Error> {
-    output::print(&Dbc::new(options.identifiers, options.slots).to_string()).map(|()| Verdict::Pass)
+    let classic = Dbc::new(options.identifiers, options.slots);
+    let dbc = if options.fd { classic.over_fd() } else { classic };
+    output::print(&dbc.to_string()).map(|()| Verdict::Pass)
 }

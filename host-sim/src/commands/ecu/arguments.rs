@@ -19,6 +19,10 @@ pub struct UnitArguments {
     /// Where the messages lie on the bus.
     #[command(flatten)]
     pub identifiers: IdentifierArguments,
+
+    /// The bus is CAN FD, whatever the scenario says
+    #[arg(long)]
+    pub fd: bool,
 }
 
 /// The arguments of `ecu`.

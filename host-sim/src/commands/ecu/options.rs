@@ -5,7 +5,7 @@ use std::path::Path;
 
 use holdover::Config;
 use holdover::wire::catalogue::{CATALOGUE, Node};
-use holdover::wire::{Identifier, Identifiers, StationHash};
+use holdover::wire::{Identifier, Identifiers, StationHash, Transport};
 
 use super::arguments::{EcuArguments, UnitArguments};
 use crate::error::Error;
@@ -57,8 +57,9 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
     let identifiers = arguments.identifiers.read()?;
+    let transport = if arguments.fd { Transport::Fd } else { scenario.transport };
     if let Some(station) = arguments.station {
-        return Ok(Config { identifiers, ..Config::car(StationHash(station)) });
+        return Ok(Config { identifiers, transport, ..Config::car(StationHash(station)) });
     }
     let vehicle = arguments.vehicle.unwrap_or(scenario.ego);
     let last = scenario.vehicles.len() - 1;
@@ -66,7 +67,7 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
         let remedy = format!("give an index from 0 to {last}");
         return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
     }
-    let config = Config { identifiers, ..world::config(scenario, vehicle) };
+    let config = Config { identifiers, transport, ..world::config(scenario, vehicle) };
     config.check(STEPS).map_err(|cause| {
         Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")
     })?;

@@ -5,13 +5,13 @@ use std::io;
 
 use holdover::time::Duration;
 use holdover::units::Position;
-use holdover::wire::catalogue::{About, Content, Speaker};
 use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::{Identifiers, Message, Said, Sender};
+use holdover::wire::{Identifiers, Message, Said, Sender, Transport};
 
+use super::content::EgoMotion;
 use super::fault::{Fault, Kind};
 use super::rig::Rig;
-use super::talk::{Altered, line_of, payload};
+use super::talk::Altered;
 use crate::bus::Frame;
 use crate::bus::port::BusError;
 
@@ -27,7 +27,8 @@ pub struct FaultInjector {
     faults: Vec<Played>,
     identifiers: Identifiers,
     sender: Sender<0>,
-    motion: [Option<Frame>; 2],
+    motion: EgoMotion,
+    truth: Option<Motion>,
     /// Time of the next act of a fault that acts a hundred times a second.
     next_s: f64,
     /// Frames that the harness had altered at the last check.
@@ -76,14 +77,14 @@ impl FaultInjector {
     #[must_use]
     pub fn new(faults: &[Fault], identifiers: Identifiers) -> Self {
         let faults = faults.iter().copied().map(Played::new).collect();
-        Self {
-            faults,
-            identifiers,
-            sender: Sender::new(identifiers),
-            motion: [None; 2],
-            next_s: 0.0,
-            altered: Altered::default(),
-        }
+        let (sender, motion, altered) = (Sender::new(identifiers), EgoMotion::default(), Altered::default());
+        Self { faults, identifiers, sender, motion, truth: None, next_s: 0.0, altered }
+    }
+
+    /// The same on a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { sender: self.sender.over(transport), ..self }
     }
 
     /// Switches the faults that are due at this time. Returns whether the device was powered up anew.
@@ -155,11 +156,7 @@ impl FaultInjector {
 
     /// Takes in a frame that the harness has sent.
     pub fn overhear(&mut self, frame: &Frame) {
-        match line_of(&self.identifiers, frame).map(|line| line.content) {
-            Some(Content::Said(Speaker::Ego, About::MotionA)) => self.motion[0] = Some(*frame),
-            Some(Content::Said(Speaker::Ego, About::MotionB)) => self.motion[1] = Some(*frame),
-            _ => {}
-        }
+        self.truth = self.motion.take(&self.identifiers, frame).or(self.truth);
     }
 
     /// Sends the frames of the faults that are on. Returns the time until the next act. Frames that the bus refuses are
@@ -198,8 +195,7 @@ impl FaultInjector {
 
     /// The vehicle's motion at another place: with valid protection, and with counters of its own.
     fn lies(&mut self) -> Vec<Frame> {
-        let [Some(a), Some(b)] = self.motion else { return Vec::new() };
-        let truth = Motion::decode(&[payload(&a), payload(&b)]);
+        let Some(truth) = self.truth else { return Vec::new() };
         let position = truth.position.nearest_to(Position::default()).get().to_num::<i64>() + OFF_M;
         let lie = Motion { position: WirePosition::from_mm(position * 1000), ..truth };
         let mut frames = Vec::new();

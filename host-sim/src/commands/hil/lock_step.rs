@@ -16,13 +16,14 @@ use holdover::wire::command::Command;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Identifiers, Message, Sender};
 
+use super::content::{line_of, payloads};
 use super::deviation::Deviation;
 use super::lateness::Lateness;
 use super::monitor::Monitor;
 use super::outcome::{Cut, Outcome, Steps};
 use super::rig::Rig;
 use super::session::Setup;
-use super::talk::{Talk, line_of, payload};
+use super::talk::Talk;
 use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
@@ -67,10 +68,10 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         talk: Talk::new(port, config.identifiers),
         seat: world.give_seat(scenario.ego, setup.alias()),
         identifiers: config.identifiers,
-        sender: Sender::new(config.identifiers),
+        sender: Sender::new(config.identifiers).over(config.transport),
         sequence: 0,
         twin: (Unit::new(config).map_err(io::Error::other)?, LockStep::new()),
-        monitor: Monitor::new(config.identifiers, config.period),
+        monitor: Monitor::new(config.identifiers, config.period).over(config.transport),
         steps: Steps::default(),
         foreign: 0,
         bus_errors: 0,
@@ -236,7 +237,7 @@ impl<P: Port> Bench<P> {
                         line => *foreign += u64::from(line.is_some()),
                     },
                     Event::Error(_) => *bus_errors += 1,
-                    Event::Fd(_) | Event::Down => {}
+                    Event::Down => {}
                 }
                 !is_enough
             })?;
@@ -268,7 +269,8 @@ impl<P: Port> Bench<P> {
 /// The command in a frame, without a check of its counter.
 fn command(identifiers: &Identifiers, frame: &Frame) -> Option<Command> {
     let line = line_of(identifiers, frame)?;
-    (line.content == Content::Command).then(|| Command::decode(&[payload(frame)]))
+    let [payload, _] = payloads(identifiers, frame);
+    (line.content == Content::Command).then(|| Command::decode(&[payload]))
 }
 
 fn spelled(frame: &Frame) -> String {

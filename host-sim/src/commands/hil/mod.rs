@@ -10,7 +10,8 @@
 //! [`virtual_bus`] tests all of it without CAN.
 
 pub mod arguments;
-pub mod deviation;
+pub mod content;
+mod deviation;
 pub mod fault;
 pub mod fault_injector;
 pub mod judge;

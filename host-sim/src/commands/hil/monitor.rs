@@ -7,7 +7,8 @@ use holdover::health::Cause;
 use holdover::time::{Duration, Instant, Stamp};
 use holdover::wire::command::{Command, ModeCode};
 use holdover::wire::estimate::TargetEstimate;
-use holdover::wire::{Identifiers, Message, Received, Receiver, Role, Said};
+use holdover::wire::fd::State;
+use holdover::wire::{Identifiers, Message, Received, Receiver, Role, Said, Transport};
 
 use crate::bus::Frame;
 
@@ -77,6 +78,12 @@ impl Monitor {
         }
     }
 
+    /// The same on a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { receiver: self.receiver.over(transport), ..self }
+    }
+
     /// Records that the vehicle's motion with this stamp was on the bus.
     pub fn input(&mut self, at: Instant, stamp: Stamp) {
         self.inputs.push_back((stamp, at));
@@ -100,7 +107,7 @@ impl Monitor {
                 self.refusals.insert(status.cause.name(), status.count);
                 News::Other
             }
-            Ok(Received::Whole(Message::Own(Said::Motion(motion)))) => {
+            Ok(Received::Whole(Message::Own(Said::Motion(motion) | Said::State(State { motion, .. })))) => {
                 // The device tells on which motion its command rests.
                 let input = self.inputs.iter().find(|(stamp, _)| *stamp == motion.stamp);
                 if let (Some((_, input)), Some(beat)) = (input, self.beats.last_mut()) {

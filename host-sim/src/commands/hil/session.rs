@@ -9,12 +9,11 @@
 use std::io;
 
 use holdover::time::{Duration, Instant};
-use holdover::wire::Identifiers;
-use holdover::wire::bits::Payload;
-use holdover::wire::catalogue::{About, Content, Node, Speaker};
-use holdover::wire::motion::Motion;
+use holdover::wire::catalogue::Node;
+use holdover::wire::{Identifiers, Transport};
 use holdover::{Config, ConfigError};
 
+use super::content::{EgoMotion, line_of};
 use super::deviation::Deviation;
 use super::fault::Fault;
 use super::fault_injector::{FaultInjector, Played};
@@ -23,7 +22,7 @@ use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
 use super::rig::Rig;
 use super::said::Said;
-use super::talk::{Talk, line_of, payload};
+use super::talk::Talk;
 use super::twin::Twin;
 use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
@@ -87,8 +86,7 @@ pub(super) struct BusListener {
     pub foreign: u64,
     pub bus_errors: u64,
     last_beat: Option<Instant>,
-    /// The first half of the vehicle's motion.
-    first_half: Payload,
+    motion: EgoMotion,
 }
 
 impl BusListener {
@@ -97,14 +95,14 @@ impl BusListener {
             identifiers: config.identifiers,
             config: *config,
             seat,
-            monitor: Monitor::new(config.identifiers, config.period),
+            monitor: Monitor::new(config.identifiers, config.period).over(config.transport),
             twin: Twin::new(config)?,
             told: None,
             deviation: Deviation::default(),
             foreign: 0,
             bus_errors: 0,
             last_beat: None,
-            first_half: Payload::EMPTY,
+            motion: EgoMotion::default(),
         })
     }
 
@@ -120,13 +118,8 @@ impl BusListener {
     pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
         match event {
             Event::Sent(frame) => {
-                match line_of(&self.identifiers, &frame).map(|line| line.content) {
-                    Some(Content::Said(Speaker::Ego, About::MotionA)) => self.first_half = payload(&frame),
-                    Some(Content::Said(Speaker::Ego, About::MotionB)) => {
-                        let motion = Motion::decode(&[self.first_half, payload(&frame)]);
-                        self.monitor.input(at, motion.stamp);
-                    }
-                    _ => {}
+                if let Some(motion) = self.motion.take(&self.identifiers, &frame) {
+                    self.monitor.input(at, motion.stamp);
                 }
                 self.twin.hear(at, frame);
             }
@@ -138,7 +131,7 @@ impl BusListener {
                 }
             },
             Event::Error(_) => self.bus_errors += 1,
-            Event::Fd(_) | Event::Down => {}
+            Event::Down => {}
         }
         Ok(())
     }
@@ -162,9 +155,11 @@ impl BusListener {
                 }
             }
             News::Estimate(device) => {
+                // Over CAN FD there is no tag: an estimate is that of the command before it.
+                let is_of = |tick: u8, tag: u8| self.config.transport == Transport::Fd || tick % 4 == tag;
                 if let Some((Said { command, estimate: Some(twin) }, window)) = self.told.filter(|_| at_s >= 0.0)
-                    && self.monitor.beats().last().is_some_and(|beat| beat.tick % 4 == device.tag)
-                    && command.tick % 4 == twin.tag
+                    && self.monitor.beats().last().is_some_and(|beat| is_of(beat.tick, device.tag))
+                    && is_of(command.tick, twin.tag)
                 {
                     self.deviation.estimate(at_s, &device, &twin, window);
                 }
@@ -187,7 +182,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let mut talk = Talk::new(port, config.identifiers);
     let mut trace = world.trace();
     let mut paper = PaperBeside::of(&world, scenario);
-    let mut injector = FaultInjector::new(&setup.faults, config.identifiers);
+    let mut injector = FaultInjector::new(&setup.faults, config.identifiers).over(config.transport);
     rig.power(true)?;
     let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
     let period = config.period;

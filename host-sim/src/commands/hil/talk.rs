@@ -5,13 +5,12 @@
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind};
 
-use embedded_can::Frame as _;
 use holdover::time::{Duration, Instant};
-use holdover::wire::bits::Payload;
-use holdover::wire::catalogue::{self, Content, Line};
+use holdover::wire::catalogue::Content;
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{Identifiers, e2e};
+use holdover::wire::{Identifiers, Message, Sender, Transport};
 
+use super::content::{counter_of, line_of, payloads, recounted};
 use super::fault::Kind;
 use crate::bus::Frame;
 use crate::bus::port::{Event, Port};
@@ -49,12 +48,6 @@ pub struct Altered {
     pub frames: u64,
     /// Wrong time synchronisations.
     pub times: u64,
-}
-
-/// The line of the catalogue for a frame.
-#[must_use]
-pub fn line_of(identifiers: &Identifiers, frame: &Frame) -> Option<&'static Line> {
-    catalogue::find(identifiers.offset_of(frame.id().into())?).map(|(_, line, _)| line)
 }
 
 /// The harness's side of the bus.
@@ -182,7 +175,8 @@ impl<P: Port> Talk<P> {
             }
             let frame = match line_of(&self.identifiers, &frame).map(|line| line.content) {
                 Some(Content::Sync) => {
-                    self.mark = Some((Sync::decode(&[payload(&frame)]), now, None));
+                    let [payload, _] = payloads(&self.identifiers, &frame);
+                    self.mark = Some((Sync::decode(&[payload]), now, None));
                     frame
                 }
                 Some(Content::FollowUp) if self.dates => match self.mark {
@@ -225,12 +219,16 @@ impl<P: Port> Talk<P> {
         let micros = marked.since(self.origin).as_micros().saturating_add(self.clock_error_us);
         let time = EPOCH_US.saturating_add_signed(micros);
         let micros = u32::try_from(time.saturating_sub(u64::from(sync.seconds) * 1_000_000)).unwrap_or(u32::MAX);
-        let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload(frame)]) };
-        let [dated] = follow_up.encode();
-        let counter = frame.data().get(1).map_or(0, |byte| byte & 15);
-        let Some(line) = line_of(&self.identifiers, frame) else { return *frame };
-        let data = e2e::protect(dated.to_bytes(), catalogue::data_id(line.offset), counter);
-        embedded_can::Frame::new(frame.id(), &data).unwrap_or(*frame)
+        let [payload, _] = payloads(&self.identifiers, frame);
+        let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload]) };
+        let transport = if frame.is_fd() { Transport::Fd } else { Transport::Classic };
+        let mut dated = *frame;
+        let sent =
+            Sender::<0>::new(self.identifiers).over(transport).send(&Message::FollowUp(follow_up), &mut |made| {
+                dated = (&recounted(&self.identifiers, &made, counter_of(frame))).into();
+            });
+        debug_assert!(sent.is_ok(), "the catalogue has a line for the time synchronisation");
+        dated
     }
 
     /// The frame to send instead, if it is this frame's turn to be altered.
@@ -238,13 +236,8 @@ impl<P: Port> Talk<P> {
         let kind = self.spoiled.filter(|_| self.counts.sent.is_multiple_of(3))?;
         match kind {
             Kind::Corrupt => Some(frame.with_flipped_bit(usize::try_from(self.counts.sent).unwrap_or(0))),
-            Kind::Truncate => embedded_can::Frame::new(frame.id(), frame.data().get(..4).unwrap_or_default()),
+            Kind::Truncate => Some(frame.cut_to(4)),
             _ => None,
         }
     }
-}
-
-/// The payload of a frame of 8 bytes; that of any other frame is empty.
-pub fn payload(frame: &Frame) -> Payload {
-    frame.data().try_into().map_or(Payload::EMPTY, Payload::from_bytes)
 }

@@ -129,10 +129,9 @@ pub fn record(
         }
         let pause = now.plus(PAUSE);
         match port.wait(until.map_or(pause, |until| until.min(pause))).map_err(Failure::Port)? {
-            Some((at, Event::Sent(frame) | Event::Received(frame))) => log.write(at, &frame).map_err(Failure::Log)?,
-            Some((at, Event::Fd(frame))) => {
-                log.write_fd(at, &frame).map_err(Failure::Log)?;
-                recorded.fd += 1;
+            Some((at, Event::Sent(frame) | Event::Received(frame))) => {
+                log.write(at, &frame).map_err(Failure::Log)?;
+                recorded.fd += u64::from(frame.is_fd());
             }
             Some((at, Event::Error(error))) => log.write_error(at, &error).map_err(Failure::Log)?,
             Some((_, Event::Down)) => {

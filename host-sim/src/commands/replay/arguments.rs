@@ -39,6 +39,10 @@ pub struct ReplayArguments {
     #[command(flatten)]
     pub identifiers: IdentifierArguments,
 
+    /// The bus is CAN FD, whatever the scenario says
+    #[arg(long)]
+    pub fd: bool,
+
     /// Period of the unit's task, 0.001 to 0.1 [default: 0.01]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, conflicts_with_all = ["scenario", "vehicle"])]
     pub period: Option<f64>,

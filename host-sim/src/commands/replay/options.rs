@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use holdover::Config;
 use holdover::coordination::Itinerary;
-use holdover::wire::StationHash;
+use holdover::wire::{StationHash, Transport};
 
 use super::arguments::ReplayArguments;
 use crate::bus::candump::Interface;
@@ -68,6 +68,9 @@ impl ReplayOptions {
             (Some(named), vehicle) => of_scenario(named, vehicle, &overrides)?,
         };
         config.identifiers = identifiers.read()?;
+        if arguments.fd {
+            config.transport = Transport::Fd;
+        }
         let output = match (bus, arguments.json, arguments.summary) {
             (Some(bus), ..) => Output::Bus(bus),
             (None, true, _) => Output::Json,

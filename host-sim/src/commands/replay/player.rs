@@ -4,6 +4,7 @@ use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
 use holdover::time::{Duration, Instant};
+use holdover::wire::Transport;
 use holdover::{Config, ConfigError};
 
 use super::tally::Tally;
@@ -42,7 +43,12 @@ impl Player {
     pub fn new(config: &Config, compares: bool) -> Result<Self, ConfigError> {
         let unit = Unit::new(config)?;
         let deaf = compares.then(|| unit.clone());
-        Ok(Self { unit, deaf, timeline: Timeline::new(config.period), tally: Tally::new(config.identifiers) })
+        Ok(Self {
+            unit,
+            deaf,
+            timeline: Timeline::new(config.period),
+            tally: Tally::new(config.identifiers).over(config.transport),
+        })
     }
 
     /// Sets out on a way through intersections, before the first line.
@@ -82,11 +88,15 @@ impl Player {
             self.tick(tick, &mut send).map_err(Stop::Output)?;
         }
         match &entry.content {
+            // A classic controller hears no frame of CAN FD; one of CAN FD hears both, and the unit refuses what is classic.
+            Content::Frame(frame) if frame.is_fd() && self.unit.config().transport == Transport::Classic => {
+                self.tally.ignore();
+            }
             Content::Frame(frame) => {
                 let reception = self.unit.receive(at.plus(POWERED_BEFORE), frame);
                 self.tally.count(frame, reception);
             }
-            Content::Fd | Content::Xl | Content::ErrorFrame => self.tally.ignore(),
+            Content::Xl | Content::ErrorFrame => self.tally.ignore(),
         }
         Ok(())
     }

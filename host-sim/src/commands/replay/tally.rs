@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use embedded_can::Frame as _;
 use holdover::Reception;
 use holdover::health::Cause;
-use holdover::wire::{Identifiers, MessageName};
+use holdover::wire::catalogue::{self, Line, OnFd};
+use holdover::wire::{Identifiers, MessageName, Transport};
 
 use crate::bus::Frame;
 
@@ -13,6 +14,7 @@ use crate::bus::Frame;
 #[derive(Clone, Debug)]
 pub struct Tally {
     identifiers: Identifiers,
+    transport: Transport,
     /// By offset in the catalogue.
     recognised: BTreeMap<u16, u64>,
     refused: [u64; Cause::ALL.len()],
@@ -24,7 +26,21 @@ impl Tally {
     /// Counts of 0, on a bus with these identifiers.
     #[must_use]
     pub fn new(identifiers: Identifiers) -> Self {
-        Self { identifiers, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
+        let transport = Transport::Classic;
+        Self {
+            identifiers,
+            transport,
+            recognised: BTreeMap::new(),
+            refused: [0; Cause::ALL.len()],
+            ignored: 0,
+            ticks: 0,
+        }
+    }
+
+    /// The same on a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { transport, ..self }
     }
 
     /// Counts a frame that the unit received.
@@ -57,7 +73,7 @@ impl Tally {
     /// Good frames of each message, by its name in the DBC, in the order of the catalogue.
     #[must_use]
     pub fn recognised(&self) -> Vec<(String, u64)> {
-        self.recognised.iter().map(|(offset, count)| (MessageName::at(*offset).to_string(), *count)).collect()
+        self.recognised.iter().map(|(offset, count)| (self.name(*offset), *count)).collect()
     }
 
     /// Refused frames by cause, without causes that did not occur.
@@ -77,5 +93,14 @@ impl Tally {
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.ticks
+    }
+
+    fn name(&self, offset: u16) -> String {
+        match catalogue::find(offset) {
+            Some((_, Line { on_fd: OnFd::Frame(name), .. }, slot)) if self.transport == Transport::Fd => {
+                name.replace("{slot}", &slot.0.to_string())
+            }
+            _ => MessageName::at(offset).to_string(),
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
-use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, envelope, plant, sensors, start};
+use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, bus, envelope, plant, sensors, start};
 use crate::error::{Error, quoted};
 use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::input::recording::{ChannelTrace, Motion};
@@ -57,6 +57,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let ego = index_of_ego(&document, ego, vehicles.len())?;
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
+    let transport = bus::read(top.section("bus")?)?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -78,6 +79,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
         ego,
         channel,
         envelope,
+        transport,
     })
 }
 

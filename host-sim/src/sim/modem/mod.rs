@@ -21,8 +21,9 @@
 //! change. Otherwise they are relayed every [`PARAMETERS_EVERY_S`], so that those of all stations fit the bus.
 
 use holdover::wire::driving_parameters::DrivingParameters;
+use holdover::wire::fd::State;
 use holdover::wire::route::Route;
-use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash, Transport};
 
 mod front;
 mod relevance;
@@ -135,6 +136,12 @@ impl Relay {
         Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
     }
 
+    /// On a bus with these frames.
+    #[must_use]
+    pub fn over(self, transport: Transport) -> Self {
+        Self { sender: self.sender.over(transport), ..self }
+    }
+
     /// Limits the modem to the unit's number of slots. It has to be called before the first message is heard.
     pub fn limit(&mut self, slots: usize) {
         self.slots.truncate(slots);
@@ -185,13 +192,8 @@ impl Relay {
         }
         // The unit needs the route first, because it converts positions to its own axis by the route.
         let mut said: Vec<Said> = message.route.map(Said::Route).into_iter().collect();
-        said.push(Said::Motion(message.motion));
-        if let Some(parameters) =
-            message.parameters.filter(|parameters| self.are_parameters_due(slot, parameters, at_s))
-        {
-            said.push(Said::DrivingParameters(parameters));
-        }
-        said.extend(message.horizon.map(Said::Horizon));
+        let parameters = message.parameters.filter(|parameters| self.are_parameters_due(slot, parameters, at_s));
+        said.push(Said::State(State { motion: message.motion, parameters, horizon: message.horizon }));
         self.dismiss(slot, at_s);
         // Twice, because the unit trusts an identifier from its second frame on, and the first message may be the last
         // before a silence.

@@ -21,6 +21,7 @@
 //! and those that crossed long ago and do not lead. The unit could not tell where on its lane they are.
 
 use holdover::coordination::Arrival;
+use holdover::wire::fd::State;
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
 
@@ -180,7 +181,7 @@ impl Course {
     pub fn take(&mut self, said: &Said) {
         match said {
             Said::Route(route) => self.route = Some(*route),
-            Said::DrivingParameters(parameters) => {
+            Said::DrivingParameters(parameters) | Said::State(State { parameters: Some(parameters), .. }) => {
                 self.followed = match parameters.predecessor {
                     Predecessor::Station(station) => Some(station),
                     // A unit that waits for the first message of its target names no target, but it has to hear that

@@ -2,6 +2,7 @@
 
 use holdover::wire::Said;
 use holdover::wire::driving_parameters::DrivingParameters;
+use holdover::wire::fd::State;
 use holdover::wire::horizon::Knots;
 use holdover::wire::motion::Motion;
 use holdover::wire::route::Route;
@@ -36,6 +37,11 @@ impl Transmitter {
             Said::DrivingParameters(parameters) => self.parameters = Some(*parameters),
             Said::Horizon(knots) => self.horizon = Some(*knots),
             Said::Route(route) => self.route = Some(*route),
+            Said::State(State { motion, parameters, horizon }) => {
+                self.motion = Some(*motion);
+                self.parameters = parameters.or(self.parameters);
+                self.horizon = *horizon;
+            }
             Said::Geo(_) => {}
         }
     }
@@ -45,7 +51,7 @@ impl Transmitter {
     pub fn broadcast(&mut self) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
-        let route = self.route.take().filter(|route| route.tag == motion.tag);
+        let route = self.route.take().filter(|route| route.stamp == motion.stamp);
         Some(V2xMessage { motion, parameters: self.parameters, horizon, route })
     }
 }

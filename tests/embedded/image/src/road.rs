@@ -4,8 +4,12 @@
 use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Seconds, Speed};
+#[cfg(feature = "fd")]
+use holdover::wire::Transport;
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
+#[cfg(feature = "fd")]
+use holdover::wire::fd::State;
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
@@ -30,7 +34,10 @@ pub struct Road {
 impl Road {
     /// With so many peers, up to 8.
     pub fn new(peers: u8) -> Self {
-        Self { peers, sender: Sender::new(Identifiers::DEFAULT), tag: 0, sequence: 0 }
+        let sender = Sender::new(Identifiers::DEFAULT);
+        #[cfg(feature = "fd")]
+        let sender = sender.over(Transport::Fd);
+        Self { peers, sender, tag: 0, sequence: 0 }
     }
 
     fn say(&mut self, message: &Message, hear: &mut impl FnMut(&Frame)) {
@@ -63,38 +70,38 @@ impl Road {
 
     /// How a peer drives; with another time gap if `other`.
     pub fn parameters_of(&mut self, peer: u8, other: bool, hear: &mut impl FnMut(&Frame)) {
-        let parameters = DrivingParameters {
-            length: Distance::from_mm(4_800),
-            standstill: Distance::from_mm(2_000),
-            predecessor: peer
-                .checked_sub(1)
-                .map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
-            target_speed: Speed::from_mm_per_s(13_400),
-            catch_up: Fraction::from_milli(200),
-            time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
-            gain: GAIN,
-            damping: DAMPING,
-            lag: FineSeconds::from_millis(300),
-            limits: Limits {
-                acceleration: Acceleration::from_mm_per_s2(2_500),
-                braking: Acceleration::from_mm_per_s2(4_000),
-                jerk: Jerk::from_mm_per_s3(5_000),
-                emergency_braking: Acceleration::from_mm_per_s2(8_000),
-            },
-            horizon_tenths: 39,
-        };
-        self.say(&Message::Peer(Slot(peer), Said::DrivingParameters(parameters)), hear);
+        self.say(&Message::Peer(Slot(peer), Said::DrivingParameters(parameters(peer, other))), hear);
+    }
+
+    /// Everything that a peer says of its motion and of what it will do: its motion sampled `age` ago, the horizon from it, and with
+    /// every fifth its driving parameters.
+    pub fn state_of(
+        &mut self,
+        peer: u8,
+        at: Instant,
+        age: Duration,
+        with_parameters: bool,
+        hear: &mut impl FnMut(&Frame),
+    ) {
+        let motion = self.motion(at.minus(age), peer, StationHash(peer));
+        let horizon = horizon(motion.tag);
+        let parameters = with_parameters.then(|| parameters(peer, false));
+        #[cfg(feature = "fd")]
+        {
+            let state = State { motion, parameters, horizon: Some(horizon) };
+            self.say(&Message::Peer(Slot(peer), Said::State(state)), hear);
+        }
+        #[cfg(not(feature = "fd"))]
+        {
+            let said =
+                [Some(Said::Motion(motion)), parameters.map(Said::DrivingParameters), Some(Said::Horizon(horizon))];
+            said.into_iter().flatten().for_each(|said| self.say(&Message::Peer(Slot(peer), said), hear));
+        }
     }
 
     /// The horizon that a peer computed from the motion that it sent last: on at its speed.
     pub fn horizon_of(&mut self, peer: u8, hear: &mut impl FnMut(&Frame)) {
-        let knots = SHARES_PER_MILLE.map(|share| Knot {
-            displacement: Distance::from_mm((i64::from(SPEED) * 39 * i64::from(share) / 10_000) as i32),
-            speed: Speed::from_mm_per_s(SPEED),
-            acceleration: Acceleration::ZERO,
-            bow: Distance::ZERO,
-        });
-        self.say(&Message::Peer(Slot(peer), Said::Horizon(Knots { tag: self.tag, knots })), hear);
+        self.say(&Message::Peer(Slot(peer), Said::Horizon(horizon(self.tag))), hear);
     }
 
     fn motion(&mut self, at: Instant, place: u8, station: StationHash) -> Motion {
@@ -113,4 +120,37 @@ impl Road {
             station,
         }
     }
+}
+
+/// How a peer drives; with another time gap if `other`.
+fn parameters(peer: u8, other: bool) -> DrivingParameters {
+    DrivingParameters {
+        length: Distance::from_mm(4_800),
+        standstill: Distance::from_mm(2_000),
+        predecessor: peer.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
+        target_speed: Speed::from_mm_per_s(13_400),
+        catch_up: Fraction::from_milli(200),
+        time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
+        gain: GAIN,
+        damping: DAMPING,
+        lag: FineSeconds::from_millis(300),
+        limits: Limits {
+            acceleration: Acceleration::from_mm_per_s2(2_500),
+            braking: Acceleration::from_mm_per_s2(4_000),
+            jerk: Jerk::from_mm_per_s3(5_000),
+            emergency_braking: Acceleration::from_mm_per_s2(8_000),
+        },
+        horizon_tenths: 39,
+    }
+}
+
+/// On at its speed, from the motion with this tag.
+fn horizon(tag: u8) -> Knots {
+    let knots = SHARES_PER_MILLE.map(|share| Knot {
+        displacement: Distance::from_mm((i64::from(SPEED) * 39 * i64::from(share) / 10_000) as i32),
+        speed: Speed::from_mm_per_s(SPEED),
+        acceleration: Acceleration::ZERO,
+        bow: Distance::ZERO,
+    });
+    Knots { tag, knots }
 }

@@ -97,8 +97,7 @@ fn is_silenced(at_s: f64, id: &Id) -> bool {
 }
 
 fn line(id: &Id) -> Option<&'static catalogue::Line> {
-    let Id::Standard(id) = id else { return None };
-    let (_, line, _) = catalogue::find(Identifiers::DEFAULT.offset_of(id.as_raw())?)?;
+    let (_, line, _) = catalogue::find(Identifiers::DEFAULT.offset_of((*id).into())?)?;
     Some(line)
 }
 

@@ -9,6 +9,7 @@ use cortex_m_semihosting::hprintln;
 use holdover::model::{Aim, State, Step};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Seconds, Speed};
+use holdover::wire::Transport;
 use holdover::{Config, OnboardUnit};
 use holdover_image::counter::Counter;
 use holdover_image::float::{double, single};
@@ -167,6 +168,34 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
     }
 }
 
+/// What the frames of one peer take in 100 ms, of eight: motion, horizon, and a fifth of its driving parameters.
+#[inline(never)]
+fn peer(name: &str, unit: &mut OnboardUnit<8, 8, CAPACITY>, config: &Config, counter: &Counter) {
+    const SECONDS: u64 = 3;
+    assert!(unit.start(config).is_ok());
+    let (mut road, mut sum, mut messages) = (Road::new(8), 0, 0);
+    for tick in 0..100 * SECONDS {
+        let at = Instant::from_micros(PERIOD * tick);
+        let mut deaf = |frame: &_| {
+            let _ = unit.receive(at, frame);
+        };
+        if tick % 50 == 0 {
+            road.synchronise(at, &mut deaf);
+        }
+        road.ego(at, &mut deaf);
+        for peer in (0..8).filter(|_| tick % 10 == 5) {
+            road.state_of(peer, at, AGE, tick % 50 == 5, &mut |frame| {
+                let (_, count) = counter.count(|| unit.receive(at, frame));
+                sum += if peer == 7 && tick >= 100 { count } else { 0 };
+            });
+            messages += u32::from(peer == 7 && tick >= 100);
+        }
+        let answer = unit.tick(at.plus(Duration::from_micros(3)));
+        assert!(tick < 100 || answer.estimate.is_some_and(|estimate| estimate.link_on));
+    }
+    hprintln!("{} 8 {} {}", name, CAPACITY, sum / messages);
+}
+
 /// The same 400 steps of one follower in the core's fixed point, in `f32` and in `f64`; and as many predictions of a Kalman
 /// filter.
 fn compare(counter: &Counter) {
@@ -222,9 +251,14 @@ fn main() -> ! {
     static mut FOUR: OnboardUnit<4, 8, CAPACITY> = OnboardUnit::idle();
     static mut ONE: OnboardUnit<1, 8, CAPACITY> = OnboardUnit::idle();
     if let Some(counter) = Counter::start() {
+        if cfg!(feature = "fd") {
+            peer("peer-fd", EIGHT, &Config { transport: Transport::Fd, ..Config::car(EGO) }, &counter);
+            debug::exit(EXIT_SUCCESS);
+        }
         measure(ONE, &counter);
         measure(FOUR, &counter);
         measure(EIGHT, &counter);
+        peer("peer", EIGHT, &Config::car(EGO), &counter);
         compare(&counter);
         debug::exit(EXIT_SUCCESS);
     }
