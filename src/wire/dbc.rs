@@ -4,6 +4,7 @@
 use core::fmt::{Display, Formatter, Result};
 
 use super::catalogue::{CATALOGUE, Line, Node, OnFd, SLOTS, data_id};
+use super::identifier::Identifier;
 use super::identifiers::Identifiers;
 use super::message_name::Name;
 use super::{Slot, Transport, meaning};
@@ -11,6 +12,9 @@ use signal::Signal;
 
 mod signal;
 mod texts;
+
+/// The number of `ExtendedCAN_FD` among the values of `VFrameFormat`.
+const EXTENDED_CAN_FD: u16 = 15;
 
 /// The DBC of a bus.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +31,7 @@ struct Described {
     #[cfg_attr(not(feature = "fd"), allow(dead_code))] // on classic CAN a frame is of one line
     place: usize,
     slot: Slot,
-    /// As it stands in the file.
-    id: u32,
+    id: Identifier,
     is_over_fd: bool,
 }
 
@@ -55,7 +58,7 @@ impl Dbc {
         let peers = (0..slots)
             .flat_map(move |slot| lines().filter(|(_, line)| line.is_per_slot()).map(move |of| (of, Slot(slot))));
         single.chain(peers).map(move |((place, line), slot)| {
-            let id = identifiers.at(line.offset_for(slot)).in_dbc();
+            let id = identifiers.at(line.offset_for(slot));
             Described { line, place, slot, id, is_over_fd }
         })
     }
@@ -109,6 +112,7 @@ impl Described {
             classic("E2EMaxDeltaCounterInit", most_lost),
             classic("E2EMaxNoNewOrRepeatedData", limits.max_no_new_or_repeated.into()),
             classic("E2ESyncCounterInit", limits.sync_counter_init.into()),
+            (is_over_fd && self.id.is_extended()).then_some(("VFrameFormat", EXTENDED_CAN_FD)),
             is_over_fd.then_some(("E2EMaxDeltaCounter", most_lost.saturating_add(1))),
         ]
         .into_iter()
@@ -146,7 +150,7 @@ impl Display for Dbc {
         };
         f.write_str(texts::HEAD)?;
         for message in self.messages() {
-            let Described { line, id, .. } = message;
+            let (line, id) = (message.line, message.id.in_dbc());
             writeln!(f, "BO_ {id} {}: {} {}", message.name(), message.bytes(), node(line.sender))?;
             let receivers = if matches!(line.sender, Node::Unit) { "Modem,Vehicle" } else { "Unit" };
             writeln!(f, " SG_ Crc : {crc_place} \"\" {receivers}")?;
@@ -159,7 +163,7 @@ impl Display for Dbc {
         f.write_str(texts::notes(is_over_fd))?;
         f.write_str(texts::NODES)?;
         for message in self.messages() {
-            let id = message.id;
+            let id = message.id.in_dbc();
             write!(f, "CM_ BO_ {id} \"")?;
             message.write_comment(f)?;
             writeln!(f, "\";")?;
@@ -171,7 +175,7 @@ impl Display for Dbc {
         }
         f.write_str(texts::attributes(is_over_fd))?;
         for message in self.messages() {
-            let id = message.id;
+            let id = message.id.in_dbc();
             for (name, value) in message.attributes() {
                 writeln!(f, "BA_ \"{name}\" BO_ {id} {value};")?;
             }
@@ -184,7 +188,7 @@ impl Display for Dbc {
         }
         for message in self.messages() {
             for signal in message.signals().filter(|signal| !signal.field.values.is_empty()) {
-                write!(f, "VAL_ {} {}", message.id, signal.name())?;
+                write!(f, "VAL_ {} {}", message.id.in_dbc(), signal.name())?;
                 for (raw, name) in signal.field.values {
                     write!(f, " {raw} \"{name}\"")?;
                 }

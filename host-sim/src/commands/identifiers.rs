@@ -5,7 +5,7 @@ use std::num::ParseIntError;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use holdover::wire::catalogue::{CATALOGUE, Content, Line};
+use holdover::wire::catalogue::{CATALOGUE, Content, Line, OnFd};
 use holdover::wire::{BaseId, Identifier, Identifiers};
 
 use crate::error::Error;
@@ -17,8 +17,9 @@ pub struct IdentifierArguments {
     #[arg(long, value_name = "ID", value_parser = number)]
     pub base_id: Option<u16>,
 
-    /// Place a message outside the block, such as MotionCommand=0x123 or MotionCommand=0x0CFF0210x, where x stands for 29
-    /// bits; a peer's with the distance between slots, such as PeerMotionA=0x18FF4021x/0x100. May be repeated
+    /// Place a message outside the block, such as MotionCommand=0x123, or MotionCommand=0x0CFF0210 with 29 bits, as each number
+    /// above 0x7FF has and each that ends with an x; a peer's with the distance between slots, such as
+    /// PeerMotionA=0x18FF4021/0x100. May be repeated
     #[arg(long, value_name = "NAME=ID")]
     pub place: Vec<String>,
 
@@ -75,10 +76,10 @@ fn of_file(file: &Path, mut identifiers: Identifiers) -> Result<Identifiers, Err
 
 /// These identifiers, but for the place that is written `NAME=ID`, or `NAME=ID/STRIDE` for a peer's.
 fn place(identifiers: Identifiers, text: &str) -> Result<Identifiers, Error> {
-    let form = "write NAME=ID, such as MotionCommand=0x123, or =0x0CFF0210x for 29 bits";
+    let form = "write NAME=ID, such as MotionCommand=0x123, or =0x0CFF0210 with 29 bits";
     let (name, at) = text.split_once('=').ok_or_else(|| Error::new(format!("`{text}` is no place"), form))?;
     let (name, at) = (name.trim(), at.trim());
-    let line = CATALOGUE.iter().find(|line| plain(line) == name).ok_or_else(|| {
+    let line = CATALOGUE.iter().find(|line| is_called(line, name)).ok_or_else(|| {
         let names: Vec<String> = CATALOGUE.iter().map(plain).collect();
         Error::new(format!("there is no message `{name}`"), format!("give one of {}", names.join(", ")))
     })?;
@@ -87,7 +88,7 @@ fn place(identifiers: Identifiers, text: &str) -> Result<Identifiers, Error> {
         None => (at, None),
     };
     let wrong =
-        |text| Error::new(format!("`{text}` is no identifier"), "give up to 0x7FF, or up to 0x1FFFFFFFx for 29 bits");
+        |text| Error::new(format!("`{text}` is no identifier"), "give 0 to 0x7FF, or up to 0x1FFFFFFF for 29 bits");
     let id = identifier(id).ok_or_else(|| wrong(id))?;
     match (line.content, stride) {
         (Content::Said(_, about), Some(stride)) if line.is_per_slot() => {
@@ -117,12 +118,18 @@ fn plain(line: &Line) -> String {
     line.name.replace("{slot}", "")
 }
 
-/// An identifier; one of 29 bits ends with an x.
+/// Whether a line has this name, on classic CAN or on CAN FD.
+fn is_called(line: &Line, name: &str) -> bool {
+    plain(line) == name || matches!(line.on_fd, OnFd::Frame(of) if of.replace("{slot}", "") == name)
+}
+
+/// An identifier; one of 29 bits is above 0x7FF or ends with an x.
 fn identifier(text: &str) -> Option<Identifier> {
-    match text.strip_suffix(['x', 'X']) {
-        Some(extended) => Identifier::extended(whole(extended)?),
-        None => Identifier::standard(u16::try_from(whole(text)?).ok()?),
+    if let Some(extended) = text.strip_suffix(['x', 'X']) {
+        return Identifier::extended(whole(extended)?);
     }
+    let number = whole(text)?;
+    u16::try_from(number).ok().and_then(Identifier::standard).or_else(|| Identifier::extended(number))
 }
 
 fn whole(text: &str) -> Option<u32> {
@@ -158,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_place_has_11_or_29_bits_and_a_stride_where_there_are_slots() {
-        let placed = read(&["MotionCommand=0x0CFF0210x", "TimeSync = 291", "PeerMotionB=0x18FF4021x/0x100"]).unwrap();
+        let placed = read(&["MotionCommand=0x0CFF0210x", "TimeSync = 291", "PeerMotionB=0x18FF4021/0x100"]).unwrap();
         let id = Identifier::extended(0x0CFF_0210).unwrap();
         assert_eq!(placed.placement(Content::Command), Some((id, 0)));
         assert_eq!(placed.placement(Content::Sync), Some((Identifier::standard(0x123).unwrap(), 0)));
@@ -172,8 +179,9 @@ mod tests {
         for (place, said) in [
             ("MotionCommand", "is no place; write NAME=ID"),
             ("Motion=5", "there is no message `Motion`; give one of TimeSync, "),
-            ("TimeSync=0x800", "`0x800` is no identifier; give up to 0x7FF"),
+            ("TimeSync=0x20000000", "`0x20000000` is no identifier; give 0 to 0x7FF, or up to 0x1FFFFFFF"),
             ("TimeSync=0x20000000x", "is no identifier"),
+            ("TimeSync=-1", "is no identifier"),
             ("PeerMotionA=0x18FF4021x", "has no distance between slots; add it, such as PeerMotionA=0x18FF4021x/0x100"),
             ("TimeSync=5/8", "TimeSync has no slots; leave the distance away: TimeSync=0x005"),
             ("PeerRoute=0x700/1000", "the identifiers of Peer0Route and of its other slots do not fit"),

@@ -13,7 +13,7 @@ use holdover::wire::fd::State;
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{Identifiers, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 /// The ego's station; a peer's is the number of its slot.
 pub const EGO: StationHash = StationHash(100);
