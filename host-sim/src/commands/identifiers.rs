@@ -185,7 +185,7 @@ mod tests {
             ("PeerMotionA=0x18FF4021x", "has no distance between slots; add it, such as PeerMotionA=0x18FF4021x/0x100"),
             ("TimeSync=5/8", "TimeSync has no slots; leave the distance away: TimeSync=0x005"),
             ("PeerRoute=0x700/1000", "the identifiers of Peer0Route and of its other slots do not fit"),
-            ("TimeSync=0x482", "TimeSync and MotionCommand have the same identifier; place one of them elsewhere"),
+            ("TimeSync=0x482", "MotionCommand and TimeSync have the same identifier; place one of them elsewhere"),
         ] {
             let error = read(&[place]).unwrap_err();
             assert!(error.contains(said), "{place}: {error}");
