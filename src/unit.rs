@@ -94,7 +94,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(STEPS)?;
         // Field by field, because the whole of it would pass over the stack.
-        self.receiver = Receiver::new(config.identifiers, Role::Unit);
+        self.receiver = Receiver::new(Identifiers::NONE, Role::Unit);
+        self.receiver.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.receiver.set_transport(config.transport);
         self.scene.start(config);
@@ -103,7 +104,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.controller = Controller::new(config.period);
         self.gate = Gate::new();
         self.dynamics = Inversion::new();
-        self.outbox = Outbox::new(config.identifiers);
+        self.outbox = Outbox::new(Identifiers::NONE);
+        self.outbox.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.outbox.set_transport(config.transport);
         self.health = Health::new();

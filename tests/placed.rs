@@ -13,6 +13,8 @@ use embedded_can::Frame as _;
 use holdover::config::{Config, ConfigError};
 use holdover::time::Instant;
 use holdover::wire::catalogue::{About, CATALOGUE, Content, Line, Node, Speaker};
+#[cfg(feature = "fd")]
+use holdover::wire::fd::State;
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::{Frame, Identifier, IdentifierError, Identifiers, Message, MessageName, Said, Slot, Transport};
 use holdover::{Answer, Reception};
@@ -20,6 +22,8 @@ use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use rig::junction::WAYS;
 use traffic::{EGO, PEERS, Traffic, Unit, drop_result};
+#[cfg(feature = "fd")]
+use traffic::{TARGET, leads};
 
 const BLOCK: Identifiers = Identifiers::DEFAULT;
 
@@ -75,13 +79,22 @@ impl Drive {
     fn new(transport: Transport) -> Self {
         let (mut unit, mut traffic) = (unit(BLOCK, transport), Traffic::new());
         #[cfg(feature = "fd")]
-        let mut traffic = Traffic { sender: traffic.sender.over(transport), ..traffic };
+        if transport == Transport::Fd {
+            // Its peers speak classic CAN; a state of the target stands in for them.
+            traffic = Traffic { sender: traffic.sender.over(transport), target: false, behind: false, ..traffic };
+        }
         let (mut runner, any) = (TestRunner::deterministic(), messages::to_unit(PEERS as u8));
         let (mut heard, mut answers) = (Vec::new(), Vec::new());
         for period in 0..500 {
             let (now, mut frames) = traffic.next();
             if period == SET_OUT {
                 unit.set_out(&WAYS[0]).unwrap();
+            }
+            #[cfg(feature = "fd")]
+            if transport == Transport::Fd && period % 10 == 0 {
+                let motion = traffic.motion(TARGET, 17_000, now);
+                let state = State { motion, parameters: Some(leads()), horizon: None };
+                frames.extend(traffic.peer(0, Said::State(state)));
             }
             if period % 10 == 5 {
                 let stamp = traffic.gnss(now).stamp();
@@ -91,7 +104,9 @@ impl Drive {
                 frames.extend(traffic.frames(&Message::Ego(Said::Geo(geo))));
             }
             if period > 250 {
-                frames.extend(traffic.frames(&any.new_tree(&mut runner).unwrap().current()));
+                let message = any.new_tree(&mut runner).unwrap().current();
+                let sent = traffic.sender.send(&message, &mut |frame| frames.push(frame));
+                assert!(sent.is_ok() || transport == Transport::Fd, "what is no message by itself over CAN FD");
             }
             frames.iter().for_each(|frame| drop_result(unit.receive(now, frame)));
             heard.push((now, frames));

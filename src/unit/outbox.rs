@@ -73,6 +73,10 @@ impl Outbox {
         }
     }
 
+    pub(super) fn set_identifiers(&mut self, identifiers: &Identifiers) {
+        self.sender.set_identifiers(identifiers);
+    }
+
     #[cfg(feature = "fd")]
     pub(super) fn set_transport(&mut self, transport: Transport) {
         self.sender.set_transport(transport);

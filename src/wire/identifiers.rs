@@ -57,29 +57,21 @@ impl Identifiers {
 
     /// These, but for a line that lies on this identifier; `None` for a content without a line, and for a peer's.
     #[must_use]
-    pub const fn place(mut self, content: Content, id: Identifier) -> Option<Self> {
-        match index::line_of(content) {
-            Some(line) if !content.is_per_slot() => {
-                #[allow(clippy::indexing_slicing)] // a place in the catalogue
-                {
-                    self.placed[line] = id;
-                }
-                self.is_any_placed = true;
-                Some(self)
-            }
-            _ => None,
-        }
+    pub fn place(mut self, content: Content, id: Identifier) -> Option<Self> {
+        let (line, _) = index::find_content(content).filter(|_| !content.is_per_slot())?;
+        *self.placed.get_mut(line)? = id;
+        self.is_any_placed = true;
+        Some(self)
     }
 
     /// These, but for a line of the peers, which lies on `first` for slot 0 and so many identifiers further for each slot.
     #[must_use]
-    pub const fn place_peers(mut self, about: About, first: Identifier, stride: u32) -> Self {
-        if let Some(line) = index::line_of(Content::Said(Speaker::Peer, about)) {
-            #[allow(clippy::indexing_slicing)] // a place in the catalogue, and a number of `About`
-            {
-                self.placed[line] = first;
-                self.strides[about as usize] = stride;
-            }
+    pub fn place_peers(mut self, about: About, first: Identifier, stride: u32) -> Self {
+        let line = index::find_content(Content::Said(Speaker::Peer, about)).map(|(line, _)| line);
+        if let Some(placed) = line.and_then(|line| self.placed.get_mut(line))
+            && let Some(of_slots) = self.strides.get_mut(about as usize)
+        {
+            (*placed, *of_slots) = (first, stride);
             self.is_any_placed = true;
         }
         self
@@ -94,7 +86,7 @@ impl Identifiers {
     /// Where a line was placed, and its stride (0 where there are no slots); `None` if it lies in the block.
     #[must_use]
     pub fn placement(&self, content: Content) -> Option<(Identifier, u32)> {
-        let (first, stride) = self.placed_at(index::line_of(content)?)?;
+        let (first, stride) = self.placed_at(index::find_content(content)?.0)?;
         Some((first, if content.is_per_slot() { stride } else { 0 }))
     }
 

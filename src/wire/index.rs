@@ -188,15 +188,6 @@ const fn number(content: Content) -> usize {
     }
 }
 
-/// The place of a content in the catalogue, if it has one.
-#[allow(clippy::indexing_slicing)] // a number below their count
-pub(super) const fn line_of(content: Content) -> Option<usize> {
-    match BY_CONTENT[number(content)] {
-        NOWHERE => None,
-        place => Some(place as usize),
-    }
-}
-
 /// The offset of a place in the catalogue; of slot 0 for a peer's.
 pub(super) fn offset_of(place: usize) -> Option<u16> {
     ENTRIES.get(place).map(|entry| entry.offset)

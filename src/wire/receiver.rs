@@ -139,6 +139,10 @@ impl<const PEERS: usize> Receiver<PEERS> {
         }
     }
 
+    pub(crate) fn set_identifiers(&mut self, identifiers: &Identifiers) {
+        self.identifiers = *identifiers;
+    }
+
     /// Takes one frame received at `at`.
     ///
     /// # Errors

@@ -61,6 +61,10 @@ impl<const PEERS: usize> Sender<PEERS> {
         }
     }
 
+    pub(crate) fn set_identifiers(&mut self, identifiers: &Identifiers) {
+        self.identifiers = *identifiers;
+    }
+
     /// Emits the message's frames, in order.
     ///
     /// # Errors
