@@ -118,16 +118,12 @@ impl Identifiers {
         let mut placed = wire::Identifiers::block(base);
         macro_rules! single {
             ($field:ident, $content:expr) => {
-                if let Some(id) = identifier(self.$field)? {
-                    placed = placed.place($content, id).ok_or(Status::ConfigIdentifierRange)?;
-                }
+                place(&mut placed, $content, self.$field)?;
             };
         }
         macro_rules! peer {
             ($field:ident, $about:expr) => {
-                if let Some(first) = identifier(self.$field.first)? {
-                    placed = placed.place_peers($about, first, self.$field.stride);
-                }
+                place_peers(&mut placed, $about, self.$field)?;
             };
         }
         each!(single, peer);
@@ -153,6 +149,22 @@ impl From<&wire::Identifiers> for Identifiers {
         each!(single, peer);
         plain
     }
+}
+
+#[inline(never)] // or the stack would have room for a copy of all identifiers for each of them
+fn place(placed: &mut wire::Identifiers, content: Content, word: u32) -> Result<(), Status> {
+    if let Some(id) = identifier(word)? {
+        *placed = placed.place(content, id).ok_or(Status::ConfigIdentifierRange)?;
+    }
+    Ok(())
+}
+
+#[inline(never)] // as above
+fn place_peers(placed: &mut wire::Identifiers, about: About, plain: PeerIdentifiers) -> Result<(), Status> {
+    if let Some(first) = identifier(plain.first)? {
+        *placed = placed.place_peers(about, first, plain.stride);
+    }
+    Ok(())
 }
 
 /// `None`: in the block.
