@@ -93,8 +93,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)] // what it needs on the stack is not to stay there
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(STEPS)?;
-        // Field by field, because the whole of it would pass over the stack.
-        self.receiver = Receiver::new(Identifiers::NONE, Role::Unit);
+        // Field by field, because the whole of it would pass over the stack. A constant of zeros is written in place.
+        self.receiver = const { Receiver::new(Identifiers::NONE, Role::Unit) };
         self.receiver.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.receiver.set_transport(config.transport);
@@ -104,7 +104,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.controller = Controller::new(config.period);
         self.gate = Gate::new();
         self.dynamics = Inversion::new();
-        self.outbox = Outbox::new(Identifiers::NONE);
+        self.outbox = const { Outbox::new(Identifiers::NONE) };
         self.outbox.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.outbox.set_transport(config.transport);
