@@ -10,7 +10,8 @@ use std::sync::LazyLock;
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, Signal, ValueDescription, ValueType};
 use embedded_can::Id;
-use holdover::wire::catalogue::{CATALOGUE, data_id};
+use holdover::wire;
+use holdover::wire::catalogue::{CATALOGUE, Content, Speaker, data_id};
 use holdover::wire::command::Effort;
 use holdover::wire::fd::State;
 use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, Transport};
@@ -355,6 +356,39 @@ proptest! {
         let meant: Vec<_> = names_of(&message).into_iter().map(whole).filter(|name| !name.ends_with('B')).collect();
         prop_assert_eq!(names, meant);
         prop_assert!(are_as_meant(&readings, &expected));
+    }
+}
+
+#[test]
+fn a_file_with_extended_identifiers_has_every_message_of_the_other_and_its_attributes() {
+    let id = |number| wire::Identifier::extended(number).unwrap();
+    let placed =
+        CATALOGUE.iter().zip((0x18FF_0021..).step_by(0x1000)).fold(Identifiers::DEFAULT, |placed, (line, number)| {
+            match line.content {
+                Content::Said(Speaker::Peer, about) => placed.place_peers(about, id(number), 0x100),
+                content => placed.place(content, id(number)).unwrap(),
+            }
+        });
+    for (fd, of_block) in [(false, file()), (true, file_fd())] {
+        let made = wire::dbc::Dbc::new(placed, 8);
+        let text = if fd { made.over_fd() } else { made }.to_string();
+        let made = Dbc::try_from(text.as_str()).unwrap();
+        assert_eq!(made.messages.len(), of_block.messages.len());
+        for (message, other) in made.messages.iter().zip(&of_block.messages) {
+            let MessageId::Extended(number) = message.id else { panic!("{} is not extended", message.name) };
+            let MessageId::Standard(other_number) = other.id else { panic!("{} is extended", other.name) };
+            let offset = Identifiers::DEFAULT.offset_of(wire::Identifier::standard(other_number).unwrap()).unwrap();
+            assert_eq!((&message.name, number), (&other.name, placed.at(offset).number()));
+            assert_eq!((message.size, &message.signals), (other.size, &other.signals));
+            let of = |file: &Dbc, id| {
+                let of = |a: &&can_dbc::AttributeValueForMessage| a.message_id == id && a.name != "VFrameFormat";
+                let values = file.attribute_values_message.iter().filter(of);
+                values.map(|a| (a.name.clone(), a.value.clone())).collect::<Vec<_>>()
+            };
+            assert_eq!(of(&made, message.id), of(of_block, other.id), "{}", message.name);
+            let has_format = format!("BA_ \"VFrameFormat\" BO_ {} 15;", number | 1 << 31);
+            assert_eq!(text.contains(&has_format), fd, "{}", message.name);
+        }
     }
 }
 
