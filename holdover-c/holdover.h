@@ -21,11 +21,17 @@
 // The most frames that one tick sends.
 #define HOLDOVER_MAX_FRAMES 16
 
+// In front of an identifier of 11 bits: `HOLDOVER_STANDARD | 0x123`.
+#define HOLDOVER_STANDARD 1073741824
+
+// In front of an identifier of 29 bits: `HOLDOVER_EXTENDED | 0x0CFF0210`.
+#define HOLDOVER_EXTENDED 2147483648
+
 // The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
 #define HOLDOVER_VERSION 256
 
 // Bytes of memory that a unit needs, on every target.
-#define HOLDOVER_UNIT_SIZE 44032
+#define HOLDOVER_UNIT_SIZE 44544
 
 // What the address of that memory has to be a multiple of.
 #define HOLDOVER_UNIT_ALIGN 8
@@ -103,6 +109,10 @@ enum holdover_status_t
   HOLDOVER_CONFIG_CATCH_UP = -49,
   // `transport` is CAN FD, which this library is built without.
   HOLDOVER_CONFIG_TRANSPORT = -50,
+  // An identifier that was placed has more than its 11 or 29 bits, with all its 16 slots, or no kind.
+  HOLDOVER_CONFIG_IDENTIFIER_RANGE = -51,
+  // Two messages have the same identifier, all 16 slots counted. `holdover-sim dbc --place` names them.
+  HOLDOVER_CONFIG_IDENTIFIER_SHARED = -52,
   // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
   HOLDOVER_REFUSED_LENGTH = -64,
   // The E2E checksum does not fit.
@@ -257,6 +267,69 @@ typedef uint8_t holdover_cause_t;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// The identifiers of one message of all peers.
+typedef struct holdover_peer_identifiers_t {
+  // Of slot 0; 0: in the block.
+  uint32_t first;
+  // How far one slot's is from the next; there are 16.
+  uint32_t stride;
+} holdover_peer_identifiers_t;
+
+// Messages that lie outside the block, by their names in the DBC. 0, as everything is that an initialiser does not name: in the
+// block.
+typedef struct holdover_identifiers_t {
+  // `TimeSync`.
+  uint32_t time_sync;
+  // `TimeFollowUp`.
+  uint32_t time_follow_up;
+  // `MotionCommand`.
+  uint32_t motion_command;
+  // `ActuatorState`.
+  uint32_t actuator_state;
+  // `EgoMotionA`.
+  uint32_t ego_motion_a;
+  // `EgoMotionB`.
+  uint32_t ego_motion_b;
+  // `DriverRequest`.
+  uint32_t driver_request;
+  // `EgoPosition`.
+  uint32_t ego_position;
+  // `RangeSensor`.
+  uint32_t range_sensor;
+  // `PeersUnserved`.
+  uint32_t peers_unserved;
+  // `TargetEstimateA`.
+  uint32_t target_estimate_a;
+  // `TargetEstimateB`.
+  uint32_t target_estimate_b;
+  // `OwnMotionA`.
+  uint32_t own_motion_a;
+  // `OwnMotionB`.
+  uint32_t own_motion_b;
+  // `OwnHorizon`.
+  uint32_t own_horizon;
+  // `OwnDrivingParameters`.
+  uint32_t own_driving_parameters;
+  // `OwnPosition`.
+  uint32_t own_position;
+  // `OwnRoute`.
+  uint32_t own_route;
+  // `Health`.
+  uint32_t health;
+  // `Peer{slot}MotionA`.
+  struct holdover_peer_identifiers_t peer_motion_a;
+  // `Peer{slot}MotionB`.
+  struct holdover_peer_identifiers_t peer_motion_b;
+  // `Peer{slot}Horizon`.
+  struct holdover_peer_identifiers_t peer_horizon;
+  // `Peer{slot}DrivingParameters`.
+  struct holdover_peer_identifiers_t peer_driving_parameters;
+  // `Peer{slot}Position`.
+  struct holdover_peer_identifiers_t peer_position;
+  // `Peer{slot}Route`.
+  struct holdover_peer_identifiers_t peer_route;
+} holdover_identifiers_t;
+
 // Limits of the controller, and of the vehicle.
 typedef struct holdover_limits_t {
   // Largest acceleration in mm/s2.
@@ -391,8 +464,10 @@ typedef struct holdover_envelope_t {
 typedef struct holdover_config_t {
   // The own station's 8-bit hash.
   uint8_t station;
-  // First CAN identifier of the catalogue.
+  // First CAN identifier of the block in which all messages lie.
   uint16_t base_id;
+  // Messages that lie elsewhere.
+  struct holdover_identifiers_t identifiers;
   // Period of the task that calls `holdover_tick`, in us.
   uint32_t period_us;
   // Bumper to bumper, in mm.
@@ -415,7 +490,7 @@ typedef struct holdover_config_t {
   struct holdover_envelope_t envelope;
 } holdover_config_t;
 
-// A classic CAN frame. The library sends standard frames with 8 bytes only.
+// A classic CAN frame. The library sends frames with 8 bytes only.
 typedef struct holdover_frame_t {
   // The identifier; up to 0x7FF, or 0x1FFFFFFF if it is an extended one.
   uint32_t id;

@@ -12,7 +12,7 @@ use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 use crate::wire::driving_parameters::Limits;
-use crate::wire::{BaseId, StationHash, Transport};
+use crate::wire::{Identifiers, StationHash, Transport};
 
 /// The prediction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +123,7 @@ pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
     /// First CAN identifier of the catalogue.
-    pub base_id: BaseId,
+    pub identifiers: Identifiers,
     /// Which frames the bus carries.
     pub transport: Transport,
     /// Period of the task that calls `tick`; 1 to 100 ms.
@@ -152,7 +152,7 @@ impl Config {
     /// Of a unit that is not started: all zero, and refused by every check.
     pub(crate) const NONE: Self = Self {
         station: StationHash(0),
-        base_id: BaseId::NONE,
+        identifiers: Identifiers::NONE,
         transport: Transport::Classic,
         period: Duration::ZERO,
         length: Distance::ZERO,
@@ -199,7 +199,7 @@ impl Config {
     pub const fn car(station: StationHash) -> Self {
         Self {
             station,
-            base_id: BaseId::DEFAULT,
+            identifiers: Identifiers::DEFAULT,
             transport: Transport::Classic,
             period: Duration::from_millis(10),
             length: parameters::DEFAULT_LENGTH,

@@ -12,7 +12,7 @@
 //! Intact is a data frame of its length with the right checksum; what is not intact falls under 3. GNSS time and the unit's
 //! own clock are thereby the same.
 
-use embedded_can::{Frame, Id};
+use embedded_can::Frame;
 
 use crate::config::Config;
 use crate::time::Instant;
@@ -76,8 +76,8 @@ impl LockStep {
 
 /// What step of the time synchronisation an intact frame is.
 fn step(config: &Config, frame: &impl Frame) -> Option<Step> {
-    let Id::Standard(id) = frame.id() else { return None };
-    let offset = config.base_id.offset_of(id.as_raw())?;
+    let id = frame.id().into();
+    let offset = config.identifiers.offset_of(id)?;
     let (_place, line, _) = catalogue::find(offset)?;
     let data = if frame.is_remote_frame() { None } else { Data::new(frame.data()) }?;
     let payload = [match config.transport {
@@ -88,7 +88,7 @@ fn step(config: &Config, frame: &impl Frame) -> Option<Step> {
         Transport::Fd => return None,
     }];
     match line.content {
-        Content::Sync => Some(Step::Mark(WireFrame { id: id.as_raw(), data }, Sync::decode(&payload))),
+        Content::Sync => Some(Step::Mark(WireFrame { id, data }, Sync::decode(&payload))),
         Content::FollowUp => Some(Step::FollowUp(FollowUp::decode(&payload))),
         _ => None,
     }
@@ -105,7 +105,7 @@ fn intact(data_id: u16, data: &[u8]) -> Option<Payload> {
 mod tests {
     use super::*;
     use crate::health::Cause;
-    use crate::wire::{BaseId, Message, Sender, StationHash};
+    use crate::wire::{Identifiers, Message, Sender, StationHash};
 
     type Unit = OnboardUnit<1, 4, 400>;
 
@@ -119,7 +119,7 @@ mod tests {
     impl Bench {
         fn new() -> Self {
             let unit = Unit::new(&Config::car(StationHash(1))).unwrap();
-            Self { unit, shell: LockStep::new(), sender: Sender::new(BaseId::DEFAULT) }
+            Self { unit, shell: LockStep::new(), sender: Sender::new(Identifiers::DEFAULT) }
         }
 
         fn frame(&mut self, message: &Message) -> WireFrame {

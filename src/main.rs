@@ -138,10 +138,11 @@ fn main() -> std::io::Result<()> {
 /// fields lie in the frame, and their scale and range, stands in `holdover.dbc`.
 #[cfg(not(target_os = "none"))]
 fn catalogue() -> String {
-    use holdover::wire::catalogue::{BaseId, CATALOGUE, SLOT_STRIDE, SLOTS, data_id};
+    use holdover::wire::Identifiers;
+    use holdover::wire::catalogue::{CATALOGUE, SLOT_STRIDE, SLOTS, data_id};
     let mut table = String::from("   id  data id  name                 sender   cycle  timeout  frames  fields\n");
     for line in &CATALOGUE {
-        let id = BaseId::DEFAULT.plus(line.offset);
+        let id = Identifiers::DEFAULT.at(line.offset).number();
         let fields: Vec<_> = line.fields.iter().map(|field| field.name).collect();
         table += &format!(
             "{id:#05x}   {:#06x}  {:<19}  {:<7} {:>3} ms  {:>4} ms  {:>6}  {}\n",

@@ -29,7 +29,7 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::Command;
-use crate::wire::{BaseId, Frame, Received, Receiver, Role};
+use crate::wire::{Frame, Identifiers, Received, Receiver, Role};
 use association::Association;
 use gate::{Gate, Last};
 use outbox::{Outbox, Report};
@@ -73,14 +73,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[must_use]
     pub const fn idle() -> Self {
         Self {
-            receiver: Receiver::new(BaseId::NONE, Role::Unit),
+            receiver: Receiver::new(Identifiers::NONE, Role::Unit),
             scene: Scene::idle(),
             association: Association::NONE,
             mode: Mode::Standby,
             controller: Controller::idle(),
             gate: Gate::new(),
             dynamics: Inversion::new(),
-            outbox: Outbox::new(BaseId::NONE),
+            outbox: Outbox::new(Identifiers::NONE),
             health: Health::new(),
             last_tick: None,
         }
@@ -93,8 +93,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)] // what it needs on the stack is not to stay there
     pub fn start(&mut self, config: &Config) -> Result<(), ConfigError> {
         config.check(STEPS)?;
-        // Field by field, because the whole of it would pass over the stack.
-        self.receiver = Receiver::new(config.base_id, Role::Unit);
+        // Field by field, because the whole of it would pass over the stack. A constant of zeros is written in place.
+        self.receiver = const { Receiver::new(Identifiers::NONE, Role::Unit) };
+        self.receiver.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.receiver.set_transport(config.transport);
         self.scene.start(config);
@@ -103,7 +104,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.controller = Controller::new(config.period);
         self.gate = Gate::new();
         self.dynamics = Inversion::new();
-        self.outbox = Outbox::new(config.base_id);
+        self.outbox = const { Outbox::new(Identifiers::NONE) };
+        self.outbox.set_identifiers(&config.identifiers);
         #[cfg(feature = "fd")]
         self.outbox.set_transport(config.transport);
         self.health = Health::new();

@@ -21,7 +21,10 @@ use board::zynqmp_r5::layout::{Layout, Words};
 use embedded_can::nb::Can;
 use embedded_can::{ExtendedId, Frame, Id, StandardId};
 use holdover::health::{Cause, Incident};
-use holdover::wire::StationHash;
+use holdover::time::Instant;
+use holdover::wire::catalogue::Content;
+use holdover::wire::sync::Sync;
+use holdover::wire::{Identifier, Identifiers, Message, Sender, StationHash};
 use holdover::{Config, OnboardUnit};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -212,6 +215,32 @@ fn the_controller_is_set_up_for_500_kbit_per_second_before_it_is_on_the_bus() {
     let quanta = 1 + (bit & 15) + 1 + (bit >> 4 & 7) + 1;
     assert!(chip.enabled);
     assert_eq!(100_000_000 / ((quantum + 1) * quanta), 500_000);
+}
+
+#[test]
+fn a_unit_on_extended_identifiers_hears_and_is_heard_through_the_controller() {
+    let id = |number| Identifier::extended(number).unwrap();
+    let identifiers = Identifiers::DEFAULT
+        .place(Content::Sync, id(0x18FF_004A))
+        .and_then(|placed| placed.place(Content::Command, id(0x0CFF_022A)))
+        .unwrap();
+    let config = Config { identifiers, ..Config::car(StationHash(1)) };
+    let mut unit = OnboardUnit::<1, 2, 400>::new(&config).unwrap();
+    let (mut controller, mock) = controller();
+    Sender::<0>::new(identifiers)
+        .send(&Message::Sync(Sync { sequence: 0, seconds: 1 }), &mut |sent| {
+            mock.chip.borrow_mut().hear(&CanFrame::new(sent.id(), sent.data()).unwrap());
+        })
+        .unwrap();
+    let heard = controller.receive().unwrap();
+    // The first frame of an identifier is not trusted; one of others is not even that.
+    assert_eq!(unit.receive(Instant::ZERO, &heard), Err(Cause::NotYetTrusted));
+    let mut outbox = Outbox::new();
+    unit.tick(Instant::ZERO).frames.iter().for_each(|frame| outbox.push(frame));
+    while outbox.pass(&mut controller) == Pass::Taken {}
+    let sent = mock.chip.borrow_mut().send(DEPTH);
+    assert_eq!(sent[0].id(), Id::from(id(0x0CFF_022A)));
+    assert_eq!(outbox.lost(false)[0].1, 0);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `holdover.dbc` and `holdover-fd.dbc` say what the catalogue says. What they say is compared with the frames, signal by signal and
 //! through a parser that is not ours, in the simulator's tests.
 
-use holdover::wire::BaseId;
+use holdover::wire::Identifiers;
 use holdover::wire::dbc::Dbc;
 
 fn is_current(name: &str, dbc: Dbc) {
@@ -18,11 +18,11 @@ const WRITE: &str = "HOLDOVER_WRITE_DBC=1 cargo test --features fd --test dbc";
 
 #[test]
 fn the_committed_file_is_the_one_that_the_catalogue_makes() {
-    is_current("holdover.dbc", Dbc::new(BaseId::DEFAULT, 8));
+    is_current("holdover.dbc", Dbc::new(Identifiers::DEFAULT, 8));
 }
 
 #[cfg(feature = "fd")]
 #[test]
 fn the_committed_file_of_can_fd_is_the_one_that_the_catalogue_makes() {
-    is_current("holdover-fd.dbc", Dbc::new(BaseId::DEFAULT, 8).over_fd());
+    is_current("holdover-fd.dbc", Dbc::new(Identifiers::DEFAULT, 8).over_fd());
 }

@@ -12,7 +12,7 @@ use holdover::wire::fd::State;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{
-    BaseId, Frame, Message, Predecessor, Received, Receiver, Role, Said, Sender, Slot, StationHash, Transport,
+    Frame, Identifiers, Message, Predecessor, Received, Receiver, Role, Said, Sender, Slot, StationHash, Transport,
 };
 use holdover::{Answer, Config, LockStep, OnboardUnit, Reception};
 use traffic::leads;
@@ -32,8 +32,8 @@ struct Bench {
 impl Bench {
     fn new() -> Self {
         let config = Config { transport: Transport::Fd, ..Config::car(StationHash(1)) };
-        let sender = Sender::new(BaseId::DEFAULT).over(Transport::Fd);
-        let modem = Receiver::new(BaseId::DEFAULT, Role::Modem).over(Transport::Fd);
+        let sender = Sender::new(Identifiers::DEFAULT).over(Transport::Fd);
+        let modem = Receiver::new(Identifiers::DEFAULT, Role::Modem).over(Transport::Fd);
         Self { unit: Unit::new(&config).unwrap(), sender, modem, now: 60_000_000 }
     }
 
@@ -150,7 +150,7 @@ fn frames_of_classic_can_are_refused_by_their_length_and_change_nothing_else() {
     let mut bench = Bench::new();
     (0..100).for_each(|_| drop(bench.period()));
     let before = bench.unit.clone();
-    let mut classic = Sender::<2>::new(BaseId::DEFAULT);
+    let mut classic = Sender::<2>::new(Identifiers::DEFAULT);
     let (mut refused, at) = (0, Instant::from_micros(bench.now));
     for said in [Said::State(bench.state(0)), Said::Motion(bench.motion(PEER, 0))] {
         classic
@@ -174,7 +174,7 @@ fn in_lock_step_the_pair_of_can_fd_ticks_it_and_that_of_classic_can_does_not() {
         |sequence| [Message::Sync(Sync { sequence, seconds: 7 }), Message::FollowUp(FollowUp { sequence, micros: 5 })];
     let mut classic = Vec::new();
     for message in pair(1) {
-        Sender::<2>::new(BaseId::DEFAULT).send(&message, &mut |frame| classic.push(frame)).unwrap();
+        Sender::<2>::new(Identifiers::DEFAULT).send(&message, &mut |frame| classic.push(frame)).unwrap();
     }
     assert!(classic.iter().all(|frame| shell.receive(&mut bench.unit, frame).is_none()));
     let [sync, follow_up] = pair(2).map(|message| bench.frame(&message));

@@ -9,7 +9,8 @@ use holdover::config::{Config, Envelope};
 use holdover::controller::Mode;
 use holdover::time::{Duration, Instant};
 use holdover::units::{Acceleration, Distance, Jerk, Speed};
-use holdover::wire::catalogue::{BLOCK, BaseId};
+use holdover::wire::Identifiers;
+use holdover::wire::catalogue::BLOCK;
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Frame, Message, Said, Sender};
 use proptest::prelude::*;
@@ -101,7 +102,7 @@ impl Bounds {
 fn play(config: &Config, events: Vec<Event>) -> Result<(), TestCaseError> {
     let mut unit = Unit::new(config).expect("the configuration is sound");
     let mut traffic = Traffic::new();
-    let mut sender = Sender::<16>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<16>::new(Identifiers::DEFAULT);
     let mut bounds = Bounds::of(config);
     let mut now = traffic.now();
     let mut frames = Vec::new();
@@ -112,7 +113,7 @@ fn play(config: &Config, events: Vec<Event>) -> Result<(), TestCaseError> {
                 sender.send(&message, &mut |frame| frames.push(frame)).expect("the catalogue has a line for it");
             }
             Event::Sealed(offset, counter, data) => {
-                let frame = Frame { id: BaseId::DEFAULT.plus(offset), data: data.into() };
+                let frame = Frame { id: Identifiers::DEFAULT.at(offset), data: data.into() };
                 frames.push(resealed(frame, Some(counter), |_| ()));
             }
             Event::Any(frame) => drop_result(unit.receive(now, &frame)),

@@ -122,7 +122,7 @@ fn a_frame_that_comes_twice_is_refused_the_second_time() {
         let mut before = traffic.clone();
         before.period = 291; // when the one behind spoke last
         let (_, frames) = before.next();
-        let spoken = frames.iter().find(|frame| frame.id == 0x480 + 0x48).expect("it spoke");
+        let spoken = frames.iter().find(|frame| frame.id.number() == 0x480 + 0x48).expect("it spoke");
         // Sent again with the counter that it had then: one before the one that is next.
         let counter = (good(&mut traffic.clone()).data[1] & 0x0F).checked_sub(1).unwrap_or(14);
         unit.receive(traffic.now(), &resealed(*spoken, Some(counter), |_| ()))
@@ -380,7 +380,7 @@ fn frames_of_others_are_ignored_and_change_nothing() {
 #[test]
 fn every_count_is_told_on_the_bus_under_its_name() {
     let (mut unit, mut traffic) = settled();
-    let wrong = Frame { id: 0x484, data: [0xAA; 8].into() };
+    let wrong = Frame { id: holdover::wire::Identifiers::DEFAULT.at(4), data: [0xAA; 8].into() };
     (0..7).for_each(|_| drop_result(unit.receive(traffic.now(), &wrong)));
     assert!(unit.health().of(Cause::Checksum) >= 7);
     let mut told = std::collections::BTreeMap::new();

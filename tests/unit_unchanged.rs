@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use holdover::health::Cause;
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use rig::junction::WAYS;
@@ -82,8 +82,8 @@ impl World {
             rig,
             random: Random::new(seed),
             runner: TestRunner::deterministic(),
-            sensors: Sender::new(BaseId::DEFAULT),
-            modem: Sender::new(BaseId::DEFAULT),
+            sensors: Sender::new(Identifiers::DEFAULT),
+            modem: Sender::new(Identifiers::DEFAULT),
             now: 0,
             refused: BTreeMap::new(),
         }

@@ -4,16 +4,18 @@
 
 mod messages;
 
-use embedded_can::{Id, StandardId};
+use embedded_can::Id;
 use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::catalogue::{CATALOGUE, Node, data_id};
 use holdover::wire::fd::{State, e2e, layout};
-use holdover::wire::{BaseId, Data, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Transport, Unsent};
+use holdover::wire::{
+    Data, Frame, Identifier, Identifiers, Message, Received, Receiver, Role, Said, Sender, Slot, Transport, Unsent,
+};
 use messages::{from_unit, knots, motion, parameters, to_unit};
 use proptest::prelude::*;
 
-const BASE: BaseId = BaseId::DEFAULT;
+const BASE: Identifiers = Identifiers::DEFAULT;
 
 fn sender() -> Sender<8> {
     Sender::new(BASE).over(Transport::Fd)
@@ -40,7 +42,7 @@ fn acquainted(role: Role) -> Receiver<8> {
             let mut data = vec![0; layout.bytes.into()];
             e2e::protect(&mut data, data_id(offset), 255);
             let heard =
-                receiver.receive(Instant::ZERO, &Frame { id: BASE.plus(offset), data: Data::new(&data).unwrap() });
+                receiver.receive(Instant::ZERO, &Frame { id: BASE.at(offset), data: Data::new(&data).unwrap() });
             assert!(matches!(heard, Err(Cause::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
         }
     }
@@ -123,7 +125,7 @@ fn noise() -> impl Strategy<Value = (u16, Vec<u8>, bool)> {
 }
 
 /// A frame of any length.
-struct Odd(u16, Vec<u8>, bool);
+struct Odd(Identifier, Vec<u8>, bool);
 
 impl embedded_can::Frame for Odd {
     fn new(_: impl Into<Id>, _: &[u8]) -> Option<Self> {
@@ -139,7 +141,7 @@ impl embedded_can::Frame for Odd {
         self.2
     }
     fn id(&self) -> Id {
-        StandardId::new(self.0).unwrap().into()
+        self.0.into()
     }
     fn dlc(&self) -> usize {
         self.1.len()
@@ -171,7 +173,7 @@ proptest! {
         let mut receiver = acquainted(Role::Unit);
         for (offset, data, remote) in noise {
             let before = receiver.clone();
-            match receiver.receive(Instant::ZERO, &Odd(BASE.plus(offset), data, remote)) {
+            match receiver.receive(Instant::ZERO, &Odd(BASE.at(offset), data, remote)) {
                 Ok(Received::Foreign) | Err(Cause::Length | Cause::Checksum | Cause::UnknownSlot) => {
                     prop_assert_eq!(&before, &receiver);
                 }
@@ -196,7 +198,7 @@ proptest! {
             let mut data = pair.concat();
             data.truncate(layout.bytes.into());
             e2e::protect(&mut data, data_id(offset), counter);
-            match receiver.receive(Instant::ZERO, &Frame { id: BASE.plus(offset), data: Data::new(&data).unwrap() }) {
+            match receiver.receive(Instant::ZERO, &Frame { id: BASE.at(offset), data: Data::new(&data).unwrap() }) {
                 Ok(Received::Whole(message)) => {
                     let again = frame_of(&mut sender(), &message);
                     let heard = acquainted(role).receive(Instant::ZERO, &again);

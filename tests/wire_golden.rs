@@ -17,7 +17,7 @@ use holdover::wire::route::Route;
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::unserved::Unserved;
-use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 fn m(mm: i32) -> Distance {
     Distance::from_mm(mm)
@@ -167,13 +167,13 @@ fn every_message_has_these_bytes() {
         Message::Peer(Slot(7), geo()),
         Message::Peer(Slot(7), route()),
     ];
-    let mut sender = Sender::<8>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<8>::new(Identifiers::DEFAULT);
     let mut lines = Vec::new();
     for message in &messages {
         sender
             .send(message, &mut |frame| {
                 let bytes: String = frame.data.iter().map(|byte| format!("{byte:02X}")).collect();
-                lines.push(format!("{:03X}#{bytes}", frame.id));
+                lines.push(format!("{:03X}#{bytes}", frame.id.number()));
             })
             .unwrap();
     }

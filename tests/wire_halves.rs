@@ -7,7 +7,7 @@ mod rig;
 
 use holdover::health::Cause;
 use holdover::time::{Duration, Instant};
-use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, StationHash};
+use holdover::wire::{Frame, Identifiers, Message, Received, Receiver, Role, Said, Sender, Slot, StationHash};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use rig::{Rig, SLOT, TARGET, m_of, mps_of};
@@ -22,7 +22,7 @@ struct Bus<const PEERS: usize> {
 
 impl<const PEERS: usize> Bus<PEERS> {
     fn new(role: Role) -> Self {
-        Self { sender: Sender::new(BaseId::DEFAULT), receiver: Receiver::new(BaseId::DEFAULT, role) }
+        Self { sender: Sender::new(Identifiers::DEFAULT), receiver: Receiver::new(Identifiers::DEFAULT, role) }
     }
 
     fn frames(&mut self, message: &Message) -> Vec<Frame> {
@@ -169,7 +169,7 @@ fn a_sender_whose_halves_count_apart_is_understood_from_its_third_message_on() {
     let mut runner = TestRunner::deterministic();
     let motion = &kinds()[0];
     let mut bus = Bus::<8>::new(motion.role);
-    let mut other = Sender::<16>::new(BaseId::DEFAULT);
+    let mut other = Sender::<16>::new(Identifiers::DEFAULT);
     let mut taken = Vec::new();
     for n in 0..12u64 {
         let at = Instant::from_micros(50 * SECOND as u64 + n * 100_000);
@@ -201,7 +201,7 @@ fn halves(rig: &mut Rig, sender: &mut Sender<16>, station: StationHash, at: i64,
 /// What is held of it afterwards.
 fn heard_after_a_silence(lost: usize, messages: i64) -> (f64, f64) {
     let mut rig = Rig::new(&rig::config());
-    let mut sender = Sender::<16>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<16>::new(Identifiers::DEFAULT);
     rig.power_up(true, 0);
     let mut now = 0;
     for n in 0..12 {
@@ -242,7 +242,7 @@ fn a_vehicle_that_stands_after_a_silence_is_not_believed_to_drive() {
 fn halves_of_two_stations_ten_minutes_apart_make_no_message() {
     for (lost, kept) in [(0, 1), (1, 0)] {
         let mut rig = Rig::new(&rig::config());
-        let mut sender = Sender::<16>::new(BaseId::DEFAULT);
+        let mut sender = Sender::<16>::new(Identifiers::DEFAULT);
         rig.power_up(true, 0);
         for now in [0, 100_000] {
             for frame in halves(&mut rig, &mut sender, TARGET, now, (500.0, 25.0)) {

@@ -6,11 +6,11 @@ use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::catalogue::{CATALOGUE, data_id};
-use holdover::wire::{BaseId, Frame, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
+use holdover::wire::{Frame, Identifiers, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
 use messages::{from_unit, geo, knots, motion, parameters, to_unit};
 use proptest::prelude::*;
 
-const BASE: BaseId = BaseId::DEFAULT;
+const BASE: Identifiers = Identifiers::DEFAULT;
 
 fn frames_of<const PEERS: usize>(sender: &mut Sender<PEERS>, message: &Message) -> Vec<Frame> {
     let mut frames = Vec::new();
@@ -25,7 +25,7 @@ fn acquainted<const PEERS: usize>(role: Role) -> (Sender<PEERS>, Receiver<PEERS>
     for line in &CATALOGUE {
         for slot in 0..if line.is_per_slot() { PEERS as u8 } else { 1 } {
             let offset = line.offset_for(Slot(slot));
-            let frame = Frame { id: BASE.plus(offset), data: e2e::protect([0; 8], data_id(offset), 14).into() };
+            let frame = Frame { id: BASE.at(offset), data: e2e::protect([0; 8], data_id(offset), 14).into() };
             let heard = receiver.receive(Instant::ZERO, &frame);
             assert!(matches!(heard, Err(Cause::NotYetTrusted) | Ok(Received::Foreign)), "{heard:?}");
         }
@@ -133,7 +133,7 @@ proptest! {
         let mut receiver = Receiver::<16>::new(BASE, role);
         let mut counter = 0;
         for word in words {
-            let frame = Frame { id: BASE.plus(offset), data: e2e::protect(word, data_id(offset), counter).into() };
+            let frame = Frame { id: BASE.at(offset), data: e2e::protect(word, data_id(offset), counter).into() };
             counter = e2e::next(counter);
             match receiver.receive(Instant::ZERO, &frame) {
                 Ok(Received::Whole(message)) => {

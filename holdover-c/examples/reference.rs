@@ -24,7 +24,7 @@ fn main() {
         }
         for frame in &unit.tick(Instant::from_micros(now)).frames {
             let data: String = frame.data.iter().map(|byte| format!("{byte:02x}")).collect();
-            println!("{now} {:x} {data}", frame.id);
+            println!("{now} {:x} {data}", frame.id.number());
         }
     }
     for cause in Cause::ALL {

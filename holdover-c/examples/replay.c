@@ -66,13 +66,14 @@ static void print_refusals(void)
 
 int main(void)
 {
-    const holdover_config_t config = calibration;
+    static holdover_config_t config; /* not on the stack, where it would lie for as long as the program runs */
     holdover_answer_t answer;
     size_t next = 0;
 
     if (holdover_version() != HOLDOVER_VERSION) {
         return 1; /* the header is not that of the library */
     }
+    config = calibration;
     if (holdover_init(unit, sizeof unit, &config) != HOLDOVER_OK) {
         return 2;
     }

@@ -1,6 +1,9 @@
 //! The configuration as a plain C struct: what an integrator fills in. All numbers are magnitudes, so all are unsigned.
 
+mod identifiers;
 mod typed;
+
+pub use identifiers::{HOLDOVER_EXTENDED, HOLDOVER_STANDARD, Identifiers, PeerIdentifiers};
 
 /// Everything that the unit has to be told. Times that are compared with the clock are in us, as the clock is; all else is
 /// in thousandths of its unit. `docs/INTEGRATION.md` has ranges and defaults.
@@ -9,8 +12,10 @@ mod typed;
 pub struct Config {
     /// The own station's 8-bit hash.
     pub station: u8,
-    /// First CAN identifier of the catalogue.
+    /// First CAN identifier of the block in which all messages lie.
     pub base_id: u16,
+    /// Messages that lie elsewhere.
+    pub identifiers: Identifiers,
     /// Period of the task that calls `holdover_tick`, in us.
     pub period_us: u32,
     /// Bumper to bumper, in mm.

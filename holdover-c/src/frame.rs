@@ -4,7 +4,7 @@ use embedded_can::{ExtendedId, Id, StandardId};
 
 use crate::status::Status;
 
-/// A classic CAN frame. The library sends standard frames with 8 bytes only.
+/// A classic CAN frame. The library sends frames with 8 bytes only.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
@@ -24,7 +24,7 @@ impl From<&holdover::wire::Frame> for Frame {
     fn from(frame: &holdover::wire::Frame) -> Self {
         let mut data = [0; 8];
         data.iter_mut().zip(frame.data.iter()).for_each(|(to, from)| *to = *from);
-        Self { id: u32::from(frame.id), extended: 0, remote: 0, length: 8, data }
+        Self { id: frame.id.number(), extended: u8::from(frame.id.is_extended()), remote: 0, length: 8, data }
     }
 }
 

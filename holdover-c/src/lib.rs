@@ -36,7 +36,10 @@ mod pointer;
 mod status;
 
 pub use answer::{Answer, Cause, Command, Effort, Estimate, HOLDOVER_MAX_FRAMES, Mode};
-pub use config::{Body, Config, Envelope, Law, Limits, Link, Model, Prediction};
+pub use config::{
+    Body, Config, Envelope, HOLDOVER_EXTENDED, HOLDOVER_STANDARD, Identifiers, Law, Limits, Link, Model,
+    PeerIdentifiers, Prediction,
+};
 pub use doors::*;
 pub use frame::Frame;
 pub use memory::{HOLDOVER_UNIT_ALIGN, HOLDOVER_UNIT_SIZE};

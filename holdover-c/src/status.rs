@@ -7,6 +7,7 @@ use core::ffi::CStr;
 
 use holdover::ConfigError;
 use holdover::health::Cause;
+use holdover::wire::IdentifierError;
 
 /// What became of a call. Negative: it was refused, for the cause that the code names. A refused call changes nothing; a
 /// refused frame changes its cause's count and the end-to-end state of its identifier.
@@ -79,6 +80,10 @@ pub enum Status {
     ConfigCatchUp = -49,
     /// `transport` is CAN FD, which this library is built without.
     ConfigTransport = -50,
+    /// An identifier that was placed has more than its 11 or 29 bits, with all its 16 slots, or no kind.
+    ConfigIdentifierRange = -51,
+    /// Two messages have the same identifier, all 16 slots counted. `holdover-sim dbc --place` names them.
+    ConfigIdentifierShared = -52,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,
     /// The E2E checksum does not fit.
@@ -154,6 +159,8 @@ pub enum Status {
 impl From<ConfigError> for Status {
     fn from(error: ConfigError) -> Self {
         match error {
+            ConfigError::Identifiers(IdentifierError::Range(_)) => Self::ConfigIdentifierRange,
+            ConfigError::Identifiers(IdentifierError::Shared(..)) => Self::ConfigIdentifierShared,
             ConfigError::Period => Self::ConfigPeriod,
             ConfigError::Step => Self::ConfigStep,
             ConfigError::Horizon => Self::ConfigHorizon,
@@ -251,6 +258,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::ConfigEnvelope, c"configuration: envelope"),
     (Status::ConfigCatchUp, c"configuration: catch_up"),
     (Status::ConfigTransport, c"configuration: transport"),
+    (Status::ConfigIdentifierRange, c"configuration: an identifier has more bits than its kind, or no kind"),
+    (Status::ConfigIdentifierShared, c"configuration: two messages have the same identifier"),
     (Status::RefusedLength, c"refused: length"),
     (Status::RefusedChecksum, c"refused: checksum"),
     (Status::RefusedRepeated, c"refused: repeated"),

@@ -6,7 +6,7 @@ fn header() -> String {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(package.join("cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for name in ["answer", "config", "doors", "frame", "memory", "status"] {
+    for name in ["answer", "config", "config/identifiers", "doors", "frame", "memory", "status"] {
         builder = builder.with_src(package.join("src").join(name).with_extension("rs"));
     }
     let mut text = Vec::new();

@@ -12,7 +12,7 @@ use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk,
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover::{Config, OnboardUnit};
 use holdover_sim::measure::baseline::Baseline;
 use holdover_sim::measure::baseline::paper::Paper;
@@ -43,8 +43,8 @@ impl Scene {
         config.prediction.horizon = Duration::from_millis(4_990);
         Self {
             unit: Unit::new(&config).expect("the configuration is sound"),
-            sender: Sender::new(BaseId::DEFAULT),
-            observer: Observer::new(BaseId::DEFAULT),
+            sender: Sender::new(Identifiers::DEFAULT),
+            observer: Observer::new(Identifiers::DEFAULT),
             papers: (0..VEHICLES).map(|target| Paper::new(target, 0.01)).collect(),
         }
     }

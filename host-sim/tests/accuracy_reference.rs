@@ -10,7 +10,7 @@ use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::quantity::Quantity;
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover::{Config, OnboardUnit};
 use holdover_sim::measure::heard::{Heard, HeardParameters};
 use holdover_sim::measure::reference::{
@@ -138,7 +138,7 @@ fn unit(chain: &[Vehicle]) -> Unit {
     let mut config = Config::car(StationHash(200));
     config.prediction.horizon = Duration::from_millis(4010);
     let mut unit = Unit::new(&config).expect("the configuration is checked");
-    let mut sender = Sender::<PEERS>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<PEERS>::new(Identifiers::DEFAULT);
     let mut say = |unit: &mut Unit, at: Instant, message: Message| {
         let emit = &mut |frame| {
             let _ = unit.receive(at, &frame); // the first of each identifier is not trusted yet

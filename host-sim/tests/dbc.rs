@@ -9,10 +9,12 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, MessageId, MultiplexIndicator, Signal, ValueDescription, ValueType};
-use holdover::wire::catalogue::{CATALOGUE, data_id};
+use embedded_can::Id;
+use holdover::wire;
+use holdover::wire::catalogue::{CATALOGUE, Content, Speaker, data_id};
 use holdover::wire::command::Effort;
 use holdover::wire::fd::State;
-use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, Transport};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, Transport};
 use messages::{from_unit, knots, motion, parameters, to_unit};
 use proptest::option;
 use proptest::prelude::*;
@@ -47,11 +49,16 @@ fn raw(signal: &Signal, data: &[u8]) -> i64 {
     if negative { bits - (1 << signal.size) } else { bits }
 }
 
-fn name_of(file: &Dbc, id: u16, signal: &str, raw: i64) -> Option<String> {
+fn id_of(frame: &Frame) -> MessageId {
+    match frame.id.into() {
+        Id::Standard(id) => MessageId::Standard(id.as_raw()),
+        Id::Extended(id) => MessageId::Extended(id.as_raw()),
+    }
+}
+
+fn name_of(file: &Dbc, id: MessageId, signal: &str, raw: i64) -> Option<String> {
     file.value_descriptions.iter().find_map(|described| match described {
-        ValueDescription::Signal { message_id, name, value_descriptions }
-            if *message_id == MessageId::Standard(id) && name == signal =>
-        {
+        ValueDescription::Signal { message_id, name, value_descriptions } if *message_id == id && name == signal => {
             value_descriptions.iter().find(|value| value.id == raw).map(|value| value.description.clone())
         }
         _ => None,
@@ -62,7 +69,8 @@ fn name_of(file: &Dbc, id: u16, signal: &str, raw: i64) -> Option<String> {
 fn decoded(file: &Dbc, frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Reading>) {
     let (mut names, mut readings) = (Vec::new(), BTreeMap::new());
     for frame in frames {
-        let message = file.messages.iter().find(|message| message.id == MessageId::Standard(frame.id)).unwrap();
+        let id = id_of(frame);
+        let message = file.messages.iter().find(|message| message.id == id).unwrap();
         assert_eq!(message.size, frame.data.len() as u64, "{}", message.name);
         if !names.contains(&message.name) {
             names.push(message.name.clone());
@@ -78,7 +86,7 @@ fn decoded(file: &Dbc, frames: &[Frame]) -> (Vec<String>, BTreeMap<String, Readi
                 continue;
             }
             let raw = raw(signal, &frame.data);
-            let reading = match name_of(file, frame.id, &signal.name, raw) {
+            let reading = match name_of(file, id, &signal.name, raw) {
                 Some(name) => Reading::Name(name),
                 None => Reading::Value(raw as f64 * signal.factor + signal.offset),
             };
@@ -315,7 +323,7 @@ proptest! {
     #[test]
     fn every_signal_of_every_message_reads_in_the_file_as_it_was_meant(message in prop_oneof![to_unit(8), from_unit()]) {
         let mut frames = Vec::new();
-        Sender::<8>::new(BaseId::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
+        Sender::<8>::new(Identifiers::DEFAULT).send(&message, &mut |frame| frames.push(frame)).unwrap();
         let (names, readings) = decoded(file(), &frames);
         let expected = expected_of(&message).0;
         prop_assert_eq!(names, names_of(&message));
@@ -336,7 +344,7 @@ proptest! {
             other => other,
         };
         let mut frames = Vec::new();
-        Sender::<8>::new(BaseId::DEFAULT).over(Transport::Fd).send(&message, &mut |frame| frames.push(frame)).unwrap();
+        Sender::<8>::new(Identifiers::DEFAULT).over(Transport::Fd).send(&message, &mut |frame| frames.push(frame)).unwrap();
         let (names, mut readings) = decoded(file_fd(), &frames);
         let mut expected = expected_of(&message).0;
         expected.remove("Tag");
@@ -348,6 +356,39 @@ proptest! {
         let meant: Vec<_> = names_of(&message).into_iter().map(whole).filter(|name| !name.ends_with('B')).collect();
         prop_assert_eq!(names, meant);
         prop_assert!(are_as_meant(&readings, &expected));
+    }
+}
+
+#[test]
+fn a_file_with_extended_identifiers_has_every_message_of_the_other_and_its_attributes() {
+    let id = |number| wire::Identifier::extended(number).unwrap();
+    let placed =
+        CATALOGUE.iter().zip((0x18FF_0021..).step_by(0x1000)).fold(Identifiers::DEFAULT, |placed, (line, number)| {
+            match line.content {
+                Content::Said(Speaker::Peer, about) => placed.place_peers(about, id(number), 0x100),
+                content => placed.place(content, id(number)).unwrap(),
+            }
+        });
+    for (fd, of_block) in [(false, file()), (true, file_fd())] {
+        let made = wire::dbc::Dbc::new(placed, 8);
+        let text = if fd { made.over_fd() } else { made }.to_string();
+        let made = Dbc::try_from(text.as_str()).unwrap();
+        assert_eq!(made.messages.len(), of_block.messages.len());
+        for (message, other) in made.messages.iter().zip(&of_block.messages) {
+            let MessageId::Extended(number) = message.id else { panic!("{} is not extended", message.name) };
+            let MessageId::Standard(other_number) = other.id else { panic!("{} is extended", other.name) };
+            let offset = Identifiers::DEFAULT.offset_of(wire::Identifier::standard(other_number).unwrap()).unwrap();
+            assert_eq!((&message.name, number), (&other.name, placed.at(offset).number()));
+            assert_eq!((message.size, &message.signals), (other.size, &other.signals));
+            let of = |file: &Dbc, id| {
+                let of = |a: &&can_dbc::AttributeValueForMessage| a.message_id == id && a.name != "VFrameFormat";
+                let values = file.attribute_values_message.iter().filter(of);
+                values.map(|a| (a.name.clone(), a.value.clone())).collect::<Vec<_>>()
+            };
+            assert_eq!(of(&made, message.id), of(of_block, other.id), "{}", message.name);
+            let has_format = format!("BA_ \"VFrameFormat\" BO_ {} 15;", number | 1 << 31);
+            assert_eq!(text.contains(&has_format), fd, "{}", message.name);
+        }
     }
 }
 
@@ -365,7 +406,7 @@ fn the_file_tells_cycles_and_protection_of_every_message() {
     for line in &CATALOGUE {
         for slot in 0..if line.is_per_slot() { 8 } else { 1 } {
             let offset = line.offset_for(Slot(slot));
-            let id = BaseId::DEFAULT.plus(offset);
+            let id = Identifiers::DEFAULT.at(offset).number() as u16;
             assert_eq!(attribute(id, "GenMsgCycleTime"), i64::from(line.cycle_ms));
             assert_eq!(attribute(id, "GenMsgTimeout"), i64::from(line.timeout_ms));
             assert_eq!(attribute(id, "E2EDataId"), i64::from(data_id(offset)));

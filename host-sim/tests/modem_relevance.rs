@@ -5,7 +5,7 @@ use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
-use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
 use holdover_sim::sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
@@ -45,12 +45,12 @@ struct Bus {
 
 impl Bus {
     fn new() -> Self {
-        let mut relay = Relay::new(BaseId::DEFAULT);
+        let mut relay = Relay::new(Identifiers::DEFAULT);
         relay.set_out(Course::through(WAY.to_vec()));
         relay.take(&Said::Route(route(4, OWN_LEG, 100)));
         // It has listened for long; this one names no intersection of the way.
         relay.hear(-10.0, &message(255, Some(route(9, 0, 50))), &mut Vec::new());
-        Self { relay, receiver: Receiver::new(BaseId::DEFAULT, Role::Unit) }
+        Self { relay, receiver: Receiver::new(Identifiers::DEFAULT, Role::Unit) }
     }
 
     /// Whether a station's message gets onto the bus, and whether its route was there before its motion.
@@ -233,9 +233,9 @@ fn who_fell_silent_before_the_intersection_keeps_its_slot_wherever_it_may_be_by_
 
 #[test]
 fn a_modem_listens_before_it_gives_a_slot_away_and_whoever_is_just_ahead_has_one_from_the_beginning() {
-    let mut relay = Relay::new(BaseId::DEFAULT);
+    let mut relay = Relay::new(Identifiers::DEFAULT);
     relay.set_out(Course::through(WAY.to_vec()));
-    let receiver = Receiver::new(BaseId::DEFAULT, Role::Unit);
+    let receiver = Receiver::new(Identifiers::DEFAULT, Role::Unit);
     let mut bus = Bus { relay, receiver };
     // Three times as many as there are slots, on all legs, and the one just ahead is the last to be heard.
     let others = (1..3 * PEERS as u8).map(|station| (station, route(4, station % 3 + 2, 2 * i32::from(station))));

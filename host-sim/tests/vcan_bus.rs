@@ -3,6 +3,7 @@
 
 use embedded_can::{ExtendedId, Frame as _, StandardId};
 use holdover::time::{Duration, Instant};
+use holdover::wire::Identifier;
 use holdover_sim::bus::port::{BusError, Event, Port};
 use holdover_sim::bus::socketcan::SocketCan;
 use holdover_sim::bus::{self, Bus, Frame};
@@ -78,14 +79,15 @@ fn a_frame_has_the_kernels_time_of_arrival_and_not_that_of_reading() {
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_filter_passes_its_identifiers_of_any_length_and_kind() {
     let (mut a, b) = (open(), open());
-    b.hear_only([0x480, 0x7F]).unwrap();
+    let standard = |id| Identifier::standard(id).unwrap();
+    b.hear_only([standard(0x480), standard(0x7F), Identifier::extended(0x18FF_0201).unwrap()]).unwrap();
     let mut b = b;
     let remote = Frame::new_remote(StandardId::new(0x480).unwrap(), 8).unwrap();
-    let extended = Frame::extended(0x480, &[]).unwrap();
-    for frame in [frame(0x480, &[1]), remote, frame(0x481, &[1]), extended, frame(0x7F, &[2; 8])] {
+    let [other, extended] = [0x480, 0x18FF_0201].map(|id| Frame::extended(id, &[3]).unwrap());
+    for frame in [frame(0x480, &[1]), remote, frame(0x481, &[1]), other, extended, frame(0x7F, &[2; 8])] {
         Port::send(&mut a, frame).unwrap();
     }
-    assert_eq!(events(&mut b), [frame(0x480, &[1]), remote, frame(0x7F, &[2; 8])].map(Event::Received));
+    assert_eq!(events(&mut b), [frame(0x480, &[1]), remote, extended, frame(0x7F, &[2; 8])].map(Event::Received));
 }
 
 #[test]

@@ -5,14 +5,16 @@ use super::{Config, Prediction};
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
-use crate::wire::Transport;
 use crate::wire::driving_parameters::Limits;
 use crate::wire::quantity::Quantity;
+use crate::wire::{IdentifierError, Transport};
 
 /// Why a configuration was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ConfigError {
+    /// Two lines of the catalogue have one identifier, or one has no room.
+    Identifiers(IdentifierError),
     /// `period` is outside 1 to 100 ms.
     Period,
     /// `step` is outside 1 ms to 1 s.
@@ -56,6 +58,7 @@ pub enum ConfigError {
 impl core::fmt::Display for ConfigError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
+            Self::Identifiers(error) => return error.fmt(f),
             Self::Period => "period is outside 1 to 100 ms",
             Self::Step => "step is outside 1 ms to 1 s",
             Self::Horizon => "horizon is shorter than two steps, longer than 25.5 s, or needs more steps than there is room for",
@@ -95,6 +98,7 @@ impl Config {
         let positive = |d: Duration| d > Duration::ZERO;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
         let millis = Duration::from_millis;
+        self.identifiers.check().map_err(ConfigError::Identifiers)?;
         ensure(cfg!(feature = "fd") || self.transport == Transport::Classic, ConfigError::Transport)?;
         ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
         let Prediction { step, horizon, .. } = self.prediction;

@@ -26,7 +26,7 @@ use crate::wire::motion::{Motion, WirePosition};
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
 use crate::wire::status::{INTERFACE, Status};
-use crate::wire::{BaseId, Frame, Message, Predecessor, Said, Sender};
+use crate::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender};
 
 /// The driving parameters are sent once in this many own motions.
 const PARAMETERS_EVERY: u8 = 5;
@@ -60,9 +60,9 @@ pub(super) struct Outbox {
 }
 
 impl Outbox {
-    pub(super) const fn new(base_id: BaseId) -> Self {
+    pub(super) const fn new(identifiers: Identifiers) -> Self {
         Self {
-            sender: Sender::new(base_id),
+            sender: Sender::new(identifiers),
             tick: 0,
             tag: 0,
             page: 0,
@@ -71,6 +71,10 @@ impl Outbox {
             at_once: 0,
             parameters: Held::Nothing,
         }
+    }
+
+    pub(super) fn set_identifiers(&mut self, identifiers: &Identifiers) {
+        self.sender.set_identifiers(identifiers);
     }
 
     #[cfg(feature = "fd")]

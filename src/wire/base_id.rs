@@ -1,6 +1,8 @@
-//! The first identifier of the unit's block: an identifier of the bus enters and its offset in the catalogue leaves, and back.
+//! The first identifier of the block in which the catalogue lies: an identifier of the bus enters and its offset in the catalogue
+//! leaves, and back.
 
 use super::catalogue::BLOCK;
+use super::identifier::Identifier;
 
 /// The first identifier of the catalogue; checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,16 +31,22 @@ impl BaseId {
 
     /// The identifier at this offset.
     #[must_use]
-    pub const fn plus(self, offset: u16) -> u16 {
-        self.0.wrapping_add(offset)
+    pub(super) const fn plus(self, offset: u16) -> Identifier {
+        self.first().plus(offset as u32)
     }
 
     /// The offset of an identifier of the block.
     #[must_use]
-    pub const fn offset_of(self, id: u16) -> Option<u16> {
-        match id.checked_sub(self.0) {
-            Some(offset) if offset < BLOCK => Some(offset),
-            _ => None,
+    pub(super) const fn offset_of(self, id: Identifier) -> Option<u16> {
+        let offset = id.since(self.first());
+        #[allow(clippy::cast_possible_truncation)] // below the block's length
+        if offset < BLOCK as u32 { Some(offset as u16) } else { None }
+    }
+
+    const fn first(self) -> Identifier {
+        match Identifier::standard(self.0) {
+            Some(first) => first,
+            None => Identifier::NONE, // never: it was checked
         }
     }
 }

@@ -1,11 +1,9 @@
 //! The message catalogue: every identifier of the unit's bus with its sender, times, E2E parameters and fields. An
 //! identifier enters and its line leaves; receiver, sender, DBC and bus load all read the one table.
 //!
-//! Identifiers are `base + offset`; the low ones win the bus. Peers have [`SLOT_STRIDE`] identifiers a slot. The E2E
-//! data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
+//! Identifiers are `base + offset` unless [`super::Identifiers`] places them elsewhere; the low ones win the bus. Peers have
+//! [`SLOT_STRIDE`] offsets a slot. The E2E data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
 //! which the CRC is one to one, so a frame that strays to another identifier of the block never passes.
-
-pub use super::base_id::BaseId;
 
 use super::Slot;
 use super::e2e::Limits;
@@ -251,6 +249,7 @@ pub fn find(offset: u16) -> Option<(usize, &'static Line, Slot)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::BaseId;
     use crate::wire::bits::{FIRST_BIT, Payload};
 
     #[test]

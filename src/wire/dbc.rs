@@ -1,19 +1,25 @@
-//! The catalogue as a DBC file for everyone else's tools: a base identifier, a number of slots and a kind of bus enter, text leaves
+//! The catalogue as a DBC file for everyone else's tools: its identifiers, a number of slots and a kind of bus enter, text leaves
 //! ([`core::fmt::Display`]). `holdover.dbc` and `holdover-fd.dbc` at the root of the package are this for base 0x480 and 8 slots.
 
 use core::fmt::{Display, Formatter, Result};
 
-use super::catalogue::{BaseId, CATALOGUE, Line, Node, OnFd, SLOTS, data_id};
+use super::catalogue::{CATALOGUE, Line, Node, OnFd, SLOTS, data_id};
+use super::identifier::Identifier;
+use super::identifiers::Identifiers;
+use super::message_name::Name;
 use super::{Slot, Transport, meaning};
 use signal::Signal;
 
 mod signal;
 mod texts;
 
+/// The number of `ExtendedCAN_FD` among the values of `VFrameFormat`.
+const EXTENDED_CAN_FD: u16 = 15;
+
 /// The DBC of a bus.
 #[derive(Clone, Copy, Debug)]
 pub struct Dbc {
-    base: BaseId,
+    identifiers: Identifiers,
     slots: u8,
     transport: Transport,
 }
@@ -25,15 +31,15 @@ struct Described {
     #[cfg_attr(not(feature = "fd"), allow(dead_code))] // on classic CAN a frame is of one line
     place: usize,
     slot: Slot,
-    id: u16,
+    id: Identifier,
     is_over_fd: bool,
 }
 
 impl Dbc {
-    /// Of classic CAN, with this base and so many slots (at most those that there are identifiers for).
+    /// Of classic CAN, with these identifiers and so many slots (at most those that there are identifiers for).
     #[must_use]
-    pub fn new(base: BaseId, slots: u8) -> Self {
-        Self { base, slots: slots.min(u8::try_from(SLOTS).unwrap_or(u8::MAX)), transport: Transport::Classic }
+    pub fn new(identifiers: Identifiers, slots: u8) -> Self {
+        Self { identifiers, slots: slots.min(u8::try_from(SLOTS).unwrap_or(u8::MAX)), transport: Transport::Classic }
     }
 
     /// Of CAN FD.
@@ -45,14 +51,14 @@ impl Dbc {
 
     /// Every message.
     fn messages(&self) -> impl Iterator<Item = Described> {
-        let Self { base, slots, transport } = *self;
+        let Self { identifiers, slots, transport } = *self;
         let is_over_fd = transport == Transport::Fd;
         let lines = move || CATALOGUE.iter().enumerate().filter(move |(_, line)| line.begins(is_over_fd));
         let single = lines().filter(|(_, line)| !line.is_per_slot()).map(|of| (of, Slot(0)));
         let peers = (0..slots)
             .flat_map(move |slot| lines().filter(|(_, line)| line.is_per_slot()).map(move |of| (of, Slot(slot))));
         single.chain(peers).map(move |((place, line), slot)| {
-            let id = base.plus(line.offset_for(slot));
+            let id = identifiers.at(line.offset_for(slot));
             Described { line, place, slot, id, is_over_fd }
         })
     }
@@ -106,6 +112,7 @@ impl Described {
             classic("E2EMaxDeltaCounterInit", most_lost),
             classic("E2EMaxNoNewOrRepeatedData", limits.max_no_new_or_repeated.into()),
             classic("E2ESyncCounterInit", limits.sync_counter_init.into()),
+            (is_over_fd && self.id.is_extended()).then_some(("VFrameFormat", EXTENDED_CAN_FD)),
             is_over_fd.then_some(("E2EMaxDeltaCounter", most_lost.saturating_add(1))),
         ]
         .into_iter()
@@ -143,7 +150,7 @@ impl Display for Dbc {
         };
         f.write_str(texts::HEAD)?;
         for message in self.messages() {
-            let Described { line, id, .. } = message;
+            let (line, id) = (message.line, message.id.in_dbc());
             writeln!(f, "BO_ {id} {}: {} {}", message.name(), message.bytes(), node(line.sender))?;
             let receivers = if matches!(line.sender, Node::Unit) { "Modem,Vehicle" } else { "Unit" };
             writeln!(f, " SG_ Crc : {crc_place} \"\" {receivers}")?;
@@ -156,7 +163,7 @@ impl Display for Dbc {
         f.write_str(texts::notes(is_over_fd))?;
         f.write_str(texts::NODES)?;
         for message in self.messages() {
-            let id = message.id;
+            let id = message.id.in_dbc();
             write!(f, "CM_ BO_ {id} \"")?;
             message.write_comment(f)?;
             writeln!(f, "\";")?;
@@ -168,7 +175,7 @@ impl Display for Dbc {
         }
         f.write_str(texts::attributes(is_over_fd))?;
         for message in self.messages() {
-            let id = message.id;
+            let id = message.id.in_dbc();
             for (name, value) in message.attributes() {
                 writeln!(f, "BA_ \"{name}\" BO_ {id} {value};")?;
             }
@@ -181,7 +188,7 @@ impl Display for Dbc {
         }
         for message in self.messages() {
             for signal in message.signals().filter(|signal| !signal.field.values.is_empty()) {
-                write!(f, "VAL_ {} {}", message.id, signal.name())?;
+                write!(f, "VAL_ {} {}", message.id.in_dbc(), signal.name())?;
                 for (raw, name) in signal.field.values {
                     write!(f, " {raw} \"{name}\"")?;
                 }
@@ -197,18 +204,6 @@ const fn node(node: Node) -> &'static str {
         Node::Unit => "Unit",
         Node::Modem => "Modem",
         Node::Vehicle => "Vehicle",
-    }
-}
-
-/// The name of a message in a slot.
-struct Name(&'static str, Slot);
-
-impl Display for Name {
-    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        match self.0.split_once("{slot}") {
-            Some((before, after)) => write!(f, "{before}{}{after}", self.1.0),
-            None => f.write_str(self.0),
-        }
     }
 }
 
@@ -235,9 +230,9 @@ mod tests {
 
     #[test]
     fn every_signal_says_what_it_means_and_has_a_name_of_its_own() {
-        every_signal_says_what_it_means(Dbc::new(BaseId::DEFAULT, 1));
+        every_signal_says_what_it_means(Dbc::new(Identifiers::DEFAULT, 1));
         #[cfg(feature = "fd")]
-        every_signal_says_what_it_means(Dbc::new(BaseId::DEFAULT, 1).over_fd());
+        every_signal_says_what_it_means(Dbc::new(Identifiers::DEFAULT, 1).over_fd());
     }
 
     #[test]

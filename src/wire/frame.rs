@@ -1,9 +1,11 @@
-//! One CAN frame with an 11-bit identifier: what [`super::Sender`] emits. On classic CAN it has 8 data bytes; with the feature
+//! One CAN frame: what [`super::Sender`] emits. On classic CAN it has 8 data bytes; with the feature
 //! `fd` there may be as many as a frame of CAN FD has.
 
 use core::ops::{Deref, DerefMut};
 
-use embedded_can::{Id, StandardId};
+use embedded_can::Id;
+
+use super::identifier::Identifier;
 
 /// The most bytes that a frame's data can have here.
 pub const MOST_BYTES: usize = if cfg!(feature = "fd") { 64 } else { 8 };
@@ -78,19 +80,16 @@ impl DerefMut for Data {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Frame {
-    /// The identifier; 0 to 0x7FF.
-    pub id: u16,
+    /// The identifier.
+    pub id: Identifier,
     /// The data, CRC first.
     pub data: Data,
 }
 
 impl embedded_can::Frame for Frame {
-    /// `None` unless the identifier is standard and the data have a length that there is ([`Data`]).
+    /// `None` unless the data have a length that there is ([`Data`]).
     fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
-        match id.into() {
-            Id::Standard(id) => Some(Self { id: id.as_raw(), data: Data::new(data)? }),
-            Id::Extended(_) => None,
-        }
+        Some(Self { id: id.into().into(), data: Data::new(data)? })
     }
 
     /// Always `None`: the catalogue has no remote frames.
@@ -99,16 +98,15 @@ impl embedded_can::Frame for Frame {
     }
 
     fn is_extended(&self) -> bool {
-        false
+        self.id.is_extended()
     }
 
     fn is_remote_frame(&self) -> bool {
         false
     }
 
-    /// The identifier's low 11 bits.
     fn id(&self) -> Id {
-        Id::Standard(StandardId::new(self.id & 0x7FF).unwrap_or(StandardId::ZERO))
+        self.id.into()
     }
 
     /// The number of bytes, also of more than 8: not the code that stands for it in a frame of CAN FD.
@@ -124,14 +122,15 @@ impl embedded_can::Frame for Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use embedded_can::{ExtendedId, Frame as _};
+    use embedded_can::{ExtendedId, Frame as _, StandardId};
 
     #[test]
-    fn only_lengths_that_there_are_on_a_standard_identifier_make_a_frame() {
+    fn only_lengths_that_there_are_make_a_frame() {
         let id = StandardId::new(0x480).unwrap();
         let frame = Frame::new(id, &[1, 2, 3, 4, 5, 6, 7, 8]).unwrap();
         assert_eq!((frame.id(), frame.data(), frame.dlc()), (Id::Standard(id), &[1, 2, 3, 4, 5, 6, 7, 8][..], 8));
-        assert_eq!(Frame::new(ExtendedId::new(0x480).unwrap(), &[0; 8]), None);
+        let extended = Frame::new(ExtendedId::new(0x480).unwrap(), &[0; 8]).unwrap();
+        assert!(extended.is_extended() && !frame.is_extended() && extended.id != frame.id);
         assert_eq!(Frame::new_remote(id, 8), None);
         for length in (0..=70).filter(|length| *length != 8) {
             let is_of_fd = cfg!(feature = "fd") && [12, 16, 20, 24, 32, 48, 64].contains(&length);

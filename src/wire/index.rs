@@ -188,6 +188,11 @@ const fn number(content: Content) -> usize {
     }
 }
 
+/// The offset of a place in the catalogue; of slot 0 for a peer's.
+pub(super) fn offset_of(place: usize) -> Option<u16> {
+    ENTRIES.get(place).map(|entry| entry.offset)
+}
+
 /// The place in the catalogue of an offset, and its slot (0 where there are none).
 pub(super) fn place_of(offset: u16) -> Option<(usize, Slot)> {
     let (first, slot) = match offset.checked_sub(PEERS_OFFSET) {

@@ -22,9 +22,12 @@ pub mod field;
 pub mod frame;
 pub mod geo;
 pub mod horizon;
+mod identifier;
+mod identifiers;
 mod index;
 pub mod load;
 mod meaning;
+mod message_name;
 pub mod motion;
 mod predecessor;
 pub mod quantity;
@@ -37,8 +40,11 @@ pub mod sync;
 mod tie;
 pub mod unserved;
 
-pub use catalogue::BaseId;
+pub use base_id::BaseId;
 pub use frame::{Data, Frame};
+pub use identifier::Identifier;
+pub use identifiers::{IdentifierError, Identifiers};
+pub use message_name::MessageName;
 pub use receiver::{Received, Receiver, Role};
 pub use sender::{Sender, Unsent};
 

@@ -7,7 +7,8 @@
 //! [`DrivingParameters`]: super::driving_parameters::DrivingParameters
 
 use super::bits::Payload;
-use super::catalogue::{self, ABOUTS, About, BaseId, Content, LINES, PEERS_OFFSET, Speaker};
+use super::catalogue::{self, ABOUTS, About, Content, LINES, PEERS_OFFSET, Speaker};
+use super::identifiers::Identifiers;
 use super::index::{self, Entry};
 use super::{Frame, Message, Said, Slot, e2e};
 
@@ -27,7 +28,7 @@ pub enum Unsent {
 /// The E2E counters of all identifiers, and the tags of driving parameters; with so many slots (0 for the unit).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sender<const PEERS: usize> {
-    base: BaseId,
+    identifiers: Identifiers,
     /// By place in the catalogue; those of the peers' lines are not used.
     counters: [u8; LINES],
     parameters_tag: u8,
@@ -49,15 +50,19 @@ impl Peer {
 impl<const PEERS: usize> Sender<PEERS> {
     /// Nothing sent yet: every counter starts at 0.
     #[must_use]
-    pub const fn new(base: BaseId) -> Self {
+    pub const fn new(identifiers: Identifiers) -> Self {
         Self {
-            base,
+            identifiers,
             counters: [0; LINES],
             parameters_tag: 0,
             peers: [const { Peer::NEW }; PEERS],
             #[cfg(feature = "fd")]
             transport: super::Transport::Classic,
         }
+    }
+
+    pub(crate) fn set_identifiers(&mut self, identifiers: &Identifiers) {
+        self.identifiers = *identifiers;
     }
 
     /// Emits the message's frames, in order.
@@ -155,7 +160,7 @@ impl<const PEERS: usize> Sender<PEERS> {
         }
         let (place, entry) = index::find_content(content).ok_or(Unsent::NoLine)?;
         let offset = entry.offset_for(slot);
-        let id = self.base.plus(offset);
+        let id = self.identifiers.at(offset);
         let counter = self.counter(place, entry, slot)?;
         for payload in payloads {
             emit(Frame { id, data: e2e::protect(payload.to_bytes(), catalogue::data_id(offset), *counter).into() });

@@ -78,9 +78,9 @@ impl Rig {
     pub fn new(config: &Config) -> Self {
         Self {
             unit: Unit::new(config).unwrap(),
-            sensors: Sender::new(config.base_id),
-            modem: Sender::new(config.base_id),
-            listener: Receiver::new(config.base_id, Role::Modem),
+            sensors: Sender::new(config.identifiers),
+            modem: Sender::new(config.identifiers),
+            listener: Receiver::new(config.identifiers, Role::Modem),
             sequence: 0,
             tag: 0,
             wanted: 40.0,

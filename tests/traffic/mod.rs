@@ -10,7 +10,8 @@ use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Cause;
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
-use holdover::wire::catalogue::{self, BaseId};
+use holdover::wire::Identifiers;
+use holdover::wire::catalogue;
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
@@ -53,7 +54,7 @@ pub struct Traffic {
 impl Traffic {
     pub fn new() -> Self {
         Self {
-            sender: Sender::new(BaseId::DEFAULT),
+            sender: Sender::new(Identifiers::DEFAULT),
             offset: Instant::from_micros(77_000_000),
             period: 0,
             request: request(Predecessor::Station(TARGET)),
@@ -210,14 +211,14 @@ pub fn leads() -> DrivingParameters {
 pub fn resealed(frame: Frame, counter: Option<u8>, change: impl FnOnce(&mut [u8; 8])) -> Frame {
     let mut data: [u8; 8] = frame.data[..].try_into().expect("of classic CAN");
     change(&mut data);
-    let data_id = catalogue::data_id(frame.id - BaseId::DEFAULT.get());
+    let data_id = catalogue::data_id(Identifiers::DEFAULT.offset_of(frame.id).expect("of the block"));
     Frame { id: frame.id, data: e2e::protect(data, data_id, counter.unwrap_or(frame.data[1] & 0x0F)).into() }
 }
 
 /// The pages of health among what a unit sent.
 pub fn pages(frames: &[Frame]) -> Vec<Status> {
     thread_local!(static MODEM: std::cell::RefCell<Receiver<0>> = const {
-        std::cell::RefCell::new(Receiver::new(BaseId::DEFAULT, Role::Modem))
+        std::cell::RefCell::new(Receiver::new(Identifiers::DEFAULT, Role::Modem))
     });
     let decode = |frame: &Frame| match MODEM.with_borrow_mut(|modem| modem.receive(Instant::ZERO, frame)) {
         Ok(Received::Whole(Message::Status(status))) => Some(status),
@@ -228,7 +229,7 @@ pub fn pages(frames: &[Frame]) -> Vec<Status> {
 
 /// Whether a frame is a page of health.
 pub fn is_page(frame: &Frame) -> bool {
-    frame.id == BaseId::DEFAULT.get() + 0x18
+    frame.id == Identifiers::DEFAULT.at(0x18)
 }
 
 /// Any frame that can stand on a bus.
@@ -241,7 +242,7 @@ pub struct AnyFrame {
 
 impl From<Frame> for AnyFrame {
     fn from(frame: Frame) -> Self {
-        Self { id: standard(frame.id), data: frame.data.to_vec(), remote: false }
+        Self { id: frame.id.into(), data: frame.data.to_vec(), remote: false }
     }
 }
 

@@ -38,7 +38,7 @@ impl TryFrom<&Config> for config::Config {
     fn try_from(plain: &Config) -> Result<Self, Status> {
         Ok(Self {
             station: StationHash(plain.station),
-            base_id: BaseId::new(plain.base_id).ok_or(Status::ConfigBaseId)?,
+            identifiers: plain.identifiers.on(BaseId::new(plain.base_id).ok_or(Status::ConfigBaseId)?)?,
             transport: Transport::Classic,
             period: micros(plain.period_us),
             length: Distance::from_mm(milli(plain.length_mm)),
@@ -159,7 +159,8 @@ impl From<&config::Config> for Config {
         let config::Prediction { step, horizon, model } = typed.prediction;
         Self {
             station: typed.station.0,
-            base_id: typed.base_id.get(),
+            base_id: typed.identifiers.base().get(),
+            identifiers: (&typed.identifiers).into(),
             period_us: whole(typed.period),
             length_mm: magnitude(typed.length.to_mm()),
             lag_ms: magnitude(typed.lag.to_millis()),

@@ -9,7 +9,7 @@ use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 use holdover_c::{Config, Frame};
 
 /// A row of the log.
@@ -124,7 +124,7 @@ fn said(ms: u64) -> Vec<Message> {
 
 /// The script, with what goes wrong on a bus.
 pub fn drive() -> Vec<Row> {
-    let mut sender = Sender::<1>::new(BaseId::DEFAULT);
+    let mut sender = Sender::<1>::new(Identifiers::DEFAULT);
     let mut rows = Vec::new();
     for ms in 0..END_US / 1000 {
         for message in said(ms) {

@@ -10,6 +10,7 @@ use super::{Bus, Frame};
 use crate::error::{Error, quoted};
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::time::Instant;
+use holdover::wire::Identifier;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use socketcan::{
     CanAnyFrame, CanErrorFrame, CanFdFrame, CanFdSocket, CanFilter, CanFrame, EmbeddedFrame, Frame as _, Socket,
@@ -62,13 +63,13 @@ impl SocketCan {
         Ok(Self { socket, awaited: VecDeque::new(), early: None })
     }
 
-    /// Lets the kernel pass only error frames, and frames with these standard identifiers, of any kind and length.
+    /// Lets the kernel pass only error frames, and frames with these identifiers, of any kind and length.
     ///
     /// # Errors
     /// Errors of the system.
-    pub fn hear_only(&self, ids: impl IntoIterator<Item = u16>) -> io::Result<()> {
-        const STANDARD: u32 = 0x8000_07FF; // the identifier, and that it is not an extended one
-        let filters: Vec<_> = ids.into_iter().map(|id| CanFilter::new(id.into(), STANDARD)).collect();
+    pub fn hear_only(&self, ids: impl IntoIterator<Item = Identifier>) -> io::Result<()> {
+        const EXACTLY: u32 = 0x9FFF_FFFF; // all bits of the identifier, and how many it has
+        let filters: Vec<_> = ids.into_iter().map(|id| CanFilter::new(id.in_dbc(), EXACTLY)).collect();
         self.socket.set_filters(&filters)
     }
 

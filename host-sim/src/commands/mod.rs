@@ -4,7 +4,6 @@
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
 //! ```
 
-pub mod base_id;
 pub mod cli;
 pub mod corridor;
 pub mod dbc;
@@ -14,6 +13,7 @@ pub mod envelope_cost;
 pub mod evaluate;
 pub mod gains;
 pub mod hil;
+pub mod identifiers;
 pub mod motions;
 pub mod options;
 pub mod record;

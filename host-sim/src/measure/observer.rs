@@ -8,7 +8,7 @@ use holdover::time::Instant;
 use holdover::units::Position;
 use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::motion::Motion;
-use holdover::wire::{BaseId, Message, Predecessor, Received, Receiver, Role, Said, Slot, Transport};
+use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said, Slot, Transport};
 
 use super::heard::{Heard, HeardParameters};
 use crate::bus::memory::MemoryNode;
@@ -27,10 +27,10 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// A listener on a bus whose catalogue starts at `base`.
+    /// A listener on a bus with these identifiers.
     #[must_use]
-    pub fn new(base: BaseId) -> Self {
-        Self { receiver: Receiver::new(base, Role::Unit), parameters: BTreeMap::new() }
+    pub fn new(identifiers: Identifiers) -> Self {
+        Self { receiver: Receiver::new(identifiers, Role::Unit), parameters: BTreeMap::new() }
     }
 
     /// The same on a bus with these frames.
@@ -94,7 +94,7 @@ impl Tap {
     pub fn of(world: &World<'_>) -> Self {
         let measured = world.measured();
         let by = &world.vehicles()[measured.by];
-        let observer = Observer::new(BaseId::DEFAULT).over(by.unit.config().transport);
+        let observer = Observer::new(Identifiers::DEFAULT).over(by.unit.config().transport);
         Self { measured, node: by.listen(), observer }
     }
 

@@ -106,7 +106,7 @@ impl Vehicle {
         sensors: Sensors,
     ) -> Result<Self, ConfigError> {
         let bus = MemoryBus::new();
-        let mut relay = Relay::new(config.base_id).over(config.transport);
+        let mut relay = Relay::new(config.identifiers).over(config.transport);
         if let Predecessor::Station(ahead) = request.predecessor {
             relay.set_out(Course::behind(ahead));
         }
@@ -125,9 +125,9 @@ impl Vehicle {
             clock_offset_us,
             sensors,
             ground: None,
-            sender: Sender::new(config.base_id).over(config.transport),
+            sender: Sender::new(config.identifiers).over(config.transport),
             relay,
-            listener: Receiver::new(config.base_id, Role::Modem).over(config.transport),
+            listener: Receiver::new(config.identifiers, Role::Modem).over(config.transport),
             transmitter: Transmitter::default(),
             ecu: Some(bus.node()),
             actuators: Actuators::default(),

@@ -34,7 +34,7 @@ impl<const PEERS: usize> Sender<PEERS> {
         let (place, entry) = index::find_content(content).ok_or(Unsent::NoLine)?;
         let layout = layout::of(place).ok_or(Unsent::NoLine)?;
         let offset = entry.offset_for(slot);
-        let id = self.base.plus(offset);
+        let id = self.identifiers.at(offset);
         let counter = self.counter(place, entry, slot)?;
         let mut bits = layout.pack(payloads);
         let data = bits.bytes_mut(layout.bytes.into());

@@ -2,14 +2,14 @@
 
 use clap::Args;
 
-use crate::commands::base_id::number;
+use crate::commands::identifiers::IdentifierArguments;
 
 /// The arguments of `dbc`.
 #[derive(Clone, Debug, Args)]
 pub struct DbcArguments {
-    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
-    #[arg(long, value_name = "ID", value_parser = number)]
-    pub base_id: Option<u16>,
+    /// Where the messages lie on the bus.
+    #[command(flatten)]
+    pub identifiers: IdentifierArguments,
 
     /// Slots of peers, 1 to 16; the firmware has 8
     #[arg(long, value_name = "N", default_value_t = 8)]
@@ -26,8 +26,9 @@ Examples:
   holdover-sim dbc > bus.dbc                              as holdover.dbc, which comes with the source
   holdover-sim dbc --fd > bus.dbc                         as holdover-fd.dbc
   holdover-sim dbc --base-id 0x300 --slots 16 > bus.dbc   for another bus
+  holdover-sim dbc --place MotionCommand=0x0CFF022A --place PeerMotionA=0x18FF404A/0x100 > bus.dbc
 
-The unit's base is `base_id` in its configuration, and --base-id of ecu and hil.
+The unit's are `identifiers` in its configuration, and the same options of ecu, hil and replay.
 canmatrix makes ARXML, KCD and SYM of it: canconvert bus.dbc bus.arxml
 
 Exit codes:

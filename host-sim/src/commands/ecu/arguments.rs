@@ -3,7 +3,7 @@
 use clap::Args;
 use std::path::PathBuf;
 
-use crate::commands::base_id::number;
+use crate::commands::identifiers::IdentifierArguments;
 
 /// Identity of the unit. `hil` uses the same arguments for the device under test.
 #[derive(Clone, Debug, Default, Args)]
@@ -16,9 +16,9 @@ pub struct UnitArguments {
     #[arg(long, value_name = "INDEX")]
     pub vehicle: Option<usize>,
 
-    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
-    #[arg(long, value_name = "ID", value_parser = number)]
-    pub base_id: Option<u16>,
+    /// Where the messages lie on the bus.
+    #[command(flatten)]
+    pub identifiers: IdentifierArguments,
 
     /// The bus is CAN FD, whatever the scenario says
     #[arg(long)]

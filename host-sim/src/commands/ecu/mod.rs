@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::output;
 use crate::sim::vehicle::Unit;
 use crate::verdict::Verdict;
-use options::{EcuOptions, identifiers};
+use options::{EcuOptions, heard};
 
 /// Time from the start of its clock to its first tick. The stamp of a message may be from before that tick.
 const POWERED_BEFORE: Duration = Duration::from_millis(60_000);
@@ -37,7 +37,7 @@ pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
         Error::new(cause, "see whether it is still there: ip -details link").in_option("--bus")
     };
     #[cfg(target_os = "linux")]
-    port.hear_only(identifiers(options.config.base_id)).map_err(|error| failed(&error))?;
+    port.hear_only(heard(&options.config.identifiers)).map_err(|error| failed(&error))?;
     let mut ecu = Ecu::new(&options.config, options.lock_step).map_err(|cause| {
         Error::new(format!("the unit refuses its configuration: {cause}"), "change the scenario accordingly")
     })?;

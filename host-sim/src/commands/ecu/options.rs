@@ -4,11 +4,10 @@
 use std::path::Path;
 
 use holdover::Config;
-use holdover::wire::catalogue::{CATALOGUE, Node, PEERS_OFFSET, SLOT_STRIDE};
-use holdover::wire::{BaseId, StationHash, Transport};
+use holdover::wire::catalogue::{CATALOGUE, Node};
+use holdover::wire::{Identifier, Identifiers, StationHash, Transport};
 
 use super::arguments::{EcuArguments, UnitArguments};
-use crate::commands::base_id;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
 use crate::sim::modem::PEERS;
@@ -57,10 +56,10 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// # Errors
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
-    let base_id = base_id::checked(arguments.base_id)?;
+    let identifiers = arguments.identifiers.read()?;
     let transport = if arguments.fd { Transport::Fd } else { scenario.transport };
     if let Some(station) = arguments.station {
-        return Ok(Config { base_id, transport, ..Config::car(StationHash(station)) });
+        return Ok(Config { identifiers, transport, ..Config::car(StationHash(station)) });
     }
     let vehicle = arguments.vehicle.unwrap_or(scenario.ego);
     let last = scenario.vehicles.len() - 1;
@@ -68,7 +67,7 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
         let remedy = format!("give an index from 0 to {last}");
         return Err(Error::new(format!("there is no vehicle {vehicle}"), remedy).in_option("--vehicle"));
     }
-    let config = Config { base_id, transport, ..world::config(scenario, vehicle) };
+    let config = Config { identifiers, transport, ..world::config(scenario, vehicle) };
     config.check(STEPS).map_err(|cause| {
         Error::new(format!("a unit refuses the scenario: {cause}"), "change the scenario accordingly")
     })?;
@@ -76,12 +75,9 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
 }
 
 /// The identifiers that a unit listens to.
-pub fn identifiers(base: BaseId) -> impl Iterator<Item = u16> {
-    let heard = CATALOGUE.iter().filter(|line| line.sender != Node::Unit);
-    heard.flat_map(move |line| {
-        let slots = if line.offset >= PEERS_OFFSET { PEERS } else { 1 };
-        (0..slots).map(move |slot| base.plus(line.offset + SLOT_STRIDE * u16::try_from(slot).unwrap_or(0)))
-    })
+pub fn heard(identifiers: &Identifiers) -> impl Iterator<Item = Identifier> {
+    let lines = CATALOGUE.iter().filter(|line| line.sender != Node::Unit);
+    lines.flat_map(|line| identifiers.of_line(line.offset, u8::try_from(PEERS).unwrap_or(u8::MAX)))
 }
 
 #[cfg(test)]
@@ -90,10 +86,10 @@ mod tests {
 
     #[test]
     fn a_unit_listens_to_the_vehicle_the_modem_and_every_slot() {
-        let ids: Vec<u16> = identifiers(BaseId::DEFAULT).collect();
+        let ids: Vec<u32> = heard(&Identifiers::DEFAULT).map(Identifier::number).collect();
         assert_eq!(ids.len(), 9 + 6 * PEERS);
         assert!(ids.contains(&0x480) && ids.contains(&0x4C0) && ids.contains(&(0x4C0 + 8 * 7 + 5)));
-        assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * u16::try_from(PEERS).unwrap())));
+        assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * u32::try_from(PEERS).unwrap())));
     }
 
     #[test]

@@ -14,7 +14,7 @@ use holdover::time::{Duration, Instant};
 use holdover::units::Position;
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Said, Sender};
+use holdover::wire::{Identifiers, Message, Said, Sender};
 use holdover::{Config, ConfigError};
 
 use super::timeline::seconds;
@@ -82,9 +82,9 @@ impl Listener {
         let deaf = Deaf { unit: Unit::new(&config)?, baselines: baseline::all(TARGET, step_s) };
         let mut listener = Self {
             deaf,
-            vehicle: Sender::new(config.base_id),
-            relay: Relay::new(config.base_id),
-            observer: Observer::new(BaseId::DEFAULT),
+            vehicle: Sender::new(config.identifiers),
+            relay: Relay::new(config.identifiers),
+            observer: Observer::new(Identifiers::DEFAULT),
             synced: None,
             driven: None,
             sequence: 0,

@@ -1,29 +1,27 @@
 //! What stands in a frame, without a check of its protection: a frame of either kind of bus enters; its line of the catalogue, its
 //! payloads or the vehicle's motion leave; and a frame once more with another counter.
 
-use embedded_can::{Frame as _, Id};
+use embedded_can::Frame as _;
 use holdover::wire::bits::Payload;
 use holdover::wire::catalogue::{self, About, Content, Line, Speaker};
 use holdover::wire::fd::{self, layout};
 use holdover::wire::motion::Motion;
-use holdover::wire::{BaseId, Data, Frame as WireFrame, Transport, e2e};
+use holdover::wire::{Data, Frame as WireFrame, Identifiers, Transport, e2e};
 
 use crate::bus::Frame;
 
 /// The line of the catalogue for a frame: on a bus of CAN FD, the one that the frame begins with.
 #[must_use]
-pub fn line_of(base: BaseId, frame: &Frame) -> Option<&'static Line> {
-    let Id::Standard(id) = frame.id() else { return None };
-    catalogue::find(base.offset_of(id.as_raw())?).map(|(_, line, _)| line)
+pub fn line_of(identifiers: &Identifiers, frame: &Frame) -> Option<&'static Line> {
+    catalogue::find(identifiers.offset_of(frame.id().into())?).map(|(_, line, _)| line)
 }
 
 /// The first two payloads of a frame, of which a classic one has only the first; those of a frame with another length than its
 /// line's are empty.
 #[must_use]
-pub fn payloads(base: BaseId, frame: &Frame) -> [Payload; 2] {
+pub fn payloads(identifiers: &Identifiers, frame: &Frame) -> [Payload; 2] {
     let read = || {
-        let Id::Standard(id) = frame.id() else { return None };
-        let (place, ..) = catalogue::find(base.offset_of(id.as_raw())?)?;
+        let (place, ..) = catalogue::find(identifiers.offset_of(frame.id().into())?)?;
         let [first, second, ..] = layout::of(place)?.read(frame.data()).ok()?;
         Some([first.unwrap_or_default(), second.unwrap_or_default()])
     };
@@ -35,8 +33,8 @@ pub fn payloads(base: BaseId, frame: &Frame) -> [Payload; 2] {
 
 /// The frame with that counter, and a checksum that fits.
 #[must_use]
-pub fn recounted(base: BaseId, frame: &WireFrame, counter: u8) -> WireFrame {
-    let data_id = catalogue::data_id(base.offset_of(frame.id).unwrap_or(0));
+pub fn recounted(identifiers: &Identifiers, frame: &WireFrame, counter: u8) -> WireFrame {
+    let data_id = catalogue::data_id(identifiers.offset_of(frame.id).unwrap_or(0));
     let data = match <[u8; 8]>::try_from(&frame.data[..]) {
         Ok(data) => e2e::protect(data, data_id, counter).into(),
         Err(_) => {
@@ -70,9 +68,9 @@ pub struct EgoMotion {
 
 impl EgoMotion {
     /// Takes in a frame; the motion that it completes.
-    pub fn take(&mut self, base: BaseId, frame: &Frame) -> Option<Motion> {
-        let Content::Said(Speaker::Ego, about) = line_of(base, frame)?.content else { return None };
-        let [first, second] = payloads(base, frame);
+    pub fn take(&mut self, identifiers: &Identifiers, frame: &Frame) -> Option<Motion> {
+        let Content::Said(Speaker::Ego, about) = line_of(identifiers, frame)?.content else { return None };
+        let [first, second] = payloads(identifiers, frame);
         match about {
             About::MotionA if frame.is_fd() => Some(Motion::decode(&[first, second])),
             About::MotionA => {

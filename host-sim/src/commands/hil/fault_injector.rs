@@ -6,7 +6,7 @@ use std::io;
 use holdover::time::Duration;
 use holdover::units::Position;
 use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::{BaseId, Message, Said, Sender, Transport};
+use holdover::wire::{Identifiers, Message, Said, Sender, Transport};
 
 use super::content::EgoMotion;
 use super::fault::{Fault, Kind};
@@ -25,7 +25,7 @@ const OFF_M: i64 = 50;
 /// The fault injector.
 pub struct FaultInjector {
     faults: Vec<Played>,
-    base: BaseId,
+    identifiers: Identifiers,
     sender: Sender<0>,
     motion: EgoMotion,
     truth: Option<Motion>,
@@ -75,10 +75,10 @@ impl Played {
 impl FaultInjector {
     /// An injector with these faults.
     #[must_use]
-    pub fn new(faults: &[Fault], base: BaseId) -> Self {
+    pub fn new(faults: &[Fault], identifiers: Identifiers) -> Self {
         let faults = faults.iter().copied().map(Played::new).collect();
-        let (sender, motion, altered) = (Sender::new(base), EgoMotion::default(), Altered::default());
-        Self { faults, base, sender, motion, truth: None, next_s: 0.0, altered }
+        let (sender, motion, altered) = (Sender::new(identifiers), EgoMotion::default(), Altered::default());
+        Self { faults, identifiers, sender, motion, truth: None, next_s: 0.0, altered }
     }
 
     /// The same on a bus with these frames.
@@ -156,7 +156,7 @@ impl FaultInjector {
 
     /// Takes in a frame that the harness has sent.
     pub fn overhear(&mut self, frame: &Frame) {
-        self.truth = self.motion.take(self.base, frame).or(self.truth);
+        self.truth = self.motion.take(&self.identifiers, frame).or(self.truth);
     }
 
     /// Sends the frames of the faults that are on. Returns the time until the next act. Frames that the bus refuses are

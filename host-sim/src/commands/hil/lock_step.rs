@@ -14,7 +14,7 @@ use holdover::time::{Duration, Instant};
 use holdover::wire::catalogue::{Content, Node};
 use holdover::wire::command::Command;
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Sender};
+use holdover::wire::{Identifiers, Message, Sender};
 
 use super::content::{line_of, payloads};
 use super::deviation::Deviation;
@@ -44,7 +44,7 @@ const PROBE_EVERY: Duration = Duration::from_millis(200);
 struct Bench<P> {
     talk: Talk<P>,
     seat: MemoryNode,
-    base: BaseId,
+    identifiers: Identifiers,
     sender: Sender<0>,
     sequence: u8,
     twin: (Unit, LockStep),
@@ -65,13 +65,13 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let mut bench = Bench {
-        talk: Talk::new(port, config.base_id),
+        talk: Talk::new(port, config.identifiers),
         seat: world.give_seat(scenario.ego, setup.alias()),
-        base: config.base_id,
-        sender: Sender::new(config.base_id).over(config.transport),
+        identifiers: config.identifiers,
+        sender: Sender::new(config.identifiers).over(config.transport),
         sequence: 0,
         twin: (Unit::new(config).map_err(io::Error::other)?, LockStep::new()),
-        monitor: Monitor::new(config.base_id, config.period).over(config.transport),
+        monitor: Monitor::new(config.identifiers, config.period).over(config.transport),
         steps: Steps::default(),
         foreign: 0,
         bus_errors: 0,
@@ -104,7 +104,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         let mut frames = Vec::new();
         while let Some((_, frame)) = bench.seat.receive(own)? {
             // The pair of the step replaces that of the vehicle.
-            let content = line_of(bench.base, &frame).map(|line| line.content);
+            let content = line_of(&bench.identifiers, &frame).map(|line| line.content);
             if !matches!(content, Some(Content::Sync | Content::FollowUp)) {
                 frames.push(frame);
             }
@@ -171,11 +171,11 @@ impl<P: Port> Bench<P> {
             pair.into_iter().for_each(|frame| self.talk.send(frame));
             let until = self.talk.now().plus(PROBE_EVERY);
             self.listen(until, usize::MAX)?;
-            if let Some(first) = self.answer.iter().find_map(|(_, frame)| command(self.base, frame)) {
+            if let Some(first) = self.answer.iter().find_map(|(_, frame)| command(&self.identifiers, frame)) {
                 let seen = usize::from(first.tick);
                 // The answers to all pairs that the device has seen have arrived, or are on their way.
                 self.listen(self.talk.now().plus(PROBE_EVERY), usize::MAX)?;
-                let answers = self.answer.iter().filter_map(|(_, frame)| command(self.base, frame)).count();
+                let answers = self.answer.iter().filter_map(|(_, frame)| command(&self.identifiers, frame)).count();
                 let Some(unseen) = probes.len().checked_sub(seen + answers - 1).filter(|_| seen == 1) else {
                     return Ok(Some(Cut::NotFresh { tick: first.tick }));
                 };
@@ -215,17 +215,17 @@ impl<P: Port> Bench<P> {
     /// Listens until `until`, or until the device has sent `enough` frames and everything is sent.
     fn listen(&mut self, until: Instant, enough: usize) -> io::Result<()> {
         while self.talk.now() < until && (self.answer.len() < enough || !self.talk.is_idle()) {
-            let Self { talk, base, answer, monitor, foreign, bus_errors, asked, .. } = self;
+            let Self { talk, identifiers, answer, monitor, foreign, bus_errors, asked, .. } = self;
             let mut is_enough = false;
             let pause = talk.now().plus(Duration::from_millis(if answer.len() + 1 >= enough { 1 } else { 5 }));
             talk.pump_while(until.min(pause), |at, event| {
                 match event {
                     Event::Sent(frame) => {
-                        if line_of(*base, &frame).is_some_and(|line| line.content == Content::FollowUp) {
+                        if line_of(identifiers, &frame).is_some_and(|line| line.content == Content::FollowUp) {
                             *asked = Some(at);
                         }
                     }
-                    Event::Received(frame) => match line_of(*base, &frame) {
+                    Event::Received(frame) => match line_of(identifiers, &frame) {
                         Some(line) if line.sender == Node::Unit => {
                             if let Some(asked) = asked.take_if(|_| line.content == Content::Command) {
                                 monitor.ask(asked);
@@ -267,9 +267,9 @@ impl<P: Port> Bench<P> {
 }
 
 /// The command in a frame, without a check of its counter.
-fn command(base: BaseId, frame: &Frame) -> Option<Command> {
-    let line = line_of(base, frame)?;
-    let [payload, _] = payloads(base, frame);
+fn command(identifiers: &Identifiers, frame: &Frame) -> Option<Command> {
+    let line = line_of(identifiers, frame)?;
+    let [payload, _] = payloads(identifiers, frame);
     (line.content == Content::Command).then(|| Command::decode(&[payload]))
 }
 

@@ -8,7 +8,7 @@ use holdover::time::{Duration, Instant, Stamp};
 use holdover::wire::command::{Command, ModeCode};
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::fd::State;
-use holdover::wire::{BaseId, Message, Received, Receiver, Role, Said, Transport};
+use holdover::wire::{Identifiers, Message, Received, Receiver, Role, Said, Transport};
 
 use crate::bus::Frame;
 
@@ -62,12 +62,12 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// The monitor of a device whose catalogue begins at `base`, with this period.
+    /// The monitor of a device whose catalogue is on these identifiers, with this period.
     #[must_use]
-    pub fn new(base: BaseId, period: Duration) -> Self {
+    pub fn new(identifiers: Identifiers, period: Duration) -> Self {
         Self {
             period,
-            receiver: Receiver::new(base, Role::Modem),
+            receiver: Receiver::new(identifiers, Role::Modem),
             beats: Vec::new(),
             e2e: Vec::new(),
             refusals: BTreeMap::new(),
@@ -214,8 +214,8 @@ mod tests {
     impl Device {
         fn new() -> Self {
             Self {
-                sender: Sender::new(BaseId::DEFAULT),
-                monitor: Monitor::new(BaseId::DEFAULT, Duration::from_millis(10)),
+                sender: Sender::new(Identifiers::DEFAULT),
+                monitor: Monitor::new(Identifiers::DEFAULT, Duration::from_millis(10)),
             }
         }
 
@@ -327,7 +327,7 @@ mod tests {
             device.command(millis, tick);
         }
         assert_eq!(device.monitor.restarts(), []);
-        device.sender = Sender::new(BaseId::DEFAULT);
+        device.sender = Sender::new(Identifiers::DEFAULT);
         for (millis, tick) in [(1000, 1), (1010, 2), (1020, 3), (1030, 4)] {
             device.command(millis, tick);
         }

@@ -10,7 +10,7 @@ use std::io;
 
 use holdover::time::{Duration, Instant};
 use holdover::wire::catalogue::Node;
-use holdover::wire::{BaseId, Transport};
+use holdover::wire::{Identifiers, Transport};
 use holdover::{Config, ConfigError};
 
 use super::content::{EgoMotion, line_of};
@@ -76,7 +76,7 @@ impl Setup {
 
 /// The listener on the bus.
 pub(super) struct BusListener {
-    base: BaseId,
+    identifiers: Identifiers,
     config: Config,
     seat: MemoryNode,
     pub monitor: Monitor,
@@ -92,10 +92,10 @@ pub(super) struct BusListener {
 impl BusListener {
     pub fn new(config: &Config, seat: MemoryNode) -> Result<Self, ConfigError> {
         Ok(Self {
-            base: config.base_id,
+            identifiers: config.identifiers,
             config: *config,
             seat,
-            monitor: Monitor::new(config.base_id, config.period).over(config.transport),
+            monitor: Monitor::new(config.identifiers, config.period).over(config.transport),
             twin: Twin::new(config)?,
             told: None,
             deviation: Deviation::default(),
@@ -118,12 +118,12 @@ impl BusListener {
     pub fn hear(&mut self, at: Instant, event: Event, local: impl Fn(Instant) -> (f64, Instant)) -> io::Result<()> {
         match event {
             Event::Sent(frame) => {
-                if let Some(motion) = self.motion.take(self.base, &frame) {
+                if let Some(motion) = self.motion.take(&self.identifiers, &frame) {
                     self.monitor.input(at, motion.stamp);
                 }
                 self.twin.hear(at, frame);
             }
-            Event::Received(frame) => match line_of(self.base, &frame) {
+            Event::Received(frame) => match line_of(&self.identifiers, &frame) {
                 Some(line) if line.sender == Node::Unit => self.device(at, &frame, local)?,
                 line => {
                     self.foreign += u64::from(line.is_some());
@@ -179,10 +179,10 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let seat = world.give_seat(scenario.ego, setup.alias());
     let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
-    let mut talk = Talk::new(port, config.base_id);
+    let mut talk = Talk::new(port, config.identifiers);
     let mut trace = world.trace();
     let mut paper = PaperBeside::of(&world, scenario);
-    let mut injector = FaultInjector::new(&setup.faults, config.base_id).over(config.transport);
+    let mut injector = FaultInjector::new(&setup.faults, config.identifiers).over(config.transport);
     rig.power(true)?;
     let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
     let period = config.period;
@@ -306,10 +306,10 @@ fn wait_for_device<P: Port>(
     let end = talk.now().plus(setup.wait);
     while talk.now() < end {
         let (mut heard, until) = (false, talk.now().plus(Duration::from_millis(20)).min(end));
-        let base = listener.base;
+        let identifiers = listener.identifiers;
         talk.pump(until, |_, event| {
             heard |= matches!(event, Event::Received(frame)
-                if line_of(base, &frame).is_some_and(|line| line.sender == Node::Unit));
+                if line_of(&identifiers, &frame).is_some_and(|line| line.sender == Node::Unit));
         })?;
         if heard {
             return Ok(None);

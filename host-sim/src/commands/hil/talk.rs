@@ -8,7 +8,7 @@ use std::io::{self, ErrorKind};
 use holdover::time::{Duration, Instant};
 use holdover::wire::catalogue::Content;
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Message, Sender, Transport};
+use holdover::wire::{Identifiers, Message, Sender, Transport};
 
 use super::content::{counter_of, line_of, payloads, recounted};
 use super::fault::Kind;
@@ -53,7 +53,7 @@ pub struct Altered {
 /// The harness's side of the bus.
 pub struct Talk<P> {
     port: P,
-    base: BaseId,
+    identifiers: Identifiers,
     /// The time of the bus at the beginning of the run.
     origin: Instant,
     queue: VecDeque<Frame>,
@@ -72,12 +72,12 @@ pub struct Talk<P> {
 }
 
 impl<P: Port> Talk<P> {
-    /// The side of the bus at a port, with a catalogue that begins at `base`.
-    pub fn new(port: P, base: BaseId) -> Self {
+    /// The side of the bus at a port, with the catalogue on these identifiers.
+    pub fn new(port: P, identifiers: Identifiers) -> Self {
         let now = port.now();
         Self {
             port,
-            base,
+            identifiers,
             origin: now,
             queue: VecDeque::new(),
             burst: (now, BURST),
@@ -173,9 +173,9 @@ impl<P: Port> Talk<P> {
             if left == 0 {
                 return Ok(Some(next));
             }
-            let frame = match line_of(self.base, &frame).map(|line| line.content) {
+            let frame = match line_of(&self.identifiers, &frame).map(|line| line.content) {
                 Some(Content::Sync) => {
-                    let [payload, _] = payloads(self.base, &frame);
+                    let [payload, _] = payloads(&self.identifiers, &frame);
                     self.mark = Some((Sync::decode(&[payload]), now, None));
                     frame
                 }
@@ -207,7 +207,7 @@ impl<P: Port> Talk<P> {
     fn note(&mut self, at: Instant, event: &Event) {
         let Event::Sent(frame) = event else { return };
         self.counts.confirmed += 1;
-        if line_of(self.base, frame).is_some_and(|line| line.content == Content::Sync)
+        if line_of(&self.identifiers, frame).is_some_and(|line| line.content == Content::Sync)
             && let Some((_, _, marked)) = &mut self.mark
         {
             *marked = Some(at);
@@ -219,13 +219,14 @@ impl<P: Port> Talk<P> {
         let micros = marked.since(self.origin).as_micros().saturating_add(self.clock_error_us);
         let time = EPOCH_US.saturating_add_signed(micros);
         let micros = u32::try_from(time.saturating_sub(u64::from(sync.seconds) * 1_000_000)).unwrap_or(u32::MAX);
-        let [payload, _] = payloads(self.base, frame);
+        let [payload, _] = payloads(&self.identifiers, frame);
         let follow_up = FollowUp { micros, ..FollowUp::decode(&[payload]) };
         let transport = if frame.is_fd() { Transport::Fd } else { Transport::Classic };
         let mut dated = *frame;
-        let sent = Sender::<0>::new(self.base).over(transport).send(&Message::FollowUp(follow_up), &mut |made| {
-            dated = (&recounted(self.base, &made, counter_of(frame))).into();
-        });
+        let sent =
+            Sender::<0>::new(self.identifiers).over(transport).send(&Message::FollowUp(follow_up), &mut |made| {
+                dated = (&recounted(&self.identifiers, &made, counter_of(frame))).into();
+            });
         debug_assert!(sent.is_ok(), "the catalogue has a line for the time synchronisation");
         dated
     }

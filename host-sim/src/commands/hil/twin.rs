@@ -41,7 +41,8 @@ impl Twin {
         while let Some((heard, frame)) = self.waiting.pop_front_if(|(heard, _)| *heard <= at) {
             let _ = self.unit.receive(local(heard), &frame); // the unit counts refusals
         }
-        said(self.unit.config().base_id, &self.unit.tick(local(at)).frames)
+        let answer = self.unit.tick(local(at));
+        said(&self.unit.config().identifiers, &answer.frames)
     }
 
     /// The unit.

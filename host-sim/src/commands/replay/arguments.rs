@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::commands::base_id::number;
+use crate::commands::identifiers::IdentifierArguments;
 use std::path::PathBuf;
 
 /// The arguments of `replay`.
@@ -14,6 +14,7 @@ pub struct ReplayArguments {
 
     /// Put the log's frames on this CAN interface instead, with their timing
     #[arg(long, value_name = "INTERFACE", conflicts_with_all = ["scenario", "vehicle", "seed", "station", "base_id",
+        "place", "identifiers",
         "period", "step", "summary", "json"])]
     pub bus: Option<String>,
 
@@ -34,9 +35,9 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "N", conflicts_with_all = ["scenario", "vehicle"])]
     pub station: Option<u8>,
 
-    /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
-    #[arg(long, value_name = "ID", value_parser = number)]
-    pub base_id: Option<u16>,
+    /// Where the messages lie on the bus.
+    #[command(flatten)]
+    pub identifiers: IdentifierArguments,
 
     /// The bus is CAN FD, whatever the scenario says
     #[arg(long)]

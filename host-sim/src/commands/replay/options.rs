@@ -9,7 +9,6 @@ use holdover::wire::{StationHash, Transport};
 
 use super::arguments::ReplayArguments;
 use crate::bus::candump::Interface;
-use crate::commands::base_id;
 use crate::commands::corridor::options::exists;
 use crate::error::{Error, quoted};
 use crate::input::library;
@@ -59,15 +58,16 @@ impl ReplayOptions {
     /// # Errors
     /// Impossible values, and an unusable scenario.
     pub fn read(arguments: ReplayArguments) -> Result<Self, Error> {
-        let ReplayArguments { log, bus, scenario, vehicle, seed, station, base_id, period, step, interface, .. } =
-            arguments;
+        let ReplayArguments {
+            log, bus, scenario, vehicle, seed, station, identifiers, period, step, interface, ..
+        } = arguments;
         let overrides = Overrides { seed, step_s: step, ..Overrides::default() };
         let (mut config, itinerary) = match (&scenario, vehicle) {
             (None, None) => (of_a_car(station, period, step)?, None),
             (None, vehicle) => (of_string(None, vehicle, &overrides)?, None),
             (Some(named), vehicle) => of_scenario(named, vehicle, &overrides)?,
         };
-        config.base_id = base_id::checked(base_id)?;
+        config.identifiers = identifiers.read()?;
         if arguments.fd {
             config.transport = Transport::Fd;
         }

@@ -47,7 +47,7 @@ impl Player {
             unit,
             deaf,
             timeline: Timeline::new(config.period),
-            tally: Tally::new(config.base_id).over(config.transport),
+            tally: Tally::new(config.identifiers).over(config.transport),
         })
     }
 

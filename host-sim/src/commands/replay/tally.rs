@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use embedded_can::{Frame as _, Id};
+use embedded_can::Frame as _;
 use holdover::Reception;
 use holdover::health::Cause;
-use holdover::wire::catalogue::{self, OnFd};
-use holdover::wire::{BaseId, Transport};
+use holdover::wire::catalogue::{self, Line, OnFd};
+use holdover::wire::{Identifiers, MessageName, Transport};
 
 use crate::bus::Frame;
 
 /// The counts. Every frame is either recognised, refused or ignored.
 #[derive(Clone, Debug)]
 pub struct Tally {
-    base: BaseId,
+    identifiers: Identifiers,
     transport: Transport,
+    /// By offset in the catalogue.
     recognised: BTreeMap<u16, u64>,
     refused: [u64; Cause::ALL.len()],
     ignored: u64,
@@ -22,11 +23,18 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Counts of 0, on a bus whose catalogue starts at `base`.
+    /// Counts of 0, on a bus with these identifiers.
     #[must_use]
-    pub fn new(base: BaseId) -> Self {
+    pub fn new(identifiers: Identifiers) -> Self {
         let transport = Transport::Classic;
-        Self { base, transport, recognised: BTreeMap::new(), refused: [0; Cause::ALL.len()], ignored: 0, ticks: 0 }
+        Self {
+            identifiers,
+            transport,
+            recognised: BTreeMap::new(),
+            refused: [0; Cause::ALL.len()],
+            ignored: 0,
+            ticks: 0,
+        }
     }
 
     /// The same on a bus with these frames.
@@ -37,9 +45,9 @@ impl Tally {
 
     /// Counts a frame that the unit received.
     pub fn count(&mut self, frame: &Frame, reception: Result<Reception, Cause>) {
-        match (reception, frame.id()) {
-            (Ok(Reception::Pending | Reception::Taken), Id::Standard(id)) => {
-                *self.recognised.entry(id.as_raw()).or_default() += 1;
+        match (reception, self.identifiers.offset_of(frame.id().into())) {
+            (Ok(Reception::Pending | Reception::Taken), Some(offset)) => {
+                *self.recognised.entry(offset).or_default() += 1;
             }
             (Ok(_), _) => self.ignored += 1,
             (Err(cause), _) => self.refused[cause as usize] += 1,
@@ -62,10 +70,10 @@ impl Tally {
         self.recognised.values().sum::<u64>() + self.refused.iter().sum::<u64>() + self.ignored
     }
 
-    /// Good frames of each message, by its name in the DBC, in the order of the identifiers.
+    /// Good frames of each message, by its name in the DBC, in the order of the catalogue.
     #[must_use]
     pub fn recognised(&self) -> Vec<(String, u64)> {
-        self.recognised.iter().map(|(id, count)| (self.name(*id), *count)).collect()
+        self.recognised.iter().map(|(offset, count)| (self.name(*offset), *count)).collect()
     }
 
     /// Refused frames by cause, without causes that did not occur.
@@ -87,16 +95,12 @@ impl Tally {
         self.ticks
     }
 
-    fn name(&self, id: u16) -> String {
-        match self.base.offset_of(id).and_then(catalogue::find) {
-            Some((_, line, slot)) => {
-                let name = match (self.transport, line.on_fd) {
-                    (Transport::Fd, OnFd::Frame(name)) => name,
-                    _ => line.name,
-                };
+    fn name(&self, offset: u16) -> String {
+        match catalogue::find(offset) {
+            Some((_, Line { on_fd: OnFd::Frame(name), .. }, slot)) if self.transport == Transport::Fd => {
                 name.replace("{slot}", &slot.0.to_string())
             }
-            None => format!("{id:#05x}"),
+            _ => MessageName::at(offset).to_string(),
         }
     }
 }

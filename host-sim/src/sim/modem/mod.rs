@@ -23,7 +23,7 @@
 use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::fd::State;
 use holdover::wire::route::Route;
-use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash, Transport};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash, Transport};
 
 mod front;
 mod relevance;
@@ -127,12 +127,12 @@ pub struct Relay {
 }
 
 impl Relay {
-    /// A modem on a bus whose catalogue starts at `base`.
+    /// A modem on a bus with these identifiers.
     #[must_use]
-    pub fn new(base: BaseId) -> Self {
+    pub fn new(identifiers: Identifiers) -> Self {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
         let (left, is_begun) = (vec![None; PEERS], vec![false; PEERS]);
-        let (sender, course) = (Sender::new(base), Course::default());
+        let (sender, course) = (Sender::new(identifiers), Course::default());
         Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
     }
 

@@ -52,8 +52,8 @@ struct Unit {
 
 impl Unit {
     fn new() -> Self {
-        let base = BaseId::DEFAULT;
-        let mut unit = Self { relay: Relay::new(base), receiver: Receiver::new(base, Role::Unit) };
+        let identifiers = Identifiers::DEFAULT;
+        let mut unit = Self { relay: Relay::new(identifiers), receiver: Receiver::new(identifiers, Role::Unit) };
         // The receiver trusts an identifier from its second frame on.
         for station in 1..=PEERS as u8 {
             unit.hear(-10.0, &message(station, Some(parameters(1))));
@@ -106,7 +106,7 @@ fn the_station_silent_for_longest_makes_room_when_it_has_been_for_two_seconds() 
 
 #[test]
 fn whom_the_driver_told_it_to_follow_has_a_slot_kept_while_the_unit_names_nobody() {
-    let mut relay = Relay::new(BaseId::DEFAULT);
+    let mut relay = Relay::new(Identifiers::DEFAULT);
     relay.set_out(Course::behind(StationHash(99)));
     relay.take(&Said::DrivingParameters(DrivingParameters { predecessor: Predecessor::Unknown, ..parameters(1) }));
     for station in (1..=PEERS as u8).chain([99]) {

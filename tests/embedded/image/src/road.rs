@@ -13,7 +13,7 @@ use holdover::wire::fd::State;
 use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
-use holdover::wire::{BaseId, Frame, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 
 /// The ego's station; a peer's is the number of its slot.
 pub const EGO: StationHash = StationHash(100);
@@ -34,7 +34,7 @@ pub struct Road {
 impl Road {
     /// With so many peers, up to 8.
     pub fn new(peers: u8) -> Self {
-        let sender = Sender::new(BaseId::DEFAULT);
+        let sender = Sender::new(Identifiers::DEFAULT);
         #[cfg(feature = "fd")]
         let sender = sender.over(Transport::Fd);
         Self { peers, sender, tag: 0, sequence: 0 }

@@ -12,7 +12,7 @@ use std::{env, fs};
 use embedded_can::{Frame as _, Id};
 use holdover::OnboardUnit;
 use holdover::time::{Duration, Instant};
-use holdover::wire::BaseId;
+use holdover::wire::Identifiers;
 use holdover::wire::catalogue::{self, Content, Node, Speaker};
 use holdover_replay::{Event, Frame, RECORD, config, decode, encode, live, refusals};
 use holdover_sim::bus::Bus;
@@ -97,8 +97,7 @@ fn is_silenced(at_s: f64, id: &Id) -> bool {
 }
 
 fn line(id: &Id) -> Option<&'static catalogue::Line> {
-    let Id::Standard(id) = id else { return None };
-    let (_, line, _) = catalogue::find(BaseId::DEFAULT.offset_of(id.as_raw())?)?;
+    let (_, line, _) = catalogue::find(Identifiers::DEFAULT.offset_of((*id).into())?)?;
     Some(line)
 }
 

@@ -126,9 +126,8 @@ pub fn live<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         }
         Event::Tick => {
             for sent in &unit.tick(at).frames {
-                let id = StandardId::new(sent.id).map_or(Id::Standard(StandardId::ZERO), Id::Standard);
                 if let Ok(data) = sent.data[..].try_into() {
-                    emit(encode(at, &Event::Frame(Frame { id, length: 8, data })));
+                    emit(encode(at, &Event::Frame(Frame { id: sent.id.into(), length: 8, data })));
                 }
             }
         }

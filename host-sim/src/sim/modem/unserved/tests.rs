@@ -6,7 +6,7 @@ use holdover::time::Stamp;
 use holdover::units::{Acceleration, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
-use holdover::wire::{BaseId, Predecessor, Said, StationHash};
+use holdover::wire::{Identifiers, Predecessor, Said, StationHash};
 
 /// The unit's own number, leg, distance to the crossing point, and arrival.
 const OWN: (u8, u8, i32, u32) = (1, 0, 100, 1_000);
@@ -41,7 +41,7 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
 /// A modem with this many slots, one of them in reserve, that has heard those stations for a second. Each station has
 /// its number, leg, distance to the crossing point and arrival.
 fn heard(slots: usize, stations: &[(u8, u8, i32, u32)]) -> Relay {
-    let mut relay = Relay::new(BaseId::DEFAULT);
+    let mut relay = Relay::new(Identifiers::DEFAULT);
     relay.limit(slots);
     relay.set_out(Course::through(vec![Ahead { id: 5, leg: 0, crossed: 0b10, at_m: 200.0 }]));
     relay.take(&Said::Route(route(OWN)));
@@ -92,7 +92,7 @@ fn the_nearest_one_ahead_without_a_slot_is_told_by_its_rear_bumper() {
 
 #[test]
 fn off_the_route_there_is_nothing_to_tell() {
-    assert_eq!(Relay::new(BaseId::DEFAULT).unserved(1.0), None);
+    assert_eq!(Relay::new(Identifiers::DEFAULT).unserved(1.0), None);
 }
 
 #[test]
