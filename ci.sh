@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test study cross firmware vcan c package)
+steps=(fmt lint doc test dbc study cross firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -21,6 +21,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   lint      no warning of the compiler or of clippy; unsafe code only in src/board/, at the edge of holdover-c and in tests/embedded/
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
+  dbc       the DBC files as cantools and canmatrix read them: without a warning, and the same as DBC, KCD, SYM and ARXML
   study     the verdicts of the case study: the four intersections for ten minutes, and the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
@@ -69,6 +70,14 @@ step_doc() {
 
 step_test() {
     cargo test --locked --workspace --profile checked --no-fail-fast
+}
+
+step_dbc() {
+    source scripts/need.sh
+    local python=${CARGO_TARGET_DIR:-target}/python
+    mkdir -p "$python"
+    need_python "$python" scripts/dbc-requirements.txt
+    "$python/bin/python" scripts/dbc_check.py holdover.dbc holdover-fd.dbc
 }
 
 step_study() {

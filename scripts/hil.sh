@@ -163,16 +163,10 @@ check_r5() {
 
 check_node() {
     need qemu-system-arm qemu-system-arm
-    need python3 python3
     local target=thumbv7em-none-eabihf python=$work/python
     local node=("$python/bin/python" examples/first-node/first_node.py)
-    # Debian's python3 has venv in a package of its own.
-    python3 -c 'import ensurepip' 2>/dev/null || as_root apt-get install -y --no-install-recommends python3-venv ||
-        skip "this Python makes no environments; remedy: apt-get install python3-venv"
     # The guest of user-mode Linux runs on the machine's own files, and so with this environment.
-    { [ -x "$python/bin/pip" ] || python3 -m venv "$python"; } &&
-        "$python/bin/pip" install --quiet --disable-pip-version-check -r examples/first-node/requirements.txt ||
-        skip "python-can, cantools and autosar-e2e cannot be had from PyPI"
+    need_python "$python" examples/first-node/requirements.txt
     images $target
     echo "-- the first node and a process of Linux"
     conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 & "$@"; code=$?; kill $!; exit $code' \

@@ -17,3 +17,14 @@ need() {
     { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
         apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
 }
+
+# need_python FOLDER REQUIREMENTS: an environment of Python in that folder with these packages of PyPI.
+need_python() {
+    need python3 python3
+    # Debian's python3 has venv in a package of its own.
+    python3 -c 'import ensurepip' 2>/dev/null || as_root apt-get install -y --no-install-recommends python3-venv ||
+        skip "this Python makes no environments; remedy: apt-get install python3-venv"
+    { [ -x "$1/bin/pip" ] || python3 -m venv "$1"; } &&
+        "$1/bin/pip" install --quiet --disable-pip-version-check -r "$2" ||
+        skip "the packages in $2 cannot be had from PyPI"
+}
