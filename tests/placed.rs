@@ -3,7 +3,6 @@
 
 #[allow(dead_code)] // shared with the tests of the messages
 mod messages;
-#[allow(dead_code)] // of it the ways through a junction
 mod rig;
 mod traffic;
 
@@ -238,7 +237,8 @@ fn two_messages_on_one_identifier_are_refused_by_their_names() {
 #[test]
 fn slots_beyond_the_bits_are_refused_by_the_name_of_their_message() {
     let check = |first, stride| BLOCK.place_peers(About::Horizon, first, stride).check();
-    let beyond = Err(IdentifierError::Range(MessageName::at(0x42)));
+    let error = IdentifierError::Range(MessageName::at(0x42));
+    let beyond = Err(error);
     let standard = |number| Identifier::standard(number).unwrap();
     assert_eq!(check(standard(0x7FF - 15), 1), Ok(()));
     assert_eq!(check(standard(0x7FF - 14), 1), beyond);
@@ -249,5 +249,5 @@ fn slots_beyond_the_bits_are_refused_by_the_name_of_their_message() {
     for stride in [u32::MAX, u32::MAX / 15, 1 << 31, 1 << 29] {
         assert_eq!(check(extended(0), stride), beyond, "{stride:#x}");
     }
-    assert!(beyond.unwrap_err().to_string().contains("Peer0Horizon"));
+    assert!(error.to_string().contains("Peer0Horizon"));
 }
