@@ -1,7 +1,8 @@
 """dbc_check.py FILE...: the DBC files as other tools read them.
 
 cantools reads each file strictly. canmatrix turns it into a DBC, a KCD, a SYM and an ARXML file, and each of these, read back, has
-the same identifiers, lengths and signals, as far as canmatrix keeps them in that format. A warning of either tool is a failure. Exit code: 0 all is the same, 1 something is not.
+the same identifiers, lengths and signals, as far as canmatrix keeps them in that format. A warning of either tool is a failure.
+Exit code: 0 all is the same, 1 something is not.
 """
 
 import logging

@@ -122,7 +122,7 @@ impl Envelope {
 pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
-    /// First CAN identifier of the catalogue.
+    /// Where each message of the catalogue lies on the bus.
     pub identifiers: Identifiers,
     /// Which frames the bus carries.
     pub transport: Transport,

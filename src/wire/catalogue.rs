@@ -2,8 +2,8 @@
 //! identifier enters and its line leaves; receiver, sender, DBC and bus load all read the one table.
 //!
 //! Identifiers are `base + offset` unless [`super::Identifiers`] places them elsewhere; the low ones win the bus. Peers have
-//! [`SLOT_STRIDE`] offsets a slot. The E2E data id is [`DATA_ID_BASE`] `+ offset`, whatever the base: within the block all data ids differ in the low byte, over
-//! which the CRC is one to one, so a frame that strays to another identifier of the block never passes.
+//! [`SLOT_STRIDE`] offsets a slot. The E2E data id is [`DATA_ID_BASE`] `+ offset`, wherever a line lies. All data ids differ in the
+//! low byte, over which the CRC of classic CAN is one to one, so a frame that strays to another line's identifier never passes.
 
 use super::Slot;
 use super::e2e::Limits;

@@ -15,7 +15,7 @@ use crate::error::Error;
 pub struct IdentifierArguments {
     /// First CAN identifier of the catalogue, such as 0x480 [default: 0x480]
     #[arg(long, value_name = "ID", value_parser = number)]
-    pub base_id: Option<u16>,
+    pub base_id: Option<u32>,
 
     /// Place a message outside the block, such as MotionCommand=0x123, or MotionCommand=0x0CFF0210 with 29 bits, as each number
     /// above 0x7FF has and each that ends with an x; a peer's with the distance between slots, such as
@@ -47,17 +47,17 @@ impl IdentifierArguments {
 }
 
 /// A number, decimal or hexadecimal as 0x480.
-fn number(text: &str) -> Result<u16, ParseIntError> {
+fn number(text: &str) -> Result<u32, ParseIntError> {
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u16::from_str_radix(digits, 16),
+        Some(digits) => u32::from_str_radix(digits, 16),
         None => text.parse(),
     }
 }
 
 /// The base with this identifier; the default one where none is given.
-fn base(id: Option<u16>) -> Result<BaseId, Error> {
+fn base(id: Option<u32>) -> Result<BaseId, Error> {
     let Some(id) = id else { return Ok(BaseId::DEFAULT) };
-    BaseId::new(id).ok_or_else(|| {
+    u16::try_from(id).ok().and_then(BaseId::new).ok_or_else(|| {
         let remedy = format!("give one up to {:#x}, so that the messages fit into 11 bits", BaseId::MAX);
         Error::new(format!("the first identifier is {id:#x}"), remedy).in_option("--base-id")
     })
@@ -92,7 +92,7 @@ fn place(identifiers: Identifiers, text: &str) -> Result<Identifiers, Error> {
     let id = identifier(id).ok_or_else(|| wrong(id))?;
     match (line.content, stride) {
         (Content::Said(_, about), Some(stride)) if line.is_per_slot() => {
-            let stride = whole(stride).ok_or_else(|| {
+            let stride = number(stride).map_err(|_| {
                 Error::new(
                     format!("`{stride}` is no distance between slots"),
                     "give a number of identifiers, such as 0x100",
@@ -126,17 +126,10 @@ fn is_called(line: &Line, name: &str) -> bool {
 /// An identifier; one of 29 bits is above 0x7FF or ends with an x.
 fn identifier(text: &str) -> Option<Identifier> {
     if let Some(extended) = text.strip_suffix(['x', 'X']) {
-        return Identifier::extended(whole(extended)?);
+        return Identifier::extended(number(extended).ok()?);
     }
-    let number = whole(text)?;
+    let number = number(text).ok()?;
     u16::try_from(number).ok().and_then(Identifier::standard).or_else(|| Identifier::extended(number))
-}
-
-fn whole(text: &str) -> Option<u32> {
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u32::from_str_radix(digits, 16).ok(),
-        None => text.parse().ok(),
-    }
 }
 
 #[cfg(test)]
@@ -155,10 +148,10 @@ mod tests {
             assert_eq!(base(Some(number(text).unwrap())).unwrap().get(), id);
         }
         assert_eq!(base(None).unwrap(), BaseId::DEFAULT);
-        for text in ["0x741", "1857", "65535"] {
+        for text in ["0x741", "1857", "65535", "65536"] {
             assert!(base(Some(number(text).unwrap())).is_err(), "{text}");
         }
-        for text in ["", "x", "-1", "65536", "0x", "480h"] {
+        for text in ["", "x", "-1", "4294967296", "0x", "480h"] {
             assert!(number(text).is_err(), "{text}");
         }
     }
