@@ -3,6 +3,7 @@
 
 mod rig;
 
+use holdover::controller::Mode;
 use holdover::health::Cause;
 use holdover::wire::{Message, Said, Slot};
 use rig::plant::Body;
@@ -71,4 +72,27 @@ fn a_motion_of_the_same_name_in_another_slot_and_the_same_place_is_a_conflict() 
     let mut same = road.target;
     let verdicts = drive(&mut road, &mut same, 1.0);
     assert!(verdicts.iter().all(|verdict| *verdict == Err(Cause::StationConflict)), "{verdicts:?}");
+}
+
+#[test]
+fn a_late_motion_in_another_slot_is_of_the_target_that_the_range_sensor_sees() {
+    const LATE: i64 = 150_000; // µs; the target drives 2.25 m in this time, and the sensor says where it is to within less
+    let mut road = Road::new(&rig::config(), 15.0, 25.0);
+    road.senses.range = true;
+    road.power_up();
+    road.run(2.0);
+    road.senses.v2x = false;
+    road.run(3.0);
+    let mut heard = road.step();
+    for period in 0..200 {
+        if period % 10 == 0 {
+            let (now, then) = (road.now, road.now - LATE);
+            let position = road.target.position - 15.0 * LATE as f64 / 1e6;
+            let motion = road.rig.motion(TARGET, then, position, road.target.speed, 0.0, 0.0, Some((0.05, 0.02)));
+            let _ = road.rig.put(now, &Message::Peer(OTHER, Said::Motion(motion)));
+        }
+        heard = road.step();
+    }
+    assert_eq!(heard.answer.mode, Mode::Cooperative);
+    assert_eq!(road.rig.unit.peers().get(2).expect("a slot").station(), None, "the slot that it left is free");
 }

@@ -194,6 +194,14 @@ impl Bound {
         (near.position <= far.position && near.speed <= far.speed).then_some(Self { at, near, far })
     }
 
+    /// Whether no vehicle can be in both bounds, by its position at the later instant.
+    #[must_use]
+    pub fn is_apart_from(&self, other: &Self, reach: &AccelerationRange) -> bool {
+        let at = self.at.max(other.at);
+        let (a, b) = (self.after(at, reach), other.after(at, reach));
+        a.near.position.max(b.near.position) > a.far.position.min(b.far.position)
+    }
+
     /// The lowest position, rounded down.
     #[must_use]
     pub const fn lowest_position(&self) -> Position {

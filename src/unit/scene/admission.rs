@@ -218,13 +218,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if approach.zip(held).is_some_and(is_by_another_leg) {
             return true;
         }
-        let bound =
-            self.peers.get(other).and_then(|track| Some(track.certainty().bound()?.after(sample.at, &track.reach())));
-        bound.is_some_and(|bound| {
-            let off = sample.position_error();
-            sample.position.ahead(off) < bound.lowest_position()
-                || sample.position.ahead(off.negated()) > bound.highest_position()
-        })
+        let Some(track) = self.peers.get(other) else { return false };
+        let uncertainty = uncertainty(sample, self.is_synchronised(sample.received), &self.config.link, Off::No);
+        let around = track.around(sample.at, sample.position, sample.speed, &uncertainty);
+        // The range sensor may have narrowed what is held to an instant later than the sample's.
+        track.certainty().bound().is_some_and(|bound| bound.is_apart_from(&around, &track.reach()))
     }
 
     /// A motion on the ego's axis.

@@ -66,10 +66,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let Named::Displaced(mut displaced) = self.named else { return };
         let held = displaced.bound.after(now, &displaced.reach);
         for index in self.peers.named(displaced.station) {
-            let is_another = |bound: Bound| {
-                bound.highest_position() < held.lowest_position() || bound.lowest_position() > held.highest_position()
-            };
-            if self.bound(index, now).is_some_and(is_another) {
+            if self.bound(index, now).is_some_and(|bound| bound.is_apart_from(&held, &displaced.reach)) {
                 displaced.others.set(index, true);
             }
         }
