@@ -139,13 +139,8 @@ impl<'a> World<'a> {
         mut beside: impl FnMut(&Self, f64, &mut Trace) -> io::Result<()>,
         mut progress: impl FnMut(f64),
     ) -> io::Result<Trace> {
+        self.warm_up()?;
         let period_s = self.scenario.period_s;
-        for tick in (1..=self.warm_up_ticks(WARM_UP_S)).rev() {
-            let at_s = -f64::from(tick) * period_s;
-            self.approach(at_s)?;
-            self.answer(at_s)?;
-        }
-        self.begin();
         let ticks = self.ticks();
         let mut trace = self.trace();
         for tick in 0..ticks {
@@ -206,6 +201,20 @@ impl<'a> World<'a> {
             log: Vec::new(),
             turned_away: 0,
         }
+    }
+
+    /// The ticks before the run, and its beginning.
+    ///
+    /// # Errors
+    /// Errors of the buses.
+    pub fn warm_up(&mut self) -> io::Result<()> {
+        for tick in (1..=self.warm_up_ticks(WARM_UP_S)).rev() {
+            let at_s = -f64::from(tick) * self.scenario.period_s;
+            self.approach(at_s)?;
+            self.answer(at_s)?;
+        }
+        self.begin();
+        Ok(())
     }
 
     /// A tick before the run. As in every real vehicle, the unit is powered and ticks, and its time base and sensors

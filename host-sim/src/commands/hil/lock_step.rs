@@ -31,10 +31,8 @@ use crate::measure::paper_beside::PaperBeside;
 use crate::sim::stages::Stages;
 use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::vehicle::Unit;
-use crate::sim::world::World;
+use crate::sim::world::{WARM_UP_S, World};
 
-/// Time for which the world sends before the run, in seconds.
-const WARM_UP_S: f64 = 1.0;
 /// Longest time of an answer.
 const PATIENCE: Duration = Duration::from_millis(2000);
 /// Time between two pairs of `Sync` and `FollowUp` while no device has answered.

@@ -15,7 +15,7 @@ use crate::measure::baseline::{self, Baseline, Estimate};
 use crate::measure::heard::Heard;
 use crate::measure::observer::Tap;
 use crate::sim::stages::Stages;
-use crate::sim::world::{Measured, Trace, WARM_UP_S, World};
+use crate::sim::world::{Measured, Trace, World};
 
 /// Number of methods: the unit and the baselines.
 pub const METHODS: usize = 8;
@@ -52,12 +52,7 @@ fn listen(scenario: &Scenario, mut world: World<'_>, from_s: f64) -> io::Result<
     let mut tap = Tap::of(&world);
     let mut baselines = baseline::all(target, scenario.step_s);
     baselines.push(Box::new(Consensus::new(target)));
-    for tick in (1..=world.warm_up_ticks(WARM_UP_S)).rev() {
-        let at_s = -f64::from(tick) * scenario.period_s;
-        world.approach(at_s)?;
-        world.answer(at_s)?;
-    }
-    world.begin();
+    world.warm_up()?;
     let mut trace = world.trace();
     let mut errors = Vec::new();
     for tick in 0..world.ticks() {
