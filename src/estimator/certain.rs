@@ -71,10 +71,7 @@ pub(super) fn is_reachable(
         if at < bound.at() {
             return true; // the bound says nothing of what was before it
         }
-        let (then, position) = (bound.after(at, reach), sample.position.ahead(knot.displacement));
-        position.ahead(REBUILT) >= then.lowest_position()
-            && position.ahead(REBUILT.negated()) <= then.highest_position()
-            && knot.speed.plus(REBUILT_SPEED) >= then.lowest_speed()
-            && knot.speed.minus(REBUILT_SPEED) <= then.highest_speed()
+        let position = sample.position.ahead(knot.displacement);
+        bound.after(at, reach).comes_near(position, REBUILT, knot.speed, REBUILT_SPEED)
     })
 }

@@ -202,6 +202,19 @@ impl Bound {
         a.near.position.max(b.near.position) > a.far.position.min(b.far.position)
     }
 
+    /// Whether a vehicle in the bound can be so near to this position, and its speed to this one. Both are compared in the bound's own
+    /// units, to the outer side, which takes no division.
+    #[must_use]
+    pub fn comes_near(&self, position: Position, within: Distance, speed: Speed, within_speed: Speed) -> bool {
+        let (behind, ahead) = micro_position(position);
+        let (slower, faster) = (micro_down_64(speed.to_bits().into(), 23), micro_up(speed.to_bits(), 23));
+        let (way, change) = (micro_up(within.to_bits(), 20), micro_up(within_speed.to_bits(), 23));
+        ahead.saturating_add(way) >= self.near.position
+            && behind.saturating_sub(way) <= self.far.position
+            && faster.saturating_add(change) >= self.near.speed
+            && slower.saturating_sub(change) <= self.far.speed
+    }
+
     /// The lowest position, rounded down.
     #[must_use]
     pub const fn lowest_position(&self) -> Position {

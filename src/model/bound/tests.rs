@@ -238,3 +238,40 @@ fn a_position_stays_inside_its_bound_however_far_the_unit_has_driven() {
         assert!(behind.max(ahead) <= Distance::from_bits(2), "{km} km: {behind:?} {ahead:?}");
     }
 }
+
+#[test]
+fn a_place_and_a_speed_come_near_a_bound_to_within_what_is_allowed_and_two_micrometres() {
+    let wide = Uncertainty { position: Distance::from_mm(50), speed: Speed::from_mm_per_s(30), ..EXACT };
+    let bound = around(10_000, 15_000, &wide);
+    let is_near = |mm: f64, mm_per_s: f64| {
+        let position = Position::from_bits((mm * 1e-3 * f64::from(1 << 20)).round() as i64);
+        let speed = Speed::from_bits((mm_per_s * 1e-3 * f64::from(1 << 23)).round() as i32);
+        bound.comes_near(position, Distance::from_mm(10), speed, Speed::from_mm_per_s(5))
+    };
+    for side in [-1.0, 1.0] {
+        assert!(is_near(10_000.0 + side * 59.999, 15_000.0 + side * 34.999));
+        assert!(!is_near(10_000.0 + side * 60.004, 15_000.0) && !is_near(10_000.0, 15_000.0 + side * 35.004));
+    }
+}
+
+#[test]
+fn two_bounds_are_apart_by_position_alone_and_at_the_later_instant() {
+    let narrow = Uncertainty { position: Distance::from_mm(100), ..EXACT };
+    let is_apart = |mm: i64, micros: i64, mm_per_s: i32| {
+        let (position, speed) = (Position::from_mm(mm), Speed::from_mm_per_s(mm_per_s));
+        let other = Bound::around(later(micros), position, speed, &narrow, &REACH);
+        let here = around(10_000, 15_000, &narrow);
+        assert_eq!(here.is_apart_from(&other, &REACH), other.is_apart_from(&here, &REACH));
+        here.is_apart_from(&other, &REACH)
+    };
+    // At the same instant they touch 0.2 m apart, whatever their speeds.
+    for side in [-1, 1] {
+        assert!(!is_apart(10_000 + side * 199, 0, 0) && is_apart(10_000 + side * 201, 0, 15_000));
+    }
+    // At 15 m/s a vehicle is 1.5 m farther on after 0.1 s, and was 1.5 m farther back before; the limits add 12.5 and 40 mm.
+    for micros in [-100_000, 100_000] {
+        let there = 10_000 + micros * 15 / 1_000;
+        assert!(!is_apart(there, micros, 15_000));
+        assert!(is_apart(there + 245, micros, 15_000) && is_apart(there - 245, micros, 15_000), "{micros}");
+    }
+}
