@@ -3,7 +3,8 @@
 #
 #   kernel   vcan.sh gives a command a vcan0, and keeps what it says of exit code, output and time
 #   tests    the simulator's tests that need a SocketCAN interface
-#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time, over classic CAN and CAN FD
+#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time, over classic CAN, over CAN FD, and
+#            with identifiers of 29 bits
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
 #   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
 #   node     the first node, a Python program that knows the DBC alone, against the process, over classic CAN and CAN FD, and the
@@ -126,14 +127,22 @@ conclude() {
 }
 
 check_ecu() {
-    local fd
-    for fd in '' --fd; do
-        echo "-- a process of Linux, real time${fd:+, CAN FD}"
-        judge vcan0 $fd
-        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $fd"
-        echo "-- a process of Linux, lock step${fd:+, CAN FD}"
-        judge vcan0 --lock-step $fd
-        scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step $fd"
+    local options bus
+    # As in a vehicle whose bus has identifiers of 29 bits: what is not said here stays in the block.
+    printf '%s\n' MotionCommand=0x0CFF0210 EgoMotionA=0x0CFF0321 EgoMotionB=0x0CFF0421 PeerMotionA=0x18FF4021/0x100 \
+        PeerMotionB=0x18FF5021/0x100 DriverRequest=0x123 >"$work/identifiers"
+    for options in '' --fd "--identifiers '$work/identifiers'"; do
+        case $options in
+        '') bus= ;;
+        --fd) bus=', CAN FD' ;;
+        *) bus=', identifiers of 11 and 29 bits, placed one by one' ;;
+        esac
+        echo "-- a process of Linux, real time$bus"
+        eval "judge vcan0 $options"
+        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $options"
+        echo "-- a process of Linux, lock step$bus"
+        eval "judge vcan0 --lock-step $options"
+        scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step $options"
     done
 }
 

@@ -3,7 +3,8 @@
 use embedded_can::{Frame as _, Id};
 use holdover::Config;
 use holdover::time::Duration;
-use holdover::wire::{StationHash, Transport, e2e};
+use holdover::wire::catalogue::{About, Content, Speaker};
+use holdover::wire::{BaseId, Identifier, Identifiers, StationHash, Transport, e2e};
 use holdover_sim::bus::{Frame, Port};
 use holdover_sim::commands::hil::judge::{LATENCY_P99_MS, Results, judge};
 use holdover_sim::commands::hil::lock_step;
@@ -95,6 +96,31 @@ fn over_can_fd_faults_of_the_bus_are_played_and_a_device_of_the_other_bus_is_fou
     }
     let results = run(&setup(SHORT_FD, &[]), |behaviour| behaviour.config.transport = Transport::Classic);
     assert_eq!(results.verdict, "failed");
+}
+
+#[test]
+fn on_other_identifiers_of_11_and_29_bits_a_good_device_passes_and_says_what_its_twin_says() {
+    let extended = |number| Identifier::extended(number).unwrap();
+    let block = Identifiers::block(BaseId::new(0x300).unwrap());
+    let motion = Content::Said(Speaker::Ego, About::MotionA);
+    let placed = Identifiers::DEFAULT
+        .place(Content::Command, extended(0x0CFF_0210))
+        .and_then(|placed| placed.place(Content::DriverRequest, Identifier::standard(0x123)?))
+        .and_then(|placed| placed.place(motion, extended(0x0CFF_0321)))
+        .map(|placed| placed.place_peers(About::MotionA, extended(0x18FF_4021), 0x100))
+        .unwrap();
+    for identifiers in [block, placed] {
+        let mut setup = setup(SHORT, &[]);
+        setup.scenario.identifiers = identifiers;
+        setup.config = world::config(&setup.scenario, setup.scenario.ego);
+        for results in [step(&setup, |_| {}), run(&setup, |_| {})] {
+            assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
+            assert!(results.device.modes["cooperative"] > 300, "{:?}", results.device.modes);
+        }
+        // A device that listens to the block of the default does not drive.
+        let results = run(&setup, |behaviour| behaviour.config.identifiers = Identifiers::DEFAULT);
+        assert_eq!(results.verdict, "failed");
+    }
 }
 
 #[test]

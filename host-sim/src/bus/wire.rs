@@ -204,7 +204,7 @@ mod tests {
             [12, 16, 64].into_iter().flat_map(|length| [0, 0xFF, 0x3C, 0x0F].map(|fill| (length, fill)))
         {
             let frame = Frame::fd(StandardId::ZERO, 5, &[fill; 64][..length]).unwrap();
-            let worst = holdover::wire::load::fd::worst_nanos(500_000, 2_000_000, length);
+            let worst = holdover::wire::load::fd::worst_nanos(500_000, 2_000_000, false, length);
             let took = super::length(&frame).plus(super::micros(INTERMISSION_BITS)).as_micros();
             assert!(took <= i64::from(worst.div_ceil(1_000)), "{length} {fill}: {took} us of {worst} ns");
         }

@@ -20,7 +20,7 @@ use crate::input::impairment::ChannelModel;
 use crate::input::kind::{Difference, Kind};
 use crate::input::library;
 use crate::input::recording::Motion;
-use holdover::wire::Transport;
+use holdover::wire::{Identifiers, Transport};
 use std::path::{Path, PathBuf};
 
 /// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the nearest eight.
@@ -53,6 +53,8 @@ pub struct Scenario {
     pub envelope: Envelope,
     /// The frames on every vehicle's own bus.
     pub transport: Transport,
+    /// Their identifiers. A scenario's file does not tell them; a device under test may have its own.
+    pub identifiers: Identifiers,
 }
 
 /// The motion of the leader.

@@ -94,7 +94,7 @@ impl Tap {
     pub fn of(world: &World<'_>) -> Self {
         let measured = world.measured();
         let by = &world.vehicles()[measured.by];
-        let observer = Observer::new(Identifiers::DEFAULT).over(by.unit.config().transport);
+        let observer = Observer::new(by.unit.config().identifiers).over(by.unit.config().transport);
         Self { measured, node: by.listen(), observer }
     }
 

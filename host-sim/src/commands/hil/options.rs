@@ -40,7 +40,7 @@ impl HilOptions {
             return Err(error.in_option("--vehicle"));
         }
         let config = unit(&scenario, &arguments.unit)?;
-        let scenario = Scenario { transport: config.transport, ..scenario };
+        let scenario = Scenario { transport: config.transport, identifiers: config.identifiers, ..scenario };
         if config.period != duration(scenario.period_s) {
             let cause = format!("`period_s` is {}, and the device ticks every 0.01 s", scenario.period_s);
             let error = Error::new(cause, "set it to 0.01 for a device with the firmware");

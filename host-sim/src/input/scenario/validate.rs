@@ -6,6 +6,7 @@ use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, bus
 use crate::error::{Error, quoted};
 use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::input::recording::{ChannelTrace, Motion};
+use holdover::wire::Identifiers;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use toml::de::DeValue;
@@ -80,6 +81,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
         channel,
         envelope,
         transport,
+        identifiers: Identifiers::DEFAULT,
     })
 }
 

@@ -23,6 +23,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     let vehicle = &scenario.vehicles[index];
     let mut config = Config::car(station(index));
     config.transport = scenario.transport;
+    config.identifiers = scenario.identifiers;
     config.period = duration(scenario.period_s);
     config.length = distance(vehicle.length_m);
     config.lag = fine_seconds(vehicle.lag_s);
