@@ -28,7 +28,9 @@ pub fn draw(family: Family, seed: u64) -> Scenario {
         Family::Crossing => crate::crossing::draw(&mut scenario, &mut random),
     }
     if family != Family::Crossing && random.chance(0.25) {
-        scenario.event.push(Event { at: scenario.length, what: What::Well });
+        let length = scenario.length;
+        scenario.event.retain(|event| event.at < length); // nothing happens after all is well
+        scenario.event.push(Event { at: length, what: What::Well });
         scenario.length += 26.0;
     }
     scenario.event.sort_by(|a, b| a.at.total_cmp(&b.at));

@@ -16,11 +16,17 @@ const REACH: f64 = 1_400.0;
 /// How much faster than wanted it may get, as a factor and m/s: what is wanted is a cap.
 pub const HURRY: (f64, f64) = (1.0, 1.0);
 /// How long a request of before counts, s.
-const WISHED: f64 = 15.0;
+pub const WISHED: f64 = 15.0;
+
+/// How long the unit may be in another mode at the end: a sample that is told with the largest error may be refused for that long, s.
+const LAPSE: f64 = 1.0;
 
 /// The checks after every tick.
 pub fn judge(world: &mut World, now: f64) {
     world.outcome.ticks += 1;
+    if world.ego.said.mode == 1 {
+        world.cooperative = now;
+    }
     collision(world, now);
     bound(world, now);
     hurry(world, now);
@@ -123,7 +129,7 @@ pub fn end(world: &mut World, at: f64) {
     let gap = world.nearest().map_or(f64::NAN, |nearest| nearest.rear() - world.ego.body.position);
     // The station that the driver names can be followed if it is the vehicle ahead and within reach.
     let is_there = world.nearest().is_some_and(|nearest| nearest.station == world.followed) && gap < 1_400.0;
-    if speed < 2.0 || is_there && mode != 1 {
+    if speed < 2.0 || is_there && at - world.cooperative > LAPSE {
         let told = world.ego.said.told.map_or(f64::NAN, |told| told.behind);
         world.outcome.find(Fault::Deadlock, at, at - since, || {
             format!(

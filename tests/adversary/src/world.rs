@@ -54,6 +54,8 @@ pub struct World<'a> {
     pub(crate) wanted_before: (f64, f64),
     /// The findings.
     pub outcome: Outcome,
+    /// The last time at which the unit drove cooperatively.
+    pub cooperative: f64,
     /// Time since which no fault is injected; `None` while faults may be injected.
     pub well: Option<f64>,
     engaged: bool,
@@ -94,6 +96,7 @@ impl<'a> World<'a> {
             wanted: scenario.ego.wanted,
             wanted_before: (scenario.ego.wanted.max(scenario.ego.speed), 0.0),
             outcome: Outcome::default(),
+            cooperative: f64::NEG_INFINITY,
             well: None,
             engaged: false,
             follow: scenario.follow,
@@ -200,7 +203,10 @@ impl<'a> World<'a> {
         if tick % 10 == 3 {
             // The driver drives carefully until the unit is engaged, and engages it where that is safe.
             let is_known = self.is_known(self.follow);
-            self.engaged |= now >= self.scenario.ego.engages && is_known && !self.is_near();
+            if !self.engaged && now >= self.scenario.ego.engages && is_known && !self.is_near() {
+                self.engaged = true;
+                self.note_wanted_before(now);
+            }
             if is_known {
                 self.names = self.follow;
             }

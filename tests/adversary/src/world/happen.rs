@@ -1,6 +1,7 @@
 //! The events of a world: an event enters and changes the world; messages that no station sent are put on the bus.
 
 use super::World;
+use crate::judge::WISHED;
 use crate::peer::{Limits, Motion};
 use crate::scenario::What;
 use crate::wire::{BOOK, Can};
@@ -25,7 +26,7 @@ impl World<'_> {
             What::Station { peer, station } => self.others[peer].rename(station),
             What::Follow { station } => self.follow = station,
             What::Wanted { speed } => {
-                self.wanted_before = (self.wanted.max(self.wanted_before.0).max(self.ego.body.speed), now);
+                self.note_wanted_before(now);
                 self.wanted = speed;
             }
             What::CutIn { peer } => self.cutting_in.push(peer),
@@ -57,6 +58,13 @@ impl World<'_> {
         }
     }
 
+    /// What was wanted, or driven, until now counts on for a while.
+    pub(super) fn note_wanted_before(&mut self, now: f64) {
+        let (before, until) = self.wanted_before;
+        let still = if now < until + WISHED { before } else { 0.0 };
+        self.wanted_before = (self.wanted.max(still).max(self.ego.body.speed), now);
+    }
+
     fn be_well(&mut self, now: f64) {
         self.well = Some(now);
         (self.deaf_until, self.timeless_until, self.blind_until, self.egoless_until) = (0.0, 0.0, 0.0, 0.0);
@@ -68,7 +76,7 @@ impl World<'_> {
             other.mute_until = 0.0;
             other.on_lane &= other.station != 0;
         }
-        self.wanted_before = (self.wanted.max(self.ego.body.speed), now);
+        self.note_wanted_before(now);
         self.wanted = self.wanted.max(10.0);
         self.follow = self.nearest().map_or(0, |nearest| nearest.station);
     }
