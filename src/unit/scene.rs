@@ -233,10 +233,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some(if is_replaced { nearest } else { held })
     }
 
-    /// The slot of the vehicle ahead that a sensor would see.
+    /// The slot of the vehicle ahead that a sensor would see. On a way through intersections it is one that is ahead for certain: where a
+    /// silent vehicle is estimated to be is no reason to take what is seen for that vehicle.
     pub fn visible(&self) -> Option<usize> {
+        let choice = self.coordination.choice();
         match self.coordination.itinerary() {
-            Some(_) => self.coordination.choice().lane.map(usize::from),
+            Some(_) => choice.lane.map(usize::from).filter(|index| choice.leading.contains(*index)),
             None => self.target(),
         }
     }

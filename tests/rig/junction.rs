@@ -85,6 +85,8 @@ pub struct Driver {
     pub speaks: bool,
     pub hears: bool,
     pub says_route: bool,
+    /// Whether its range sensor sees the nearest vehicle ahead on its street.
+    pub sees: bool,
     /// Whether it is told the time.
     pub is_timed: bool,
     /// Whether its driver's request comes.
@@ -116,6 +118,7 @@ impl Driver {
             speaks: true,
             hears: true,
             says_route: true,
+            sees: false,
             is_timed: true,
             asks: true,
             last: None,
@@ -174,6 +177,7 @@ impl Junction {
     fn tick(&mut self) {
         let now = self.now;
         let mut said: Vec<(usize, Said)> = Vec::new();
+        let places: Vec<_> = self.drivers.iter().map(|driver| (driver.way, driver.body)).collect();
         for (index, driver) in self.drivers.iter_mut().enumerate() {
             let plant::Plant { position, speed, acceleration, .. } = driver.body;
             let demand = driver.command();
@@ -196,6 +200,14 @@ impl Junction {
             }
             if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);
+            }
+            let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > driver.body.position);
+            if driver.sees
+                && now % 20_000 == 0
+                && let Some((_, ahead)) = ahead.min_by(|a, b| a.1.position.total_cmp(&b.1.position))
+            {
+                let gap = ahead.position - LENGTH - driver.body.position;
+                let _ = driver.rig.range(now, gap, ahead.speed - driver.body.speed, 0);
             }
             let heard = driver.rig.tick(now);
             if driver.speaks {
