@@ -7,7 +7,7 @@ use crate::model::{Model, Remainders, State, Step, Stride, VehicleModel};
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Position, RingPosition, Speed};
-use crate::wire::curve::{Curve, Run};
+use crate::wire::curve::Curve;
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
 
@@ -149,20 +149,23 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             State { position, speed, acceleration, demand: acceleration, remainders: Remainders::NONE }
         };
         let mut runs = curve.runs(after, self.grid.step);
-        let mut run = following(&mut runs)?;
-        filling.put(first, at(run.next()?));
+        if !runs.turn() {
+            return None;
+        }
+        filling.put(first, at(runs.run().next()?));
         // These are all of the steps, unless the sent horizon is longer than the ring.
         filling.horizon.run(STEPS, |mut tip, mut out| {
             let mut done = 0usize;
-            while let Some((now, later)) = out.split_at_mut_checked(run.len().min(out.len())) {
-                for (step, reading) in now.iter_mut().zip(&mut run) {
+            loop {
+                let run = runs.run();
+                let Some((now, later)) = out.split_at_mut_checked(run.len().min(out.len())) else { break };
+                for (step, reading) in now.iter_mut().zip(run) {
                     tip = at(reading);
                     *step = Step { position: tip.position, speed: tip.speed };
                 }
                 (done, out) = (done.saturating_add(now.len()), later);
-                match following(&mut runs) {
-                    Some(next) if !out.is_empty() => run = next,
-                    _ => break,
+                if out.is_empty() || !runs.turn() {
+                    break;
                 }
             }
             (tip, done)
@@ -254,12 +257,6 @@ impl<const STEPS: usize> Filling<'_, STEPS> {
     fn absolute(&self, state: &State) -> Position {
         self.anchor.position.ahead(state.position.ahead_of(self.anchor.position.ring()))
     }
-}
-
-/// The next run. It is a function of its own, because making a run is much code and is needed in two places.
-#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
-fn following(runs: &mut impl Iterator<Item = Run>) -> Option<Run> {
-    runs.next()
 }
 
 /// A number of steps as a difference of indices.

@@ -24,8 +24,6 @@ use crate::units::{Acceleration, Distance, Speed};
 
 mod walk;
 
-pub(crate) use walk::Run;
-
 /// A stretch on which the way is one polynomial of degree 6 in `s`, the share of its length that has passed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Piece {
@@ -82,12 +80,14 @@ impl State {
 impl Piece {
     const NOTHING: Self = Self { micros: 0, origin: Distance::ZERO, way: [0; 6], speed: [0; 6] };
 
-    fn rest(way: i64, micros: i64) -> Self {
-        Self { micros, origin: Distance::from_bits(saturate_i32(way)), ..Self::NOTHING }
+    /// Makes it a rest.
+    fn rest(&mut self, way: i64, micros: i64) {
+        *self = Self { micros, origin: Distance::from_bits(saturate_i32(way)), ..Self::NOTHING };
     }
 
-    /// From one state to the other in this time (at least [`SHORTEST`]).
-    fn quintic(from: State, to: State, micros: i64, bow: i64) -> Self {
+    /// Makes it the quintic from one state to the other in this time (at least [`SHORTEST`]). Pieces are made where they lie, because
+    /// copies of them would cost as much as making them.
+    fn quintic(&mut self, from: State, to: State, micros: i64, bow: i64) {
         let micros = micros.max(SHORTEST);
         let by_speed = |speed: i64| over(speed, micros) >> 3; // F23 to F20
         let by_acceleration = |acceleration: i64| over(over(acceleration, micros), micros) >> 5; // F25 to F20
@@ -106,14 +106,14 @@ impl Piece {
         };
         let coefficients =
             [first, second, sum(10, -4, 1, 64), sum(-15, 7, -2, -192), sum(6, -3, 1, 192), sum(0, 0, 0, -64)];
-        let way = coefficients.map(|c| saturate_i32(c.clamp(-COEFFICIENT, COEFFICIENT)));
+        (self.micros, self.origin) = (micros, Distance::from_bits(saturate_i32(from.way)));
         let mut power = 0i64;
-        let speed = way.map(|c| {
+        for ((way, speed), coefficient) in self.way.iter_mut().zip(&mut self.speed).zip(coefficients) {
+            *way = saturate_i32(coefficient.clamp(-COEFFICIENT, COEFFICIENT));
             power = power.wrapping_add(1); // up to 6, which is 23 bits of microseconds
-            let per_second = (i64::from(c) << (3 - SPEED_SHIFT)).wrapping_mul(power.wrapping_mul(MICROS_PER_S));
-            saturate_i32(quotient(per_second, micros).clamp(-COEFFICIENT, COEFFICIENT))
-        });
-        Self { micros, origin: Distance::from_bits(saturate_i32(from.way)), way, speed }
+            let per_second = (i64::from(*way) << (3 - SPEED_SHIFT)).wrapping_mul(power.wrapping_mul(MICROS_PER_S));
+            *speed = saturate_i32(quotient(per_second, micros).clamp(-COEFFICIENT, COEFFICIENT));
+        }
     }
 
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
@@ -169,6 +169,16 @@ impl Segment {
     /// - Else one quintic.
     #[must_use]
     pub fn new(from: &Knot, to: &Knot, length: Duration) -> Self {
+        let mut segment = Self::NOTHING;
+        segment.make(from, to, length);
+        segment
+    }
+
+    const NOTHING: Self = Self { pieces: [Piece::NOTHING; 3] };
+
+    /// Makes it that stretch.
+    fn make(&mut self, from: &Knot, to: &Knot, length: Duration) {
+        self.pieces.iter_mut().for_each(|piece| piece.micros = 0);
         let length = length.as_micros().clamp(SHORTEST, Duration::MAX.as_micros() >> 32);
         let bow = i64::from(to.bow.to_bits());
         let (a, b) = (State::of(from), State::of(to));
@@ -177,15 +187,17 @@ impl Segment {
             let last = i64::from(to.acceleration.to_bits()).min(0);
             let braking = time_to_rest(way, a.speed, a.acceleration.saturating_sub(last), [12, 3, 9, 12]).min(length);
             let rest = State { way: a.way.saturating_add(way), speed: 0, acceleration: last };
-            let stop = Piece::quintic(a, rest, braking, bow);
-            let standing = Piece::rest(rest.way, length.saturating_sub(stop.micros));
-            return Self { pieces: [stop, standing, Piece::NOTHING] };
+            let [stop, standing, _] = &mut self.pieces;
+            stop.quintic(a, rest, braking, bow);
+            standing.rest(rest.way, length.saturating_sub(stop.micros));
+        } else if self.rest_between(a, b, length, bow).is_none() {
+            let [whole, ..] = &mut self.pieces;
+            whole.quintic(a, b, length, bow);
         }
-        Self::with_rest_between(a, b, length, bow)
-            .unwrap_or(Self { pieces: [Piece::quintic(a, b, length, bow), Piece::NOTHING, Piece::NOTHING] })
     }
 
-    fn with_rest_between(a: State, b: State, length: i64, bow: i64) -> Option<Self> {
+    /// With a rest in between; `None` if there is none, and then nothing is made.
+    fn rest_between(&mut self, a: State, b: State, length: i64, bow: i64) -> Option<()> {
         let brakes_or_stands = a.acceleration < 0 || a.speed == 0;
         if !(brakes_or_stands && b.speed > 0 && b.acceleration > 0) {
             return None;
@@ -210,15 +222,18 @@ impl Segment {
         // evenly changing acceleration: its end follows from 0 = v + (a + end)/2·t
         let end = times(a.speed, -8 * MICROS_PER_S).checked_div(braking.max(1))?.saturating_sub(a.acceleration);
         let rest = State { way: a.way.saturating_add(way), speed: 0, acceleration: i64::from(saturate_i32(end)) };
-        let stop = if braking == 0 { Piece::NOTHING } else { Piece::quintic(a, rest, braking, bow) };
-        let off = Piece::quintic(State { acceleration: 0, ..rest }, b, moving_off, 0);
-        let standing = length.saturating_sub(stop.micros).saturating_sub(off.micros).max(0);
-        Some(Self { pieces: [stop, Piece::rest(rest.way, standing), off] })
+        let [stop, standing, off] = &mut self.pieces;
+        if braking != 0 {
+            stop.quintic(a, rest, braking, bow);
+        }
+        off.quintic(State { acceleration: 0, ..rest }, b, moving_off, 0);
+        standing.rest(rest.way, length.saturating_sub(stop.micros).saturating_sub(off.micros).max(0));
+        Some(())
     }
 
     /// Its pieces, each with its start.
-    fn pieces(&self) -> impl Iterator<Item = (i64, Piece)> + use<> {
-        self.pieces.into_iter().filter(|piece| piece.micros > 0).scan(0i64, |end, piece| {
+    fn pieces(&self) -> impl Iterator<Item = (i64, &Piece)> {
+        self.pieces.iter().filter(|piece| piece.micros > 0).scan(0i64, |end, piece| {
             let start = *end;
             *end = end.saturating_add(piece.micros);
             Some((start, piece))
@@ -267,8 +282,14 @@ impl Curve {
     #[must_use]
     pub fn at(&self, after: Duration) -> Knot {
         let micros = after.as_micros().max(0);
-        let found = self.pieces().filter(|(start, _)| *start <= micros).last();
-        found.map_or(Knot::default(), |(start, piece)| piece.at(micros.saturating_sub(start)))
+        let (mut pieces, mut found) = (self.pieces(), Knot::default());
+        while let Some((start, piece)) = pieces.advance() {
+            if start > micros {
+                break;
+            }
+            found = piece.at(micros.saturating_sub(start));
+        }
+        found
     }
 }
 
