@@ -9,7 +9,7 @@
 //! | [`SecondsFormat`] `I3F29` | time gap, damping, steps times speed | ±4 s | 1.9 ns |
 //! | [`FineSecondsFormat`] `I2F30` | steps times acceleration | ±2 s | 0.93 ns |
 //! | [`GainFormat`] `I3F29` | the law's gain `k` | ±4 /s² | 1.9e-9 |
-//! | [`ShareFormat`] `I2F30` | a share from 0 to 1 | ±2 | 9.3e-10 |
+//! | [`FractionFormat`] `I2F30` | a share from 0 to 1 | ±2 | 9.3e-10 |
 //!
 //! The formats are chosen so that every product of the prediction step is a plain `>> 32`, which is one instruction
 //! (`SMMULR`) on a Cortex-M4:
@@ -44,7 +44,7 @@ pub type FineSecondsFormat = FixedI32<U30>;
 /// The gain `k` of the consensus law, in 1/s².
 pub type GainFormat = FixedI32<U29>;
 /// A share from 0 to 1, such as `e^(-δt/T)`.
-pub type ShareFormat = FixedI32<U30>;
+pub type FractionFormat = FixedI32<U30>;
 
 /// `a·b / 2³²`, rounded to nearest (ties towards +∞). It cannot overflow: the product of two 32-bit words is at most 2⁶² in
 /// magnitude.

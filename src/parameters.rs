@@ -33,7 +33,7 @@ pub const SHORTEST: Distance = Distance::from_mm(1_500);
 
 /// Farther away than this a peer has nothing to do with the unit: V2X does not reach it, and a horizon's positions,
 /// which are modulo 4096 m, stay unambiguous.
-pub const REACH: Distance = Distance::from_mm(1_500_000);
+pub const FARTHEST_PEER: Distance = Distance::from_mm(1_500_000);
 
 /// Oldest stamp that any configuration may use.
 pub const STALE_MAX: Duration = Duration::from_millis(10_000);
@@ -89,7 +89,7 @@ const _: () = {
     // A stamp that is used must unwrap to its time, with 1 s to spare for the clocks.
     assert!(STALE_MAX.as_micros() + Stamp::FUTURE.as_micros() + 1_000_000 < Stamp::PERIOD.as_micros());
     // Two vehicles within reach stay within the ring's 2048 m for the longest horizon (4 s at 100 m/s).
-    assert!(REACH.to_mm() + 4 * 100_000 < 2_048_000);
+    assert!(FARTHEST_PEER.to_mm() + 4 * 100_000 < 2_048_000);
     // a_max (1 - ratio⁴) at the smallest a_max brakes harder than any comfortable limit.
     let fourth = FREE_ROAD_RATIO_MILLI * FREE_ROAD_RATIO_MILLI / 1000 * FREE_ROAD_RATIO_MILLI / 1000
         * FREE_ROAD_RATIO_MILLI

@@ -4,8 +4,8 @@
 //! Arithmetic saturates at the ends of the format; nothing wraps except [`RingPosition`], which says so.
 
 use crate::fixed::{
-    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, PositionFormat, Rest, SecondsFormat,
-    ShareFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, quotient, ratio, saturate_i32, sum_around, unratio,
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, FractionFormat, GainFormat, PositionFormat, Rest,
+    SecondsFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, quotient, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -112,8 +112,8 @@ macro_rules! quantity {
             /// That fraction of it.
             #[inline(always)]
             #[must_use]
-            pub const fn share(self, share: Fraction) -> Self {
-                Self::from_bits(mul_shl::<2>(self.to_bits(), share.to_bits()))
+            pub const fn fraction(self, fraction: Fraction) -> Self {
+                Self::from_bits(mul_shl::<2>(self.to_bits(), fraction.to_bits()))
             }
         }
     };
@@ -149,7 +149,7 @@ quantity!(
 );
 quantity!(
     /// A share from 0 to 1, such as `e^(-δt/T)`: by 9.3e-10.
-    Fraction, ShareFormat, from_milli, to_milli, "(of 1)"
+    Fraction, FractionFormat, from_milli, to_milli, "(of 1)"
 );
 
 impl Speed {
@@ -188,7 +188,7 @@ impl Acceleration {
 
 impl Fraction {
     /// All of it.
-    pub const ONE: Self = Self::from_bits(1 << ShareFormat::FRAC_NBITS);
+    pub const ONE: Self = Self::from_bits(1 << FractionFormat::FRAC_NBITS);
 }
 
 impl Jerk {

@@ -358,7 +358,7 @@ fn a_station_that_is_heard_in_its_slot_does_not_touch_what_is_held_of_one_that_w
     let held = |junction: &Junction| {
         let unit = &junction.drivers[0].rig.unit;
         let station = unit.peers().get(2).and_then(|track| track.station());
-        (station, unit.coordination().standing(2).copied())
+        (station, unit.coordination().approach(2).copied())
     };
     let before = held(&junction);
     assert!(before.0 == Some(StationHash(77)) && before.1.is_some());

@@ -10,7 +10,7 @@ use holdover::time::Duration;
 use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::Said;
 use holdover::wire::driving_parameters::DrivingParameters;
-use holdover::wire::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
+use holdover::wire::horizon::{KNOTS, KNOTS_PER_MILLE, Knot, Knots};
 use rig::plant::Body;
 use rig::random::Random;
 use rig::{LENGTH, Rig, TARGET, instant, m_of, metres, mps, mps_of, mps2};
@@ -18,7 +18,7 @@ use traffic::{receive_all, settled};
 
 /// The horizon of one that goes on at this speed, after so many tenths of a second.
 fn steady(tag: u8, speed: f64, tenths: u8) -> Knots {
-    let knots = SHARES_PER_MILLE.map(|share| Knot {
+    let knots = KNOTS_PER_MILLE.map(|share| Knot {
         displacement: metres(speed * f64::from(tenths) * f64::from(share) * 1e-4),
         speed: mps(speed),
         acceleration: Acceleration::ZERO,
@@ -113,7 +113,7 @@ fn an_honest_horizon_is_used_and_not_counted() {
     traffic.run(&mut unit, 50);
     let now = traffic.now();
     let mut knots = steady(0, 10.0, 40);
-    for (knot, share) in knots.knots.iter_mut().zip(SHARES_PER_MILLE) {
+    for (knot, share) in knots.knots.iter_mut().zip(KNOTS_PER_MILLE) {
         let t = f64::from(share) * 4e-3;
         *knot = Knot {
             displacement: metres(10.0 * t - 0.5 * 1.5 * t * t),

@@ -138,7 +138,7 @@ impl Config {
                     && e.margin >= Distance::ZERO
                     && (Duration::ZERO..=millis(500)).contains(&e.delay)
                     && (Fraction::ZERO..=Fraction::ONE).contains(&e.lag_tolerance)
-                    && self.lag.plus(self.lag.share(e.lag_tolerance)) <= LONGEST_LAG
+                    && self.lag.plus(self.lag.fraction(e.lag_tolerance)) <= LONGEST_LAG
             }),
             ConfigError::Envelope,
         )

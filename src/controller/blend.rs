@@ -47,7 +47,7 @@ impl Blend {
     /// One period later, `keep` being the share that is left after it.
     #[must_use]
     pub fn faded(&self, keep: Fraction) -> Self {
-        Self { position: self.position.share(keep), speed: self.speed.share(keep) }
+        Self { position: self.position.fraction(keep), speed: self.speed.fraction(keep) }
     }
 }
 

@@ -25,7 +25,7 @@ pub enum Course {
     /// The ego's own law: free road, or behind a target whose reading is of one period from now.
     Law {
         /// How the ego drives.
-        driver: VehicleModel,
+        vehicle: VehicleModel,
         /// The target's reading and length.
         target: Option<(Reading, Distance)>,
         /// No more acceleration than this, whatever the law asks for.
@@ -39,12 +39,12 @@ pub enum Course {
         /// `v_∞`.
         target_speed: Speed,
     },
-    /// Caution: braking that grows slowly while nothing is known, or while nobody says what is wanted; more of it if what is still
+    /// Braking that grows slowly while nothing is known, or while nobody says what is wanted; more of it if what is still
     /// known ahead asks for that.
-    Caution {
+    GrowingBraking {
         /// As in `Cruise`.
         ahead: Option<Reading>,
-        /// Since when the braking has grown, if that was before the course became caution.
+        /// Since when the braking has grown, if that was before this course.
         since: Option<Instant>,
     },
     /// Braking as hard as is normal.
@@ -64,15 +64,15 @@ pub struct Controller {
     blend: Blend,
     keep: Fraction,
     period: FineSeconds,
-    /// Since when the course is caution.
-    caution: Option<Instant>,
-    /// The step of the law that was driven by last, which is made of a driver and a length.
+    /// Since when the braking grows.
+    grows_since: Option<Instant>,
+    /// The step of the law that was driven by last, which is made of a vehicle model and a length.
     stride: Held<(VehicleModel, Distance, Stride)>,
 }
 
-/// Growth of the braking in caution: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
+/// Growth of the braking while nothing is known: 0.5 m/s² more every second, so that a target that is heard at once costs nothing and
 /// one that is not costs comfort first.
-const CAUTION: Jerk = Jerk::from_mm_per_s3(500);
+const BRAKING_GROWTH: Jerk = Jerk::from_mm_per_s3(500);
 
 /// Gains of the cruise control.
 struct Seen {
@@ -97,7 +97,7 @@ impl Controller {
             blend: Blend::NONE,
             keep: Fraction::ZERO,
             period: FineSeconds::ZERO,
-            caution: None,
+            grows_since: None,
             stride: Held::Nothing,
         }
     }
@@ -127,18 +127,18 @@ impl Controller {
     /// The demand of this tick.
     pub fn drive(&mut self, config: &Config, now: Instant, ego: Option<&State>, course: &Course) -> Acceleration {
         self.blend = self.blend.faded(self.keep);
-        if !matches!(course, Course::Caution { .. }) {
-            self.caution = None;
+        if !matches!(course, Course::GrowingBraking { .. }) {
+            self.grows_since = None;
         }
         self.demand = match (course, ego) {
             (Course::Yield { demand }, _) => {
                 self.blend = Blend::NONE;
                 *demand
             }
-            (Course::Law { driver, target, cap }, Some(ego)) => self.by_law(config, driver, ego, *target, *cap),
+            (Course::Law { vehicle, target, cap }, Some(ego)) => self.by_law(config, vehicle, ego, *target, *cap),
             (Course::Cruise { ahead, target_speed }, Some(ego)) => self.cruise(config, ego, ahead, *target_speed),
-            (Course::Caution { ahead, since }, ego) => {
-                let since = *self.caution.get_or_insert(since.unwrap_or(now));
+            (Course::GrowingBraking { ahead, since }, ego) => {
+                let since = *self.grows_since.get_or_insert(since.unwrap_or(now));
                 let slowing = slowing(config, now.since(since));
                 let behind = ego.zip(*ahead).map(|(ego, ahead)| behind(config, ego, &ahead));
                 self.slewed(config, behind.map_or(slowing, |behind| behind.min(slowing)))
@@ -153,15 +153,15 @@ impl Controller {
     fn by_law(
         &mut self,
         config: &Config,
-        driver: &VehicleModel,
+        vehicle: &VehicleModel,
         ego: &State,
         target: Option<(Reading, Distance)>,
         cap: Acceleration,
     ) -> Acceleration {
         let length = target.map_or(Distance::ZERO, |(_, length)| length);
-        let is_same = |(same, same_length, _): &(_, _, _)| same == driver && *same_length == length;
+        let is_same = |(same, same_length, _): &(_, _, _)| same == vehicle && *same_length == length;
         if !self.stride.as_ref().is_some_and(is_same) {
-            self.stride.set((*driver, length, driver.over(config.period, length, &config.prediction.model)));
+            self.stride.set((*vehicle, length, vehicle.over(config.period, length, &config.prediction.model)));
         }
         let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
         let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
@@ -204,16 +204,16 @@ fn behind(config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
     desired.limited(config.limits.braking.negated(), config.limits.acceleration)
 }
 
-/// The demand after so long in caution, no harder than normal braking.
+/// The demand after it has grown for so long, no harder than normal braking.
 #[must_use]
 pub fn slowing(config: &Config, since: Duration) -> Acceleration {
     growth(since).min(config.limits.braking).negated()
 }
 
-/// Braking after so long in caution, saturating after 2 s steps.
+/// Braking after it has grown for so long, saturating after 2 s steps.
 fn growth(since: Duration) -> Acceleration {
     let tenths = since.as_micros().max(0) / 100_000;
-    let tenth = CAUTION.over(FineSeconds::from_millis(100));
+    let tenth = BRAKING_GROWTH.over(FineSeconds::from_millis(100));
     Acceleration::from_bits(crate::fixed::saturate_i32(i64::from(tenth.to_bits()).saturating_mul(tenths)))
 }
 

@@ -75,7 +75,7 @@ pub enum Mode {
         /// Since the link went off.
         since: Instant,
     },
-    /// Driving by nothing but caution.
+    /// Driving by what is certain or seen, or braking.
     Fallback {
         /// Since when.
         since: Instant,

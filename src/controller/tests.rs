@@ -28,7 +28,7 @@ fn mm(demand: Acceleration) -> i32 {
 fn leads(config: &Config, target_mm_per_s: i32) -> Course {
     let aim =
         Aim::Lead { largest: config.law.free_road_acceleration, target_speed: Speed::from_mm_per_s(target_mm_per_s) };
-    Course::Law { driver: config.vehicle_model(aim), target: None, cap: Acceleration::MAX }
+    Course::Law { vehicle: config.vehicle_model(aim), target: None, cap: Acceleration::MAX }
 }
 
 /// Behind a vehicle of 4.8 m, whose front bumper is that far ahead.
@@ -43,7 +43,7 @@ fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
     };
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law {
-        driver: config.vehicle_model(aim),
+        vehicle: config.vehicle_model(aim),
         target: Some((reading, Distance::from_mm(4_800))),
         cap: Acceleration::MAX,
     }
@@ -95,7 +95,7 @@ fn every_course_of_its_own_keeps_to_the_limits_on_acceleration_and_jerk() {
         follows(&config, 1_000, 0),
         Course::Cruise { ahead: wall, target_speed: Speed::from_mm_per_s(60_000) },
         Course::Cruise { ahead: far, target_speed: Speed::from_mm_per_s(60_000) },
-        Course::Caution { ahead: None, since: None },
+        Course::GrowingBraking { ahead: None, since: None },
         Course::Brake,
     ];
     let limits = config.limits;
@@ -125,11 +125,11 @@ fn beyond_its_speed_limit_it_does_not_accelerate() {
 }
 
 #[test]
-fn in_caution_the_braking_grows_by_half_a_metre_per_second_squared_every_second() {
+fn the_braking_grows_by_half_a_metre_per_second_squared_every_second() {
     let config = config();
     for (periods, expected) in [(1, 0), (101, -500), (401, -2_000), (801, -4_000), (2_000, -4_000)] {
         assert_eq!(
-            mm(after(periods, &config, Some(ego(20_000)), &Course::Caution { ahead: None, since: None })),
+            mm(after(periods, &config, Some(ego(20_000)), &Course::GrowingBraking { ahead: None, since: None })),
             expected
         );
     }
@@ -195,7 +195,7 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
     let courses = [(250, 3_870, 22_000), (600, 1_680, 20_000), (250, 3_870, 22_000)].map(|(gain, damping, ahead)| {
         let reading = Reading { position: Position::from_mm(ahead), speed: Speed::from_mm_per_s(9_000) };
         Course::Law {
-            driver: config.vehicle_model(aim(gain, damping)),
+            vehicle: config.vehicle_model(aim(gain, damping)),
             target: Some((reading, crate::parameters::DEFAULT_LENGTH)),
             cap: Acceleration::MAX,
         }

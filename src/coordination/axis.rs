@@ -37,7 +37,7 @@ pub struct PeerApproach {
 struct Tie {
     stamp: Stamp,
     place: WirePosition,
-    standing: PeerApproach,
+    approach: PeerApproach,
 }
 
 /// A peer's axis.
@@ -46,7 +46,7 @@ struct Tie {
 pub struct Axis {
     newest: Held<(StationHash, Stamp, WirePosition)>,
     tie: Held<Tie>,
-    standing: Held<PeerApproach>,
+    approach: Held<PeerApproach>,
     /// What is added to the peer's positions, in millimetres modulo 2²⁵.
     offset: Held<i32>,
 }
@@ -58,12 +58,12 @@ const SAME_TIE_MM: i32 = 25;
 impl Axis {
     /// Not known.
     pub const UNKNOWN: Self =
-        Self { newest: Held::Nothing, tie: Held::Nothing, standing: Held::Nothing, offset: Held::Nothing };
+        Self { newest: Held::Nothing, tie: Held::Nothing, approach: Held::Nothing, offset: Held::Nothing };
 
     /// What the peer says of its approach, once its axis is known.
     #[must_use]
-    pub fn standing(&self) -> Option<&PeerApproach> {
-        self.offset.as_ref().and(self.standing.as_ref())
+    pub fn approach(&self) -> Option<&PeerApproach> {
+        self.offset.as_ref().and(self.approach.as_ref())
     }
 
     /// Takes in a place: at `stamp` the peer was `distance` before the crossing point, which lies at `crossing` on the ego's axis.
@@ -74,16 +74,16 @@ impl Axis {
         stamp: Stamp,
         crossing: Position,
         distance: Distance,
-        standing: PeerApproach,
+        approach: PeerApproach,
     ) -> Option<Distance> {
         let place = WirePosition::from_position(crossing.ahead(distance.negated()));
-        self.tie.set(Tie { stamp, place, standing });
+        self.tie.set(Tie { stamp, place, approach });
         self.retie()
     }
 
     /// Notes that the peer is at no intersection of the ego's way.
     pub fn leave(&mut self) {
-        (self.tie, self.standing, self.offset) = (Held::Nothing, Held::Nothing, Held::Nothing);
+        (self.tie, self.approach, self.offset) = (Held::Nothing, Held::Nothing, Held::Nothing);
     }
 
     /// Notes that another station was refused in this slot. A place that was said since this peer's last motion is then not this peer's.
@@ -111,9 +111,9 @@ impl Axis {
     fn retie(&mut self) -> Option<Distance> {
         let (_, stamp, position) = self.newest.get()?;
         let tie = self.tie.get().filter(|tie| tie.stamp == stamp)?;
-        let held = self.standing().filter(|held| held.crossing == tie.standing.crossing);
-        let since = held.map_or(tie.standing.since, |held| held.since);
-        self.standing.set(PeerApproach { since, ..tie.standing });
+        let held = self.approach().filter(|held| held.crossing == tie.approach.crossing);
+        let since = held.map_or(tie.approach.since, |held| held.since);
+        self.approach.set(PeerApproach { since, ..tie.approach });
         let offset = tie.place.mm_ahead_of(position);
         let Some(before) = self.offset.get() else {
             self.offset.set(offset);
@@ -177,7 +177,7 @@ mod tests {
             place(&mut axis, 7, 500_000, 80_000);
             // Later motions need no route. The positions on the wire wrap around meanwhile.
             assert_eq!(translated(&mut axis, &motion(3, 8, -16_778_000)), Some(419_000), "{is_route_first}");
-            assert!(axis.standing().is_some());
+            assert!(axis.approach().is_some());
         }
     }
 
@@ -186,7 +186,7 @@ mod tests {
         let mut axis = Axis::UNKNOWN;
         place(&mut axis, 6, 500_000, 80_000);
         assert_eq!(translated(&mut axis, &motion(3, 7, 1_000)), None);
-        assert_eq!(axis.standing(), None);
+        assert_eq!(axis.approach(), None);
     }
 
     #[test]
@@ -194,7 +194,7 @@ mod tests {
         let mut axis = Axis::UNKNOWN;
         translated(&mut axis, &motion(3, 7, 1_000));
         place(&mut axis, 7, 500_000, 80_000);
-        let crossing = |axis: &Axis| axis.standing().map(|standing| standing.crossing);
+        let crossing = |axis: &Axis| axis.approach().map(|approach| approach.crossing);
         let next = PeerApproach { crossing: 1, ..STANDING };
         assert_eq!(axis.place(Stamp::from_raw(8), Position::from_mm(700_000), Distance::from_mm(280_000), next), None);
         assert_eq!(crossing(&axis), Some(0));

@@ -192,8 +192,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// What a peer says of its approach.
     #[must_use]
-    pub fn standing(&self, index: usize) -> Option<&PeerApproach> {
-        self.axes.get(index)?.standing()
+    pub fn approach(&self, index: usize) -> Option<&PeerApproach> {
+        self.axes.get(index)?.approach()
     }
 
     /// The vehicle that the ego takes to be just ahead of it in the order; unknown before the ego has arrived.
@@ -221,15 +221,15 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// Whether a peer with this approach comes by the ego's leg.
     #[must_use]
-    pub(crate) fn is_on_lane(&self, standing: &PeerApproach) -> bool {
-        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(standing.crossing));
-        crossing.is_some_and(|crossing| crossing.leg == standing.leg)
+    pub(crate) fn is_on_lane(&self, approach: &PeerApproach) -> bool {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
+        crossing.is_some_and(|crossing| crossing.leg == approach.leg)
     }
 
     /// Whether a peer with this approach is at the crossing that is next for the ego.
     #[must_use]
-    pub(crate) const fn is_here(&self, standing: &PeerApproach) -> bool {
-        standing.crossing == self.current
+    pub(crate) const fn is_here(&self, approach: &PeerApproach) -> bool {
+        approach.crossing == self.current
     }
 
     /// The axis of a slot.
@@ -337,13 +337,13 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// as its next crossing. If the peer comes by another leg, the ego brakes the more gently, the farther away the conflict area is.
     pub(crate) fn comfort(
         &self,
-        standing: &PeerApproach,
+        approach: &PeerApproach,
         next: usize,
         front: Position,
         speed: Speed,
     ) -> ComfortBraking {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
-        let shared = crossing.filter(|crossing| standing.crossing == next && standing.leg != crossing.leg);
+        let shared = crossing.filter(|crossing| approach.crossing == next && approach.leg != crossing.leg);
         let Some((crossing, point)) = shared.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)))
         else {
             return ComfortBraking::NONE;
@@ -356,13 +356,13 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// ego has announced it for long enough, or earlier where the ego could not stop gently any more.
     pub(crate) fn is_announced(
         &self,
-        standing: &PeerApproach,
+        approach: &PeerApproach,
         at: Instant,
         next: usize,
         front: Position,
         speed: Speed,
     ) -> bool {
-        at.since(standing.since) >= ANNOUNCED || self.comfort(standing, next, front, speed) == ComfortBraking::NONE
+        at.since(approach.since) >= ANNOUNCED || self.comfort(approach, next, front, speed) == ComfortBraking::NONE
     }
 }
 

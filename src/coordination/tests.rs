@@ -259,10 +259,10 @@ fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gen
         for (ms, is_told) in [(0, false), (4_499, false), (4_500, true), (60_000, true)] {
             for (leg, is_followed) in [(0, true), (1, is_told || !is_far), (2, is_told || !is_far)] {
                 let (since, claim) = (at(3), Predecessor::Unknown);
-                let standing = PeerApproach { crossing: 0, leg, arrival: None, claim, heard: since, since };
+                let approach = PeerApproach { crossing: 0, leg, arrival: None, claim, heard: since, since };
                 let (front, speed) = (Position::from_mm(front), Speed::from_mm_per_s(10_000));
                 let now = since.plus(Duration::from_millis(ms));
-                let is_announced = coordination.is_announced(&standing, now, 0, front, speed);
+                let is_announced = coordination.is_announced(&approach, now, 0, front, speed);
                 assert_eq!(is_announced, is_followed, "leg {leg}, {ms} ms, {front:?}");
             }
         }

@@ -80,14 +80,14 @@ impl Memory {
         let time_constant = TIME_CONSTANT.max(config.period.times(PERIODS));
         let kept = Decay::over(config.period, time_constant).keep;
         let left = Fraction::ONE.minus(kept);
-        let lost = i64::from(left.share(left).to_bits());
+        let lost = i64::from(left.fraction(left).to_bits());
         // At most 1.7: at 20 ms and a time constant of five periods.
         let per_second = quotient(lost.saturating_mul(1_000_000), config.period.as_micros());
         Self {
             state: *ego,
             disturbance: Acceleration::ZERO,
             actuator: Actuator::over(config.period, lag, &config.limits, &unlimited),
-            damped: Fraction::ONE.minus(kept.share(kept)),
+            damped: Fraction::ONE.minus(kept.fraction(kept)),
             per_second: Fraction::from_bits(saturate_i32(per_second)),
         }
     }
@@ -103,8 +103,8 @@ impl Memory {
         let expected = next.speed.plus(self.actuator.gained(self.disturbance));
         let off = measured.minus(expected);
         // The actuators' model is of a vehicle that does not drive backwards, whatever the measurement says.
-        let speed = expected.plus(off.share(self.damped)).max(Speed::ZERO);
-        let change = Acceleration::in_a_second(off).share(self.per_second);
+        let speed = expected.plus(off.fraction(self.damped)).max(Speed::ZERO);
+        let change = Acceleration::in_a_second(off).fraction(self.per_second);
         self.state = State { speed, ..next };
         self.disturbance = self.disturbance.plus(change).limited(LARGEST.negated(), LARGEST);
     }

@@ -88,7 +88,7 @@ fn rest(envelope: &Envelope, obstacle: &Obstacle) -> i64 {
 
 /// The shortest and the longest lag that the real lag may be.
 fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
-    let more = lag.share(envelope.lag_tolerance);
+    let more = lag.fraction(envelope.lag_tolerance);
     [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
 }
 

@@ -74,7 +74,7 @@ impl Reckoning {
         let age = self.at.since(self.start.at).fine_seconds();
         // `y` needs `v'` in the place of `v + A a`.
         let short = self.start.speed.plus(acceleration.over(age)).minus(self.speed).max(Speed::ZERO);
-        let longest = lag.plus(lag.share(envelope.lag_tolerance));
+        let longest = lag.plus(lag.fraction(envelope.lag_tolerance));
         // 23 + 30 - 32 = 21 bits, which is one more than the format has: halved.
         let product = crate::fixed::mul_hi(short.to_bits(), longest.to_bits());
         let way = Distance::from_bits(product.saturating_add(1).wrapping_shr(1).saturating_add(1));

@@ -15,7 +15,7 @@ use crate::model::bound::{AccelerationRange, Bound};
 use crate::peers::Sample;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
-use crate::wire::horizon::{Knots, SHARES_PER_MILLE};
+use crate::wire::horizon::{KNOTS_PER_MILLE, Knots};
 
 /// If the bound is later than a sample by more than this, because another sensor narrowed it since, it says too little of the sample's
 /// own instant. Then only the reading is limited.
@@ -65,7 +65,7 @@ pub(super) fn is_reachable(
     bound: &Bound,
     reach: &AccelerationRange,
 ) -> bool {
-    knots.knots.iter().zip(SHARES_PER_MILLE).all(|(knot, share)| {
+    knots.knots.iter().zip(KNOTS_PER_MILLE).all(|(knot, share)| {
         let after = i64::from(tenths).saturating_mul(i64::from(share)).saturating_mul(100);
         let at = sample.at.plus(Duration::from_micros(after));
         if at < bound.at() {

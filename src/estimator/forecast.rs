@@ -43,7 +43,7 @@ pub struct News<'a> {
     /// The horizon that the vehicle sent, with its driving parameters.
     pub received: Option<(&'a Knots, &'a DrivingParameters)>,
     /// How the vehicle drives.
-    pub driver: VehicleModel,
+    pub vehicle: VehicleModel,
     /// Length of its predecessor; not used without a predecessor.
     pub length_ahead: Distance,
 }
@@ -120,7 +120,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             index = self.grid.at_or_after(sample.at);
             let part = self.grid.time_of(index).since(sample.at);
             if part > Duration::ZERO {
-                let stride = news.driver.over(part, news.length_ahead, self.model);
+                let stride = news.vehicle.over(part, news.length_ahead, self.model);
                 state = stride.take(state, self.ahead_at(index));
             }
         } else {

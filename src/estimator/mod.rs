@@ -48,7 +48,7 @@ enum Source<'a> {
 pub struct Manner {
     /// The slot of the vehicle that the ego follows.
     pub target: Option<usize>,
-    driver: VehicleModel,
+    vehicle: VehicleModel,
     length_ahead: Distance,
     stride: Stride,
 }
@@ -196,17 +196,17 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
                 Some(Ahead::Own) => *own_length,
                 None => Distance::ZERO,
             };
-            let driver = match track.parameters() {
+            let vehicle = match track.parameters() {
                 Some(parameters) if ahead.is_some() || parameters.predecessor == Predecessor::None => {
                     VehicleModel::of_parameters(parameters, model)
                 }
                 _ => VehicleModel::UNKNOWN,
             };
-            (driver, length_ahead)
+            (vehicle, length_ahead)
         };
         if let Some(stride @ Held::Nothing) = strides.get_mut(index) {
-            let (driver, length_ahead) = course();
-            stride.set(driver.over(grid.step, length_ahead, model));
+            let (vehicle, length_ahead) = course();
+            stride.set(vehicle.over(grid.step, length_ahead, model));
         }
         let Some(stride) = strides.get(index).and_then(Held::as_ref) else { return true };
         // The horizon and the one that it is computed from are borrowed from the array together.
@@ -235,20 +235,20 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let usable = received.filter(|(knots, parameters)| {
             bound.is_none_or(|bound| certain::is_reachable(knots, parameters.horizon_tenths, sample, bound, &reach))
         });
-        let (driver, length_ahead) = course();
-        forecast.anchor(horizon, present, &News { sample, received: usable, driver, length_ahead });
+        let (vehicle, length_ahead) = course();
+        forecast.anchor(horizon, present, &News { sample, received: usable, vehicle, length_ahead });
         usable.is_some() == received.is_some()
     }
 
     /// How the ego drives behind this peer, or without a target, for the ego's own horizon.
     pub fn manner<const SAMPLES: usize>(
         &self,
-        driver: VehicleModel,
+        vehicle: VehicleModel,
         target: Option<usize>,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Manner {
         let length_ahead = target.map_or(Distance::ZERO, |index| peers.length_of(index));
-        Manner { target, driver, length_ahead, stride: driver.over(self.grid.step, length_ahead, &self.model) }
+        Manner { target, vehicle, length_ahead, stride: vehicle.over(self.grid.step, length_ahead, &self.model) }
     }
 
     /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.
@@ -258,9 +258,9 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let length = until.map_or(whole, |until| {
             self.grid.at_or_before(until).saturating_sub(present).saturating_add(1).min(whole).max(1)
         });
-        let (driver, length_ahead) = (manner.driver, manner.length_ahead);
+        let (vehicle, length_ahead) = (manner.vehicle, manner.length_ahead);
         self.own_forecast(manner, usize::try_from(length).unwrap_or(0), |forecast, own| {
-            forecast.anchor(own, present, &News { sample, received: None, driver, length_ahead });
+            forecast.anchor(own, present, &News { sample, received: None, vehicle, length_ahead });
         });
     }
 
@@ -331,7 +331,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// How far ahead a horizon reaches at any time, for the unit's own horizon. Two of its steps are needed for interpolation.
     #[must_use]
-    pub fn reach(&self) -> Duration {
+    pub fn horizon_length(&self) -> Duration {
         self.grid.step.times(i64::try_from(self.length.saturating_sub(2)).unwrap_or(0))
     }
 

@@ -57,8 +57,8 @@ fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
 }
 
 /// A vehicle model, with its prediction step behind a car.
-fn course(driver: VehicleModel, model: &Model) -> (VehicleModel, Stride) {
-    (driver, driver.over(GRID.step, CAR, model))
+fn course(vehicle: VehicleModel, model: &Model) -> (VehicleModel, Stride) {
+    (vehicle, vehicle.over(GRID.step, CAR, model))
 }
 
 const CAR: Distance = Distance::from_mm(4_800);
@@ -72,8 +72,8 @@ fn forecast<'a>(
     Forecast { grid: &GRID, length, model, stride, ahead, delay: None }
 }
 
-fn news(sample: &Sample, driver: VehicleModel) -> News<'_> {
-    News { sample, received: None, driver, length_ahead: CAR }
+fn news(sample: &Sample, vehicle: VehicleModel) -> News<'_> {
+    News { sample, received: None, vehicle, length_ahead: CAR }
 }
 
 fn anchored(
@@ -83,8 +83,8 @@ fn anchored(
     ahead: Option<&Horizon<STEPS>>,
 ) -> Horizon<STEPS> {
     let mut horizon = Horizon::empty();
-    let (driver, stride) = course(VehicleModel::of_parameters(parameters, &MODEL), &MODEL);
-    forecast(&stride, length, &MODEL, ahead).anchor(&mut horizon, 0, &news(sample, driver));
+    let (vehicle, stride) = course(VehicleModel::of_parameters(parameters, &MODEL), &MODEL);
+    forecast(&stride, length, &MODEL, ahead).anchor(&mut horizon, 0, &news(sample, vehicle));
     horizon
 }
 
@@ -147,10 +147,10 @@ fn after_a_pause_longer_than_the_ring_there_is_nothing_to_extend() {
 #[test]
 fn a_horizon_that_ends_is_kept_from_its_sample_on_and_never_extended() {
     let model = Model { endless: false, ..MODEL };
-    let (driver, stride) = course(VehicleModel::of_parameters(&leader(), &model), &model);
+    let (vehicle, stride) = course(VehicleModel::of_parameters(&leader(), &model), &model);
     let forecast = forecast(&stride, 20, &model, None);
     let mut horizon = Horizon::empty();
-    forecast.anchor(&mut horizon, 0, &news(&sample(50_000, 10_000, 0), driver));
+    forecast.anchor(&mut horizon, 0, &news(&sample(50_000, 10_000, 0), vehicle));
     assert_eq!((horizon.first(), horizon.last()), (-5, 14));
     let before = horizon.clone();
     forecast.extend(&mut horizon, 12);

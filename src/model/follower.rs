@@ -38,7 +38,7 @@ pub struct Follower {
     damping: Seconds,
     /// An offset. It makes a sum saturate at the end of the format just where the sum would be less than `-(t_g + δt) v_c`, so that the
     /// limit needs no comparison. It is added back afterwards.
-    reach: Distance,
+    saturation_offset: Distance,
     /// `l + s_0`, less the offset.
     spacing: Distance,
 }
@@ -58,13 +58,13 @@ impl Follower {
         let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
         let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
         let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
-        let reach = half.plus(half).negated().minus(Distance::MIN);
+        let saturation_offset = half.plus(half).negated().minus(Distance::MIN);
         Self {
             gain: semi_implicit(gain, damping, time_gap, step).negated(),
             half_gap,
             damping,
-            reach,
-            spacing: spacing.minus(reach),
+            saturation_offset,
+            spacing: spacing.minus(saturation_offset),
         }
     }
 
@@ -75,7 +75,7 @@ impl Follower {
         let half = state.speed.over(self.half_gap);
         let closing = state.speed.minus(ahead_speed).over(self.damping);
         let behind = state.position.ahead_of(ahead).plus(closing).plus(self.spacing);
-        let error = behind.plus(self.reach).plus(half.plus(half)); // `QDADD`
+        let error = behind.plus(self.saturation_offset).plus(half.plus(half)); // `QDADD`
         error.times(self.gain)
     }
 }
@@ -190,8 +190,11 @@ mod tests {
                 let behind =
                     Position::from_mm(mm).ring().ahead_of(Position::ZERO.ring()).plus(Distance::from_mm(6_800));
                 let larger = behind.max(half.plus(half).negated());
-                let limited =
-                    Position::from_mm(mm).ring().ahead_of(Position::ZERO.ring()).plus(law.spacing).plus(law.reach);
+                let limited = Position::from_mm(mm)
+                    .ring()
+                    .ahead_of(Position::ZERO.ring())
+                    .plus(law.spacing)
+                    .plus(law.saturation_offset);
                 assert!((larger.to_bits() - limited.to_bits()).abs() <= 1, "{mm} {larger:?} {limited:?}");
             }
         }

@@ -110,7 +110,7 @@ impl VehicleModel {
 /// The speed with which a follower catches up, `v_c`: the speed that it wants on a free road, and that share more.
 #[must_use]
 pub const fn catch_up(target_speed: Speed, share: Fraction) -> Speed {
-    target_speed.plus(target_speed.share(share))
+    target_speed.plus(target_speed.fraction(share))
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -18,7 +18,7 @@ use crate::time::Instant;
 use crate::units::{Acceleration, Distance, Position, Speed};
 
 /// A silent vehicle that is estimated to drive on this far ahead is not heard because it is too far away.
-const OUT_OF_REACH: Distance = Distance::from_mm(250_000);
+const FAR_AHEAD: Distance = Distance::from_mm(250_000);
 
 /// Reviews which vehicles are ahead, when a review is due.
 pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
@@ -70,22 +70,22 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let followed = coordination.choice().target.map(usize::from);
     let (mut present, mut nearest) = (Vec::new(), None::<(usize, Position)>);
     for index in 0..PEERS {
-        let Some(standing) = coordination.standing(index) else { continue };
+        let Some(approach) = coordination.approach(index) else { continue };
         let Some((reading, rear)) = view.scene.rear(index, view.at) else { continue };
-        let Some(entry) = view.scene.entry(index, standing) else { continue };
-        let is_on_lane = coordination.is_on_lane(standing);
+        let Some(entry) = view.scene.entry(index, approach) else { continue };
+        let is_on_lane = coordination.is_on_lane(approach);
         let side = if reading.position > view.front { Side::Ahead } else { Side::Behind };
-        if coordination.is_here(standing) {
+        if coordination.is_here(approach) {
             let takes_along = side == Side::Behind || !is_committed;
             // A vehicle in the area does not wait there for a vehicle that comes after it.
             let is_passed = is_inside && side == Side::Behind;
             let _ = present.push(Present {
                 index,
                 entry,
-                heard: standing.heard,
+                heard: approach.heard,
                 has_left: coordination.end_of(view.next).is_some_and(|end| rear >= end),
                 is_far_behind: is_committed || view.is_far_behind(&reading),
-                is_announced: !is_passed && (followed == Some(index) || view.is_announced(standing)),
+                is_announced: !is_passed && (followed == Some(index) || view.is_announced(approach)),
                 lane: (is_on_lane && takes_along).then_some(side),
             }); // no more than slots
         }
@@ -107,7 +107,7 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     for index in 0..PEERS {
         let drives_off = || {
             let estimate = scene.rear(index, now);
-            estimate.is_some_and(|(reading, rear)| rear > front.ahead(OUT_OF_REACH) && reading.speed > Speed::ZERO)
+            estimate.is_some_and(|(reading, rear)| rear > front.ahead(FAR_AHEAD) && reading.speed > Speed::ZERO)
         };
         lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
     }

@@ -6,7 +6,7 @@ use super::scene::Scene;
 use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact, slowing};
 use crate::model::bound::AccelerationRange;
 use crate::model::{Reading, State};
-use crate::parameters::REACH;
+use crate::parameters::FARTHEST_PEER;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::Predecessor;
@@ -67,7 +67,7 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
         }
         Mode::Fallback { .. } => match still_known(scene, now, target) {
             Some(ahead) => Course::Cruise { ahead, target_speed: scene.target_speed() },
-            None => Course::Caution { ahead: None, since: None },
+            None => Course::GrowingBraking { ahead: None, since: None },
         },
         Mode::Fault { .. } => Course::Brake,
     }
@@ -85,7 +85,7 @@ fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let next = now.plus(scene.config.period);
     let target = target.and_then(|index| Some((scene.estimated(index, next)?, scene.peers.length_of(index))));
     let cap = ego.map_or(cap, |ego| room::careful(scene, now, ego).min(cap));
-    Course::Law { driver: scene.ego_model_now(gains), target, cap }
+    Course::Law { vehicle: scene.ego_model_now(gains), target, cap }
 }
 
 /// Slowing down since the request was lost. Behind a target that can still be driven by, by the law, which keeps the distance; else
@@ -101,7 +101,7 @@ fn hand_back<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let is_driven_by = |index: &usize| scene.is_in_reach(*index, now) && !scene.is_contradicted(*index, now);
     match target.filter(is_driven_by) {
         Some(index) => by_law(scene, now, Some(index), gains, ego, slowing(&scene.config, now.since(since))),
-        None => Course::Caution { ahead: still_known(scene, now, target), since: Some(since) },
+        None => Course::GrowingBraking { ahead: still_known(scene, now, target), since: Some(since) },
     }
 }
 
@@ -134,6 +134,6 @@ fn near<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     speed: Speed,
 ) -> Option<Reading> {
     let ego = scene.ego.as_ref()?.position;
-    let gap = position.ahead_of(ego).limited(REACH.negated(), REACH);
+    let gap = position.ahead_of(ego).limited(FARTHEST_PEER.negated(), FARTHEST_PEER);
     Some(Reading { position: ego.ahead(gap), speed })
 }

@@ -72,12 +72,12 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let mut minded = Slots::NONE;
     let Some(own) = scene.estimator.read_own(now) else { return minded };
     for index in 0..PEERS {
-        let is_minded = scene.coordination.standing(index).is_some_and(|standing| {
-            if scene.coordination.is_on_lane(standing) {
+        let is_minded = scene.coordination.approach(index).is_some_and(|approach| {
+            if scene.coordination.is_on_lane(approach) {
                 scene.estimated(index, now).is_some_and(|reading| reading.position > own.position)
             } else {
-                let is_ahead = || scene.entry(index, standing).is_some_and(|entry| is_ahead(scene, index, &entry));
-                standing.crossing > next || standing.crossing == next && is_ahead()
+                let is_ahead = || scene.entry(index, approach).is_some_and(|entry| is_ahead(scene, index, &entry));
+                approach.crossing > next || approach.crossing == next && is_ahead()
             }
         });
         minded.set(index, is_minded);
@@ -97,12 +97,12 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let is_later = view.next != coordination.next();
     let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
     for index in (0..PEERS).filter(|index| minded.contains(*index)) {
-        let Some(standing) = coordination.standing(index) else { continue };
-        let is_on_lane = coordination.is_on_lane(standing);
+        let Some(approach) = coordination.approach(index) else { continue };
+        let is_on_lane = coordination.is_on_lane(approach);
         // The entry is asked for first, because it needs no horizon.
-        let entry = scene.entry(index, standing).filter(|entry| {
+        let entry = scene.entry(index, approach).filter(|entry| {
             let is_ahead = is_later || is_ahead(scene, index, entry);
-            is_ahead && standing.crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
+            is_ahead && approach.crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
         });
         if !is_on_lane && entry.is_none() {
             continue;
@@ -112,13 +112,13 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             lane = Some((index, reading.position));
         }
         let Some(entry) = entry.filter(|_| end.is_some_and(|end| rear < end)) else { continue };
-        if followed == Some(index) || view.is_announced(standing) {
+        if followed == Some(index) || view.is_announced(approach) {
             order = Some((index, entry));
         }
     }
     // A vehicle that is ahead on the same leg, and not yet at the later crossing, comes there before the ego, and after all that are
     // there now.
-    let comes_last = |index| coordination.standing(index).is_some_and(|standing| standing.crossing != view.next);
+    let comes_last = |index| coordination.approach(index).is_some_and(|approach| approach.crossing != view.next);
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
     let is_heeded = |index: &usize| view.is_heeded(*index);
     let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));

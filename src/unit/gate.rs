@@ -118,15 +118,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
 
     fn stop_before_area(&self, index: usize) -> Option<Position> {
         let coordination = &self.scene.coordination;
-        let (standing, crossing) = (coordination.standing(index)?, coordination.crossing()?);
+        let (approach, crossing) = (coordination.approach(index)?, coordination.crossing()?);
         let intersection = crossing.intersection;
         let point = coordination.crossing_point(crossing)?;
         let area_begins = self.scene.area_begins()?;
-        if self.rearmost > area_begins || !intersection.conflict(crossing.leg, standing.leg) {
+        if self.rearmost > area_begins || !intersection.conflict(crossing.leg, approach.leg) {
             return None;
         }
         let near_end = self.scene.bound(index, self.now)?.lowest_position();
-        let is_inside = near_end >= area_begins && coordination.is_here(standing);
+        let is_inside = near_end >= area_begins && coordination.is_here(approach);
         if !is_inside && !coordination.choice().ahead.contains(index) {
             return None;
         }

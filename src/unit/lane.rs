@@ -26,7 +26,7 @@ struct Certain {
 /// A silent vehicle that could not stand nearer than this is out of the radio's reach, even if it has braked at its hardest since it was
 /// heard last. It is not minded until it is heard again; at that distance no more is known of any other vehicle either. This is an
 /// assumption of use: a vehicle that comes nearer is heard.
-const RADIO_REACH: Distance = Distance::from_mm(300_000);
+const RADIO_RANGE: Distance = Distance::from_mm(300_000);
 
 /// Notes which vehicles on the ego's own leg are ahead of its front bumper for certain, which of them are behind which, and how far they
 /// have come at least.
@@ -58,7 +58,7 @@ fn certain<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     now: Instant,
 ) -> Vec<Certain, PEERS> {
     let certain = |index: usize| {
-        scene.coordination.standing(index).filter(|standing| scene.coordination.is_on_lane(standing))?;
+        scene.coordination.approach(index).filter(|approach| scene.coordination.is_on_lane(approach))?;
         let (rear, bound) = scene.near_rear(index, now)?;
         Some(Certain { index, near: bound.lowest_position(), far: bound.highest_position(), rear })
     };
@@ -77,7 +77,7 @@ fn is_beyond<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     front: Position,
 ) -> bool {
     let is_silent = scene.peers.get(index).is_some_and(|track| !track.link().is_on(now, &scene.config.link));
-    let is_far = || stop_behind(scene, index).is_some_and(|stop| stop >= front.ahead(RADIO_REACH));
+    let is_far = || stop_behind(scene, index).is_some_and(|stop| stop >= front.ahead(RADIO_RANGE));
     is_silent && (scene.coordination.choice().beyond.contains(index) || is_far())
 }
 

@@ -339,8 +339,8 @@ fn own_knots<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 fn horizon_tenths<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
 ) -> u8 {
-    let reach = scene.estimator.reach().min(scene.config.prediction.horizon);
-    u8::try_from(reach.as_millis() / 100).unwrap_or(u8::MAX)
+    let length = scene.estimator.horizon_length().min(scene.config.prediction.horizon);
+    u8::try_from(length.as_millis() / 100).unwrap_or(u8::MAX)
 }
 
 fn links_on<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(

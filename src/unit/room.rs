@@ -77,12 +77,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         }
         let then = if self.speed <= SLOW { self.at } else { self.at.plus(self.time_to(line).min(LEAVES)) };
         let is_due = |index: usize| {
-            let Some(standing) = coordination.standing(index) else { return false };
+            let Some(approach) = coordination.approach(index) else { return false };
             let is_inside = || {
-                coordination.is_here(standing)
+                coordination.is_here(approach)
                     && self.scene.rear(index, self.at).is_some_and(|(reading, _)| reading.position > line)
             };
-            crossing.intersection.conflict(crossing.leg, standing.leg)
+            crossing.intersection.conflict(crossing.leg, approach.leg)
                 && (coordination.choice().ahead.contains(index) || is_inside())
                 && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end)
         };

@@ -279,9 +279,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// The entry of a peer in the order.
-    pub fn entry(&self, index: usize, standing: &PeerApproach) -> Option<Entry> {
+    pub fn entry(&self, index: usize, approach: &PeerApproach) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
-        Some(Entry { station, arrival: standing.arrival, claim: standing.claim, leg: standing.leg })
+        Some(Entry { station, arrival: approach.arrival, claim: approach.claim, leg: approach.leg })
     }
 
     /// The standstill distance behind the vehicle that the ego follows.
@@ -295,9 +295,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let law = self.config.law.standstill;
         let Some(itinerary) = self.coordination.itinerary() else { return law };
         let law = law.plus(QUEUE);
-        match (itinerary.crossings.get(next), self.coordination.standing(index)) {
-            (Some(crossing), Some(standing)) if standing.crossing == next => {
-                standstill_behind(law, crossing, standing.leg)
+        match (itinerary.crossings.get(next), self.coordination.approach(index)) {
+            (Some(crossing), Some(approach)) if approach.crossing == next => {
+                standstill_behind(law, crossing, approach.leg)
             }
             _ => law,
         }

@@ -89,14 +89,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     /// How gently the ego may brake for a peer that it follows.
     pub fn comfort(&self, index: Option<usize>) -> ComfortBraking {
         let coordination = &self.scene.coordination;
-        let standing = index.and_then(|index| coordination.standing(index));
-        standing
-            .map_or(ComfortBraking::NONE, |standing| coordination.comfort(standing, self.next, self.front, self.speed))
+        let approach = index.and_then(|index| coordination.approach(index));
+        approach
+            .map_or(ComfortBraking::NONE, |approach| coordination.comfort(approach, self.next, self.front, self.speed))
     }
 
     /// Whether the ego may follow this peer, if it is ahead in the order: see [`crate::coordination`].
-    pub fn is_announced(&self, standing: &PeerApproach) -> bool {
-        self.scene.coordination.is_announced(standing, self.at, self.next, self.front, self.speed)
+    pub fn is_announced(&self, approach: &PeerApproach) -> bool {
+        self.scene.coordination.is_announced(approach, self.at, self.next, self.front, self.speed)
     }
 
     /// Whether a peer on the virtual lane is as far behind the ego's front bumper as it must be to follow the ego over the crossing.

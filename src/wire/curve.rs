@@ -17,8 +17,8 @@
 //! The worst are vehicles that stop and move off again within one stretch. Without the cuts the worst at 4 s is 28 mm,
 //! without the bow 15 mm. The shares were found by dynamic programming over all pairs of 40 candidates.
 
-use super::horizon::{KNOTS, Knot, Knots, SHARES_PER_MILLE};
-use crate::fixed::{ShareFormat, mul_hi_fraction, quotient, saturate_i32, shl_saturating};
+use super::horizon::{KNOTS, KNOTS_PER_MILLE, Knot, Knots};
+use crate::fixed::{FractionFormat, mul_hi_fraction, quotient, saturate_i32, shl_saturating};
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, Speed};
 
@@ -41,7 +41,7 @@ const SPEED_SHIFT: u32 = 2;
 /// A seventh of 32 bits: no sum of six, each times a share, overflows. Coefficients of the way over 292 m within one
 /// stretch and of the speed over 146 m/s are cut down to this; no vehicle has either.
 const COEFFICIENT: i64 = i32::MAX as i64 / 7;
-const SHARE_BITS: u32 = ShareFormat::FRAC_NBITS;
+const SHARE_BITS: u32 = FractionFormat::FRAC_NBITS;
 /// The shortest stretch.
 const SHORTEST: i64 = 1000;
 const MICROS_PER_S: i64 = 1_000_000;
@@ -305,7 +305,7 @@ impl Knots {
     #[must_use]
     pub fn through(tag: u8, start: Knot, length: Duration, mut path: impl FnMut(Duration) -> Knot) -> Self {
         let mut from = (0, start);
-        let knots = SHARES_PER_MILLE.map(|per_mille| {
+        let knots = KNOTS_PER_MILLE.map(|per_mille| {
             let (time, before) = from;
             let end = share_of(length, per_mille);
             let mut knot = Knot { bow: Distance::ZERO, ..path(Duration::from_micros(end)) }.rounded();

@@ -10,7 +10,7 @@ use crate::units::{Acceleration, Distance, Speed};
 /// Knots of a horizon on the wire.
 pub const KNOTS: usize = 5;
 
-/// One knot: the predicted state at a fixed share ([`SHARES_PER_MILLE`]) of the horizon's length after the motion's
+/// One knot: the predicted state at a fixed share ([`KNOTS_PER_MILLE`]) of the horizon's length after the motion's
 /// stamp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -44,7 +44,7 @@ pub struct Knots {
 }
 
 /// When the knots are, in thousandths of the horizon's length.
-pub const SHARES_PER_MILLE: [u16; KNOTS] = [175, 375, 600, 800, 1000];
+pub const KNOTS_PER_MILLE: [u16; KNOTS] = [175, 375, 600, 800, 1000];
 
 #[allow(clippy::cast_possible_wrap)] // 5
 const PART: Field = Field::selector("Part", 14, 3, KNOTS as i64);

@@ -5,7 +5,7 @@
 //! zero) or, for what must not be understated, up.
 
 use crate::fixed::{
-    AccelerationFormat, DistanceFormat, FineSecondsFormat, GainFormat, SecondsFormat, ShareFormat, SpeedFormat,
+    AccelerationFormat, DistanceFormat, FineSecondsFormat, FractionFormat, GainFormat, SecondsFormat, SpeedFormat,
     quotient, saturate_i32,
 };
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
@@ -82,7 +82,7 @@ quantity!(
     Acceleration: AccelerationFormat,
     Distance: DistanceFormat,
     FineSeconds: FineSecondsFormat,
-    Fraction: ShareFormat,
+    Fraction: FractionFormat,
     Gain: GainFormat,
     Jerk: AccelerationFormat,
     Seconds: SecondsFormat,

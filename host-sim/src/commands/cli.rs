@@ -45,7 +45,7 @@ pub enum Command {
     #[command(after_help = sweep::arguments::AFTER_HELP)]
     Sweep(SweepArguments),
     /// Measure the cost of the envelope: runs without and with it over silences of several lengths, on all cores
-    #[command(visible_alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
+    #[command(alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
     EnvelopeCost(EnvelopeCostArguments),
     /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
     #[command(after_help = gains::arguments::AFTER_HELP)]

@@ -64,7 +64,7 @@ impl Case {
             braking: mm(pick(&others)),
         };
         let period = Duration::from_millis(pick(&[10, 1, 20, 100]).into());
-        let longest = lag.plus(lag.share(limits.lag_tolerance)) <= FineSeconds::from_millis(1_998);
+        let longest = lag.plus(lag.fraction(limits.lag_tolerance)) <= FineSeconds::from_millis(1_998);
         let moves = speed > 0 || acceleration >= 0;
         (longest && moves).then_some(Self { limits, period, ego, obstacle, braking: mm(braking) })
     }
@@ -92,7 +92,7 @@ impl Case {
 
     /// The ends of what the real lag may be, and points between them.
     pub fn lags(&self) -> Vec<FineSeconds> {
-        let off = self.ego.lag.share(self.limits.lag_tolerance).to_bits();
+        let off = self.ego.lag.fraction(self.limits.lag_tolerance).to_bits();
         if off == 0 {
             return vec![self.ego.lag];
         }

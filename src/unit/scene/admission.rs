@@ -11,7 +11,7 @@ use super::Scene;
 use crate::coordination::{Axis, PeerApproach};
 use crate::health::{Cause, Health};
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
-use crate::parameters::{REACH, SHORTEST};
+use crate::parameters::{FARTHEST_PEER, SHORTEST};
 use crate::peers::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
 use crate::peers::{Admission, Off, Sample, Track, excess, timely};
 use crate::time::{Duration, Instant};
@@ -46,7 +46,7 @@ struct Placed {
 impl Placed {
     /// Whether what is held of the peer's place is not on this axis.
     fn is_elsewhere(&self) -> bool {
-        self.moved.is_some_and(|moved| moved.magnitude() > REACH)
+        self.moved.is_some_and(|moved| moved.magnitude() > FARTHEST_PEER)
     }
 }
 
@@ -133,7 +133,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let is_new = holder != Some(motion.station);
         // A motion without a place changes nothing of what is held, and the place that would tell two vehicles apart comes after it.
         if let Some((sample, _)) = sample.as_ref().filter(|_| is_new) {
-            let approach = placed.axis.as_ref().and_then(Axis::standing);
+            let approach = placed.axis.as_ref().and_then(Axis::approach);
             let is_namesake = |other: &usize| self.is_namesake(*other, sample, approach);
             if self.is_in_another_slot(at, index, motion.station, is_namesake) {
                 return Err(Cause::StationConflict);
@@ -212,7 +212,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Whether a motion is certain not to be of the vehicle in another slot: it is not where that one can be, or comes to the same
     /// crossing by another leg. Places on different legs are not to be compared.
     fn is_namesake(&self, other: usize, sample: &Sample, approach: Option<&PeerApproach>) -> bool {
-        let held = self.coordination.itinerary().and_then(|_| self.coordination.standing(other));
+        let held = self.coordination.itinerary().and_then(|_| self.coordination.approach(other));
         let is_by_another_leg =
             |(one, other): (&PeerApproach, &PeerApproach)| one.crossing == other.crossing && one.leg != other.leg;
         if approach.zip(held).is_some_and(is_by_another_leg) {
@@ -242,7 +242,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let held = track.map_or(Certainty::NONE, |track| *track.certainty());
         let judgement = self.weigh(track, sample, placed);
         let ego = self.ego.as_ref().map(|ego| ego.position);
-        if ego.is_none_or(|ego| sample.position.ahead_of(ego).magnitude() <= REACH) {
+        if ego.is_none_or(|ego| sample.position.ahead_of(ego).magnitude() <= FARTHEST_PEER) {
             return judgement;
         }
         let is_known = !placed.is_elsewhere() && track.is_some_and(|track| track.newest().is_some());

@@ -4,7 +4,7 @@
 use super::Scene;
 use crate::coordination::{Arrival, Axis, Crossing, PeerApproach};
 use crate::health::Cause;
-use crate::parameters::{DEFAULT_LENGTH, REACH};
+use crate::parameters::{DEFAULT_LENGTH, FARTHEST_PEER};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
 use crate::wire::geo::GeoPosition;
@@ -29,7 +29,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Sets the axis of a peer, and moves everything that is held of the peer by how far the axis moved.
     pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>) {
-        let before = self.coordination.standing(index).copied();
+        let before = self.coordination.approach(index).copied();
         if let Some(held) = self.coordination.axis_mut(index) {
             *held = axis;
         }
@@ -43,21 +43,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return self.leave(at, slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
-        let standing = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
-        self.take_standing(slot, route.stamp, crossing, route.distance, standing);
+        let approach = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
+        self.take_approach(slot, route.stamp, crossing, route.distance, approach);
     }
 
     /// Takes in where a peer is on the globe, unless the peer told its route just now.
     pub(super) fn take_peer_place(&mut self, at: Instant, slot: Slot, geo: &GeoPosition) {
         let index = usize::from(slot.0);
-        let says_more = |standing: &PeerApproach| standing.arrival.is_some() && at.since(standing.heard) < SAYS_MORE;
-        if self.coordination.itinerary().is_none() || self.coordination.standing(index).is_some_and(says_more) {
+        let says_more = |approach: &PeerApproach| approach.arrival.is_some() && at.since(approach.heard) < SAYS_MORE;
+        if self.coordination.itinerary().is_none() || self.coordination.approach(index).is_some_and(says_more) {
             return;
         }
         let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(at, slot) };
-        let standing =
+        let approach =
             PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
-        self.take_standing(slot, geo.stamp, crossing, distance, standing);
+        self.take_approach(slot, geo.stamp, crossing, distance, approach);
     }
 
     /// The crossing of the ego's way that a vehicle at this place comes to next, with its index, and the vehicle's leg and way to the
@@ -78,19 +78,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         next
     }
 
-    fn take_standing(
+    fn take_approach(
         &mut self,
         slot: Slot,
         stamp: Stamp,
         crossing: &Crossing,
         distance: Distance,
-        standing: PeerApproach,
+        approach: PeerApproach,
     ) {
         let index = usize::from(slot.0);
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
-        let before = self.coordination.standing(index).copied();
+        let before = self.coordination.approach(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return };
-        let moved = axis.place(stamp, point, distance, standing);
+        let moved = axis.place(stamp, point, distance, approach);
         self.move_axis(index, moved);
         self.note_moving_on(index, before);
     }
@@ -98,7 +98,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// A peer that drives against the ego's direction, and moves on to another intersection, is far behind at once. Without an extra
     /// review the ego would follow it there until the next review.
     fn note_moving_on(&mut self, index: usize, before: Option<PeerApproach>) {
-        let now = self.coordination.standing(index);
+        let now = self.coordination.approach(index);
         if before.zip(now).is_some_and(|(before, now)| before.crossing != now.crossing) {
             self.coordination.review_at_once();
         }
@@ -116,7 +116,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Moves everything that is held of a peer by how far its axis moved.
     fn move_axis(&mut self, index: usize, moved: Option<Distance>) {
         let (Some(moved), Some(track)) = (moved, self.peers.get_index_mut(index)) else { return };
-        if moved.magnitude() > REACH {
+        if moved.magnitude() > FARTHEST_PEER {
             track.restart();
             self.estimator.forget(index);
             self.coordination.forget_lane(index);

@@ -4,7 +4,7 @@ use super::{Curve, Piece, SHORTEST, Segment, share_of};
 use crate::fixed::quotient;
 use crate::time::Duration;
 use crate::units::{Distance, Speed};
-use crate::wire::horizon::SHARES_PER_MILLE;
+use crate::wire::horizon::KNOTS_PER_MILLE;
 
 impl Curve {
     /// All pieces in the order of time.
@@ -58,7 +58,7 @@ impl Pieces {
                     return Some((start, self.piece()));
                 }
             }
-            let end = share_of(self.curve.length, *SHARES_PER_MILLE.get(self.stretch)?);
+            let end = share_of(self.curve.length, *KNOTS_PER_MILLE.get(self.stretch)?);
             let [from, to] = self.curve.states.get(self.stretch..)?.first_chunk()?;
             self.segment.make(from, to, Duration::from_micros(end.saturating_sub(self.end)));
             (self.start, self.end) = (self.end, end);

@@ -150,7 +150,7 @@ pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
 
 fn device(setup: &Setup, outcome: &Outcome) -> DeviceFigures {
     let monitor = &outcome.monitor;
-    let in_run = || monitor.beats().iter().filter(|beat| outcome.time_of(beat.at) >= 0.0);
+    let in_run = || monitor.commands().iter().filter(|beat| outcome.time_of(beat.at) >= 0.0);
     let mut modes = BTreeMap::new();
     in_run().for_each(|beat| *modes.entry(mode_name(beat.mode)).or_default() += 1);
     DeviceFigures {
@@ -195,7 +195,7 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     let is_disturbed =
         |beat: &&CommandRecord| lateness.excuses(outcome.time_of(beat.at), beat.latency.unwrap_or(setup.config.period));
     let (disturbed, judged): (Vec<&CommandRecord>, Vec<&CommandRecord>) =
-        monitor.beats().iter().filter(|beat| is_of_device(outcome.time_of(beat.at))).partition(is_disturbed);
+        monitor.commands().iter().filter(|beat| is_of_device(outcome.time_of(beat.at))).partition(is_disturbed);
     let latencies: Vec<i64> = judged.iter().filter_map(|beat| Some(beat.latency?.as_micros())).collect();
     // Each period is judged on its own: a late tick of the harness excuses only the missed periods near it, not all
     // periods of the same silence.

@@ -17,7 +17,7 @@ const INPUTS: usize = 100;
 
 /// Number of commands that determine the lag: those of a quarter of a second, in which the drift of the clocks is
 /// negligible.
-const LAG_BEATS: usize = 25;
+const LAG_COMMANDS: usize = 25;
 
 /// A command of the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub enum News {
 pub struct Monitor {
     period: Duration,
     receiver: Receiver<1>,
-    beats: Vec<CommandRecord>,
+    commands: Vec<CommandRecord>,
     /// Errors of the protection, with their times.
     e2e: Vec<(Instant, Cause)>,
     /// The refusals that the device reports.
@@ -68,7 +68,7 @@ impl Monitor {
         Self {
             period,
             receiver: Receiver::new(identifiers, Role::Modem),
-            beats: Vec::new(),
+            commands: Vec::new(),
             e2e: Vec::new(),
             refusals: BTreeMap::new(),
             inputs: VecDeque::new(),
@@ -110,8 +110,8 @@ impl Monitor {
             Ok(Received::Whole(Message::Own(Said::Motion(motion) | Said::State(State { motion, .. })))) => {
                 // The device tells on which motion its command rests.
                 let input = self.inputs.iter().find(|(stamp, _)| *stamp == motion.stamp);
-                if let (Some((_, input)), Some(beat)) = (input, self.beats.last_mut()) {
-                    beat.latency = beat.latency.or(Some(beat.at.since(*input)));
+                if let (Some((_, input)), Some(command)) = (input, self.commands.last_mut()) {
+                    command.latency = command.latency.or(Some(command.at.since(*input)));
                 }
                 News::Other
             }
@@ -126,7 +126,7 @@ impl Monitor {
     fn command(&mut self, at: Instant, command: Command) -> News {
         // After a gap, a unit that has kept running counts on from its last number, or by the number of periods that
         // passed. A unit that has restarted has a small number.
-        let is_new = self.beats.last().is_some_and(|last| {
+        let is_new = self.commands.last().is_some_and(|last| {
             let gap = at.since(last.at);
             let counted = i64::from(command.tick.wrapping_sub(last.tick) & 63);
             let passed = (gap.as_micros() + self.period.as_micros() / 2).div_euclid(self.period.as_micros());
@@ -138,7 +138,7 @@ impl Monitor {
             self.restarts.push(at);
         }
         let latency = self.asked.take().map(|asked| at.since(asked));
-        self.beats.push(CommandRecord { at, mode: command.mode, tick: command.tick, latency });
+        self.commands.push(CommandRecord { at, mode: command.mode, tick: command.tick, latency });
         News::Command(command, is_new)
     }
 
@@ -147,18 +147,18 @@ impl Monitor {
     /// is common to all commands does not show.
     #[must_use]
     pub fn lag(&self) -> Duration {
-        let Some(last) = self.beats.last() else { return Duration::ZERO };
-        let lag = |beat: &CommandRecord| {
-            let counted = i64::from(last.tick.wrapping_sub(beat.tick) & 63);
-            last.at.since(beat.at).as_micros() - counted * self.period.as_micros()
+        let Some(last) = self.commands.last() else { return Duration::ZERO };
+        let lag = |command: &CommandRecord| {
+            let counted = i64::from(last.tick.wrapping_sub(command.tick) & 63);
+            last.at.since(command.at).as_micros() - counted * self.period.as_micros()
         };
-        Duration::from_micros(self.beats.iter().rev().take(LAG_BEATS).map(lag).max().unwrap_or(0))
+        Duration::from_micros(self.commands.iter().rev().take(LAG_COMMANDS).map(lag).max().unwrap_or(0))
     }
 
     /// The commands of the device.
     #[must_use]
-    pub fn beats(&self) -> &[CommandRecord] {
-        &self.beats
+    pub fn commands(&self) -> &[CommandRecord] {
+        &self.commands
     }
 
     /// Errors of the protection, with their times. The first frame of each identifier is not an error, and neither is its
@@ -192,10 +192,10 @@ impl Monitor {
         let period = self.period.as_micros();
         let gap = |(index, pair): (usize, &[CommandRecord])| {
             let late = pair[1].at.since(pair[0].at).as_micros();
-            let next = self.beats.get(index + 2).map_or(late, |next| next.at.since(pair[0].at).as_micros() - period);
+            let next = self.commands.get(index + 2).map_or(late, |next| next.at.since(pair[0].at).as_micros() - period);
             (pair[1].at, (late.min(next) + period / 2).div_euclid(period) - 1)
         };
-        self.beats.windows(2).enumerate().map(gap).filter(|(_, missed)| *missed > 0).collect()
+        self.commands.windows(2).enumerate().map(gap).filter(|(_, missed)| *missed > 0).collect()
     }
 }
 
@@ -261,8 +261,8 @@ mod tests {
     #[test]
     fn a_device_that_is_slower_than_its_period_misses_every_other_one() {
         let mut device = Device::new();
-        for beat in 0..10 {
-            device.command(15 * u64::from(beat), beat);
+        for command in 0..10 {
+            device.command(15 * u64::from(command), command);
         }
         assert_eq!(device.monitor.missed().len(), 8); // the first frame is not trusted
     }
@@ -287,7 +287,7 @@ mod tests {
         device.monitor.ask(Instant::from_micros(3000));
         device.command(10, 2);
         device.command(20, 3);
-        let latencies: Vec<_> = device.monitor.beats().iter().map(|beat| beat.latency).collect();
+        let latencies: Vec<_> = device.monitor.commands().iter().map(|command| command.latency).collect();
         assert_eq!(latencies, [Some(Duration::from_millis(7)), None]);
     }
 
@@ -317,7 +317,7 @@ mod tests {
             let mut hear = |frame: &holdover::wire::Frame| assert_eq!(monitor.hear(at, &frame.into()), News::Other);
             sender.send(&said, &mut |frame: holdover::wire::Frame| hear(&frame)).unwrap();
         }
-        assert_eq!(device.monitor.beats().last().unwrap().latency, Some(Duration::from_millis(13)));
+        assert_eq!(device.monitor.commands().last().unwrap().latency, Some(Duration::from_millis(13)));
     }
 
     #[test]

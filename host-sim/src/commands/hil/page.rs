@@ -81,7 +81,7 @@ fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
         at.latency.map(|latency| (outcome.time_of(at.at), latency.as_micros() as f64 * 1e-3))
     };
     let latency: Vec<(f64, f64)> =
-        outcome.monitor.beats().iter().filter_map(millis).filter(|(at_s, _)| *at_s >= 0.0).collect();
+        outcome.monitor.commands().iter().filter_map(millis).filter(|(at_s, _)| *at_s >= 0.0).collect();
     let chart = |title: &str, unit: &str, layers| {
         let description = format!("{title} over the time of the run");
         Chart { description, layers, ..Chart::new(title, Axis::linear("time", "s"), Axis::linear(title, unit)) }

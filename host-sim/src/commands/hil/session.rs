@@ -158,7 +158,7 @@ impl BusListener {
                 // Over CAN FD there is no tag: an estimate is that of the command before it.
                 let is_of = |tick: u8, tag: u8| self.config.transport == Transport::Fd || tick % 4 == tag;
                 if let Some((Said { command, estimate: Some(twin) }, window)) = self.told.filter(|_| at_s >= 0.0)
-                    && self.monitor.beats().last().is_some_and(|beat| is_of(beat.tick, device.tag))
+                    && self.monitor.commands().last().is_some_and(|beat| is_of(beat.tick, device.tag))
                     && is_of(command.tick, twin.tag)
                 {
                     self.deviation.estimate(at_s, &device, &twin, window);
@@ -323,7 +323,7 @@ fn wait_for_device<P: Port>(
 
 /// Whether the device has fallen silent for good, without a fault.
 fn gone<P: Port>(setup: &Setup, talk: &Talk<P>, listener: &BusListener, rig: &mut dyn Rig, at_s: f64) -> Option<Cut> {
-    let last_s = talk.time_of(listener.monitor.beats().last()?.at);
+    let last_s = talk.time_of(listener.monitor.commands().last()?.at);
     let is_gone = at_s - last_s > GONE_S && !setup.is_excused(at_s);
     is_gone.then(|| Cut::Gone { at_s: last_s, ended: rig.has_ended() })
 }

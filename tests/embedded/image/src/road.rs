@@ -10,7 +10,7 @@ use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 #[cfg(feature = "fd")]
 use holdover::wire::fd::State;
-use holdover::wire::horizon::{Knot, Knots, SHARES_PER_MILLE};
+use holdover::wire::horizon::{KNOTS_PER_MILLE, Knot, Knots};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
@@ -146,7 +146,7 @@ fn parameters(peer: u8, other: bool) -> DrivingParameters {
 
 /// On at its speed, from the motion with this tag.
 fn horizon(tag: u8) -> Knots {
-    let knots = SHARES_PER_MILLE.map(|share| Knot {
+    let knots = KNOTS_PER_MILLE.map(|share| Knot {
         displacement: Distance::from_mm((i64::from(SPEED) * 39 * i64::from(share) / 10_000) as i32),
         speed: Speed::from_mm_per_s(SPEED),
         acceleration: Acceleration::ZERO,
