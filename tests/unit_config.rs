@@ -84,7 +84,7 @@ fn limits_outside_their_ranges_are_refused() {
     });
     range(ConfigError::Limits, [1, 6_000], |config, mm| config.limits.braking = set(mm));
     range(ConfigError::Limits, [4_000, 20_460], |config, mm| config.limits.emergency_braking = set(mm));
-    range(ConfigError::Limits, [1, 51_150], |config, mm| config.limits.jerk = Jerk::from_mm_per_s3(int(mm)));
+    range(ConfigError::Limits, [201, 51_150], |config, mm| config.limits.jerk = Jerk::from_mm_per_s3(int(mm)));
 }
 
 #[test]

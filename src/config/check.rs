@@ -64,7 +64,7 @@ impl core::fmt::Display for ConfigError {
             Self::Horizon => "horizon is shorter than two steps, longer than 25.5 s, or needs more steps than there is room for",
             Self::Length => "length is outside 0 to 40.95 m",
             Self::Lag => "lag is outside 0 to 1.998 s",
-            Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³)",
+            Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³, and more than 2 mm/s² in a period, by which a command changes at least)",
             Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
             Self::Standstill => "standstill is outside 0 to 10.23 m",
             Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
@@ -85,6 +85,8 @@ impl core::error::Error for ConfigError {}
 const LONGEST_LAG: FineSeconds = FineSeconds::from_millis(1_998);
 /// With less the last gate could hardly brake: a command has steps of 2 mm/s².
 const LEAST_BRAKING: Acceleration = Acceleration::from_mm_per_s2(100);
+/// A command has steps of 2 mm/s². What changes less in a period never changes.
+const LEAST_STEP: Acceleration = Acceleration::from_mm_per_s2(2);
 const LEAST_JERK: Jerk = Jerk::from_mm_per_s3(100);
 const WIRE_SPEED_MAX: Speed = Speed::from_mm_per_s(65_534);
 const WIRE_ACCELERATION_MAX: Acceleration = Acceleration::from_mm_per_s2(20_460);
@@ -152,7 +154,7 @@ impl Config {
             && braking <= parameters::BRAKING_MAX
             && braking <= emergency_braking
             && emergency_braking <= WIRE_ACCELERATION_MAX
-            && jerk > Jerk::ZERO
+            && jerk.over(self.period.fine_seconds()) > LEAST_STEP
             && jerk <= Jerk::from_mm_per_s3(51_150);
         if holds { Ok(()) } else { Err(ConfigError::Limits) }
     }

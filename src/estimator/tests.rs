@@ -51,6 +51,7 @@ fn sample(age_us: i64, mm_per_s: i32, mm_per_s2: i32) -> Sample {
         demand: Acceleration::from_mm_per_s2(mm_per_s2),
         position_accuracy: None,
         speed_accuracy: None,
+        is_timed: true,
         station: StationHash(1),
         tag: 0,
     }

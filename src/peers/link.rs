@@ -12,10 +12,15 @@ pub struct Link {
     period: Duration,
     delay: Duration,
     loss: u16,
+    /// Gaps in a row that were longer than a period.
+    longer: u8,
 }
 
 /// Weight of a new measurement in the running means: 1/8.
 const WEIGHT: i64 = 8;
+/// So many gaps in a row that are longer than a period show another period. Of a link that loses 40 % of the messages at random, one in
+/// two million runs of gaps is that long.
+const LONGER: u8 = 16;
 /// The full scale of [`Link::loss`].
 pub const LOSS_ONE: u16 = 10_000;
 
@@ -23,7 +28,7 @@ impl Link {
     /// Nothing is heard yet. Messages are expected with this period.
     #[must_use]
     pub const fn new(period: Duration) -> Self {
-        Self { heard: None, newest: None, period, delay: Duration::ZERO, loss: 0 }
+        Self { heard: None, newest: None, period, delay: Duration::ZERO, loss: 0, longer: 0 }
     }
 
     /// Notes a valid message, received at `received`, about the instant `at`.
@@ -43,11 +48,20 @@ impl Link {
         // A gap of n periods is n - 1 lost messages and a received one. A longer gap says nothing of the period.
         let periods = step.plus(Duration::from_micros(self.period.as_micros() / 2)).as_micros();
         let periods = periods.checked_div(self.period.as_micros()).unwrap_or(1).clamp(1, 1000);
-        if periods == 1 {
-            self.period = mean_time(self.period, step).clamp(Duration::from_millis(10), Duration::from_millis(1000));
-        }
+        self.measure_period(step, periods);
         let lost = periods.saturating_sub(1).saturating_mul(i64::from(LOSS_ONE)).checked_div(periods).unwrap_or(0);
         self.loss = u16::try_from(mean(self.loss.into(), lost)).unwrap_or(LOSS_ONE);
+    }
+
+    /// Where every gap is of several periods, the peer has begun to send less often: so many losses in a row do not happen.
+    fn measure_period(&mut self, step: Duration, periods: i64) {
+        let limited = |period: Duration| period.clamp(Duration::from_millis(10), Duration::from_millis(1000));
+        self.longer = if periods == 1 { 0 } else { self.longer.saturating_add(1) };
+        if periods == 1 {
+            self.period = limited(mean_time(self.period, step));
+        } else if self.longer >= LONGER {
+            (self.period, self.longer) = (limited(self.period.times(2)), 0);
+        }
     }
 
     /// Whether a valid message came within the expected period and the tolerance.

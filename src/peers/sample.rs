@@ -44,6 +44,8 @@ pub struct Sample {
     pub position_accuracy: Option<Distance>,
     /// 95 % accuracy of the speed, if published.
     pub speed_accuracy: Option<Speed>,
+    /// Whether `at` is by its stamp. Without GNSS time it is only by the time of reception.
+    pub is_timed: bool,
     /// The station that it is of.
     pub station: StationHash,
     /// The tag, which ties the sample to the horizon that was computed from it.
@@ -62,6 +64,7 @@ impl Sample {
         demand: Acceleration::ZERO,
         position_accuracy: None,
         speed_accuracy: None,
+        is_timed: false,
         station: StationHash(0),
         tag: 0,
     };
@@ -95,6 +98,7 @@ impl Sample {
             demand: motion.demand,
             position_accuracy: motion.position_accuracy,
             speed_accuracy: motion.speed_accuracy,
+            is_timed: true,
             station: motion.station,
             tag: motion.tag,
         }

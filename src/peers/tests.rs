@@ -36,6 +36,7 @@ fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admissi
 /// A sample of station 1 that was true at `true_at` and received at `received`.
 fn sample(true_at: u64, received: u64) -> Sample {
     Sample {
+        is_timed: true,
         at: at(true_at),
         received: at(received),
         stamp: GnssTime::from_micros(true_at * 1000).stamp(),

@@ -202,8 +202,9 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if (earlier > earlier_before || later > later_before)
             && let Some(newest) = self.newest().copied()
         {
-            let newest = Sample { at: off.corrected(newest.at), ..newest };
-            let uncertainty = uncertainty(&newest, true, limits, off);
+            let at = if newest.is_timed { off.corrected(newest.at) } else { newest.at };
+            let newest = Sample { at, ..newest };
+            let uncertainty = uncertainty(&newest, newest.is_timed, limits, off);
             self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &uncertainty));
         }
         off != Off::No && (begins || before == Off::No)

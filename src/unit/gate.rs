@@ -68,7 +68,11 @@ impl Gate {
         let view = Rearmost { scene, now, rearmost };
         let heard = match scene.coordination.itinerary() {
             None => scene.named_ahead(now).map(spare),
-            Some(_) => view.spare_on_way(&spare),
+            // The driver may name a vehicle that the order does not know of.
+            Some(_) => {
+                let named = scene.named_ahead(now).filter(|_| !scene.is_decided_by_order()).map(spare);
+                [view.spare_on_way(&spare), named].into_iter().flatten().min()
+            }
         };
         let seen = view.obstacles_seen().map(spare).min();
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
@@ -101,7 +105,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
         let others = (0..PEERS).filter_map(|index| self.stop_before_area(index));
-        others.chain(self.stop_without_time()).min()
+        others.chain(self.stop_without_time()).chain(self.stop_before_later()).min()
+    }
+
+    /// Before the intersection after the next one the ego is able to stop in any case. It takes its place in the order there only when it
+    /// has left the next one.
+    fn stop_before_later(&self) -> Option<Position> {
+        let coordination = &self.scene.coordination;
+        let later = coordination.itinerary()?.crossings.get(coordination.next().saturating_add(1))?;
+        Some(coordination.crossing_point(later)?.ahead(later.intersection.half.negated()))
     }
 
     fn stop_without_time(&self) -> Option<Position> {

@@ -223,7 +223,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if self.named.is_not_in(nearest, station) {
             return None;
         }
-        let held = self.named.slot().filter(|slot| self.peers.named(station).any(|index| index == *slot));
+        // It has that name, or had it when the driver named it: a vehicle may change its name, which leaves the name to others.
+        let held = self.named.slot().filter(|_| self.named.is_called(station));
         let Some((held, ego)) = held.filter(|held| *held != nearest).zip(ego) else { return Some(nearest) };
         let bounds = self.bound(held, ego.at).zip(self.bound(nearest, ego.at));
         let is_replaced = bounds.is_none_or(|(held, nearest)| {

@@ -41,12 +41,14 @@ struct Placed {
     moved: Option<Distance>,
     /// The motion on the ego's axis; `None` while the peer's axis is not known.
     motion: Option<Motion>,
+    /// The peer had left the ego's way, and is on it again.
+    is_back: bool,
 }
 
 impl Placed {
     /// Whether what is held of the peer's place is not on this axis.
     fn is_elsewhere(&self) -> bool {
-        self.moved.is_some_and(|moved| moved.magnitude() > FARTHEST_PEER)
+        self.is_back || self.moved.is_some_and(|moved| moved.magnitude() > FARTHEST_PEER)
     }
 }
 
@@ -127,7 +129,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             let moved = placed.moved.unwrap_or(Distance::ZERO);
             let newest = || Some(track?.newest()?.position.ahead(moved));
             let ego = self.ego.as_ref().map(|ego| ego.position);
-            let sample = Sample::of(&motion, stamped, at, ego.or_else(newest));
+            let is_timed = self.is_synchronised(at);
+            let sample = Sample { is_timed, ..Sample::of(&motion, stamped, at, ego.or_else(newest)) };
             (sample, self.judge(track, &sample, &placed))
         });
         let is_new = holder != Some(motion.station);
@@ -228,9 +231,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// A motion on the ego's axis.
     fn place_motion(&self, index: usize, motion: &Motion) -> Placed {
         let axis = self.coordination.itinerary().and(self.coordination.axis(index));
-        let Some(mut axis) = axis.copied() else { return Placed { axis: None, moved: None, motion: Some(*motion) } };
+        let Some(mut axis) = axis.copied() else {
+            return Placed { axis: None, moved: None, motion: Some(*motion), is_back: false };
+        };
+        let was_placed = axis.approach().is_some();
         let (motion, moved) = axis.translate(motion);
-        Placed { axis: Some(axis), moved, motion }
+        let is_back = !was_placed && axis.approach().is_some() && self.is_placed_before(index);
+        Placed { axis: Some(axis), moved, motion, is_back }
     }
 
     /// Judges a sample by what is held of its station, if anything is.
@@ -282,7 +289,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.peers.follow_on(left, index);
         }
         if let Some(axis) = plan.placed.axis {
-            self.place_on(index, axis, plan.placed.moved);
+            self.place_on(index, axis, plan.placed.moved, plan.placed.is_back);
         }
         let Some(track) = self.peers.get_index_mut(index) else { return };
         // A sample is admitted only when the station's place is known. The place is taken in only while the slot is not disputed. So this

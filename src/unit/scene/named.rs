@@ -29,8 +29,8 @@ pub(in crate::unit) struct Displaced {
 pub(in crate::unit) enum Named {
     /// No vehicle, as far as is known.
     Nobody = 0,
-    /// The vehicle in this slot, which was heard since it was named.
-    InSlot(u8),
+    /// The vehicle in this slot, which was heard since it was named by this name. It may have another one since.
+    InSlot(u8, StationHash),
     /// The vehicle that was in the slot before another station took the slot over.
     Displaced(Displaced),
 }
@@ -39,9 +39,14 @@ impl Named {
     /// The slot of the vehicle, while it has one.
     pub fn slot(&self) -> Option<usize> {
         match self {
-            Self::InSlot(slot) => Some(usize::from(*slot)),
+            Self::InSlot(slot, _) => Some(usize::from(*slot)),
             Self::Nobody | Self::Displaced(_) => None,
         }
+    }
+
+    /// Whether this is the name by which the driver named it.
+    pub fn is_called(&self, station: StationHash) -> bool {
+        matches!(self, Self::InSlot(_, name) if *name == station)
     }
 
     /// Whether the vehicle has lost its slot, and the vehicle with this name in a slot is certain to be another one.
@@ -54,7 +59,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Notes the vehicle that the driver has put ahead.
     pub fn note_named(&mut self, target: Option<usize>) {
         match target {
-            Some(index) => self.named = u8::try_from(index).map_or(Named::Nobody, Named::InSlot),
+            Some(index) => {
+                let Predecessor::Station(name) = self.predecessor() else { return };
+                self.named = u8::try_from(index).map_or(Named::Nobody, |slot| Named::InSlot(slot, name));
+            }
             None if self.predecessor() == Predecessor::None => self.named = Named::Nobody,
             None => {}
         }
@@ -75,7 +83,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Keeps what is certain of the vehicle that the driver has put ahead, when it loses its slot: the vehicle is still there.
     pub(super) fn displace(&mut self, index: usize) {
-        if !matches!(self.named, Named::InSlot(slot) if usize::from(slot) == index) {
+        if !matches!(self.named, Named::InSlot(slot, _) if usize::from(slot) == index) {
             return;
         }
         let certain = self.peers.get(index).and_then(|track| {
@@ -89,7 +97,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     pub fn named_ahead(&self, now: Instant) -> Option<Obstacle> {
         match &self.named {
             Named::Nobody => None,
-            Named::InSlot(slot) => {
+            Named::InSlot(slot, _) => {
                 let index = usize::from(*slot);
                 if self.is_seen_past(index, now) { None } else { self.obstacle(now, index) }
             }

@@ -4,7 +4,7 @@
 use super::Scene;
 use crate::coordination::{Arrival, Axis, Crossing, PeerApproach};
 use crate::health::Cause;
-use crate::parameters::{DEFAULT_LENGTH, FARTHEST_PEER};
+use crate::parameters::FARTHEST_PEER;
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
 use crate::wire::geo::GeoPosition;
@@ -28,10 +28,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Sets the axis of a peer, and moves everything that is held of the peer by how far the axis moved.
-    pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>) {
+    pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>, is_back: bool) {
         let before = self.coordination.approach(index).copied();
         if let Some(held) = self.coordination.axis_mut(index) {
             *held = axis;
+        }
+        if is_back {
+            self.forget_place(index);
         }
         self.move_axis(index, moved);
         self.note_moving_on(index, before);
@@ -54,7 +57,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if self.coordination.itinerary().is_none() || self.coordination.approach(index).is_some_and(says_more) {
             return;
         }
-        let Some((place, crossing, leg, distance)) = self.approached(geo) else { return self.leave(at, slot) };
+        let Some((place, crossing, leg, distance)) = self.approached(index, geo) else { return self.leave(at, slot) };
         let approach =
             PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
         self.take_approach(slot, geo.stamp, crossing, distance, approach);
@@ -62,14 +65,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// The crossing of the ego's way that a vehicle at this place comes to next, with its index, and the vehicle's leg and way to the
     /// crossing point.
-    fn approached(&self, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
+    fn approached(&self, index: usize, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
         let mut next: Option<(usize, &'static Crossing, u8, Distance)> = None;
         for (place, crossing) in self.coordination.itinerary()?.crossings.iter().enumerate() {
             let intersection = crossing.intersection;
             for approach in intersection.approaches {
                 let Some(found) = approach.path.place(geo) else { continue };
                 let distance = approach.crossing.ahead_of(found.along);
-                let has_left = distance < intersection.half.plus(DEFAULT_LENGTH).negated();
+                let has_left = distance < intersection.half.plus(self.peers.length_of(index)).negated();
                 if !has_left && next.is_none_or(|(.., nearest)| distance < nearest) {
                     next = Some((place, crossing, approach.leg, distance));
                 }
@@ -91,6 +94,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let before = self.coordination.approach(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return };
         let moved = axis.place(stamp, point, distance, approach);
+        let is_placed = axis.approach().is_some();
+        if before.is_none() && is_placed && self.is_placed_before(index) {
+            self.forget_place(index);
+        }
         self.move_axis(index, moved);
         self.note_moving_on(index, before);
     }
@@ -105,7 +112,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     fn leave(&mut self, at: Instant, slot: Slot) {
-        if self.may_be_of_another(at, slot.0.into()) {
+        // The driver's word that a vehicle is ahead counts for more than what that vehicle says of its way.
+        let is_named = !self.is_decided_by_order() && self.named.slot() == Some(slot.0.into());
+        if is_named || self.may_be_of_another(at, slot.0.into()) {
             return;
         }
         if let Some(axis) = self.coordination.axis_mut(slot.0.into()) {
@@ -113,13 +122,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
+    /// Whether something is held of where a peer is or was.
+    pub(super) fn is_placed_before(&self, index: usize) -> bool {
+        self.peers.get(index).is_some_and(|track| track.newest().is_some())
+    }
+
+    /// Forgets where a peer was. What was certain of it on an axis that it left, and which vehicles it was ahead of, say nothing of where
+    /// it is on a new one: it may have come back behind them.
+    fn forget_place(&mut self, index: usize) {
+        if let Some(track) = self.peers.get_index_mut(index) {
+            track.restart();
+        }
+        self.estimator.forget(index);
+        self.coordination.forget_lane(index);
+    }
+
     /// Moves everything that is held of a peer by how far its axis moved.
     fn move_axis(&mut self, index: usize, moved: Option<Distance>) {
         let (Some(moved), Some(track)) = (moved, self.peers.get_index_mut(index)) else { return };
         if moved.magnitude() > FARTHEST_PEER {
-            track.restart();
-            self.estimator.forget(index);
-            self.coordination.forget_lane(index);
+            self.forget_place(index);
         } else {
             track.shift(moved);
             self.estimator.shift(index, moved);

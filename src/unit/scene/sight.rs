@@ -5,7 +5,7 @@
 //!
 //! *Memory.* A vehicle that was seen is remembered after the view has ended. Its near end is carried on like that of an unknown vehicle,
 //! which may brake as hard as any vehicle. A vehicle that was driving is remembered for [`MOVING`], and a vehicle that stood or crawled
-//! for [`STANDING`]. A newer view takes its place, unless the newer view is nearer. Then the nearer vehicle hides what stood beyond it,
+//! for [`STANDING`]. A newer view takes its place, unless the newer view is nearer. Then the nearer vehicle hides what is beyond it,
 //! and both are remembered.
 //!
 //! *Contradiction.* A disagreement begins with [`DISAGREEMENT`] views in a row that what is certain of the target excludes. It lasts
@@ -40,6 +40,9 @@ const DISAGREEMENT: u8 = 3;
 /// A disagreement is over when no view has contradicted the target for this long.
 const SETTLED: Duration = Duration::from_millis(1_000);
 
+/// So many vehicles that are hidden by nearer ones are remembered.
+const HIDDEN: usize = 3;
+
 /// A view, at an instant of the unit's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::unit) struct Sight {
@@ -55,6 +58,17 @@ pub(in crate::unit) struct Sight {
 }
 
 impl Sight {
+    /// Whether the vehicle may have stood or crawled.
+    fn stands(&self) -> bool {
+        self.bound().lowest_speed() <= CRAWL
+    }
+
+    /// Whether the vehicle is still remembered.
+    fn is_remembered(&self, now: Instant) -> bool {
+        let age = now.since(self.at);
+        age <= MOVING || age <= STANDING && self.stands()
+    }
+
     /// What is certain of the rear that was seen, by this view alone.
     pub fn bound(&self) -> Bound {
         Bound::around(self.at, self.rear, self.speed, &self.uncertainty, &AccelerationRange::WORST)
@@ -75,8 +89,8 @@ struct Contradiction {
 #[derive(Clone, Debug, Default)]
 pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
-    /// The vehicle that was seen standing last, until a view shows that it is not there.
-    standing: Held<Sight>,
+    /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
+    hidden: [Held<Sight>; HIDDEN],
     /// Views in a row that contradict what is certain of the target.
     contradictions: u8,
     /// Views in a row that saw past all that is certain of the target.
@@ -90,7 +104,7 @@ impl Ranging {
     pub(in crate::unit) const fn new() -> Self {
         Self {
             newest: Held::Nothing,
-            standing: Held::Nothing,
+            hidden: [Held::Nothing; HIDDEN],
             contradictions: 0,
             past: 0,
             contradiction: Held::Nothing,
@@ -109,17 +123,22 @@ impl Ranging {
         seen >= self.named
     }
 
-    /// Takes in a view.
+    /// Takes in a view. One that comes late says nothing: since it was taken, a nearer vehicle was seen, or a farther one.
     pub(in crate::unit) fn see(&mut self, sight: Sight) {
+        let newest = self.newest.get();
+        if newest.is_some_and(|newest| sight.at < newest.at) {
+            return;
+        }
         let seen = sight.bound();
         // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be.
         let is_beyond = |held: &Sight| {
             seen.highest_position() >= held.bound().after(seen.at(), &AccelerationRange::WORST).lowest_position()
         };
-        if seen.lowest_speed() <= CRAWL {
-            self.standing.set(sight);
-        } else if self.standing.as_ref().is_some_and(is_beyond) {
-            self.standing.clear();
+        for held in self.hidden.iter_mut().filter(|held| held.as_ref().is_some_and(is_beyond)) {
+            held.clear();
+        }
+        if let Some(newest) = newest.filter(|newest| !is_beyond(newest)) {
+            self.hide(sight.at, newest);
         }
         self.newest.set(sight);
     }
@@ -137,15 +156,31 @@ impl Ranging {
         &self,
         now: Instant,
         station: Option<StationHash>,
-    ) -> impl Iterator<Item = Bound> + use<> {
-        let moving = self.newest.get().filter(|sight| now.since(sight.at) <= MOVING);
-        let remembered = [moving, self.standing(now)].into_iter().flatten();
+    ) -> impl Iterator<Item = Bound> + use<'_> {
+        let remembered = self.remembered(now);
         remembered.filter(move |sight| station.is_none() || sight.station != station).map(|sight| sight.bound())
     }
 
-    /// The vehicle that was seen standing.
-    pub(in crate::unit) fn standing(&self, now: Instant) -> Option<Sight> {
-        self.standing.get().filter(|sight| now.since(sight.at) <= STANDING)
+    /// The vehicles that were seen standing.
+    pub(in crate::unit) fn standing(&self, now: Instant) -> impl Iterator<Item = Sight> + use<'_> {
+        self.remembered(now).filter(Sight::stands)
+    }
+
+    fn remembered(&self, now: Instant) -> impl Iterator<Item = Sight> + use<'_> {
+        let held = core::iter::once(&self.newest).chain(&self.hidden).filter_map(Held::as_ref);
+        held.filter(move |sight| sight.is_remembered(now)).copied()
+    }
+
+    /// Keeps the last view of a vehicle that a nearer one hides from now on: in place of one that is not remembered any more, or else of
+    /// the oldest.
+    fn hide(&mut self, now: Instant, sight: Sight) {
+        let age = |held: &Held<Sight>| {
+            let held = held.as_ref().filter(|held| held.is_remembered(now));
+            held.map_or(Duration::MAX, |held| now.since(held.at))
+        };
+        if let Some(place) = self.hidden.iter_mut().max_by_key(|held| age(held)) {
+            place.set(sight);
+        }
     }
 
     /// Notes whether a view contradicts what is certain of a station, and whether it saw past that. Returns whether a disagreement
