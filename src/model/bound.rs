@@ -48,11 +48,12 @@ impl AccelerationRange {
         Self { acceleration: self.acceleration.max(other.acceleration), braking: self.braking.max(other.braking) }
     }
 
-    /// As published, but not less than 0.1 m/s² each, so that coming to rest takes finite time.
+    /// As published, braking by the harder of the two that are. It is not less than 0.1 m/s² each, so that coming to rest takes finite time.
     #[must_use]
     pub fn published(limits: &Limits) -> Self {
         const LEAST: Acceleration = Acceleration::from_mm_per_s2(100);
-        Self { acceleration: limits.acceleration.max(LEAST), braking: limits.emergency_braking.max(LEAST) }
+        let braking = limits.emergency_braking.max(limits.braking);
+        Self { acceleration: limits.acceleration.max(LEAST), braking: braking.max(LEAST) }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Se
 pub struct Limits {
     #[doc = meaning!(acceleration_limit)]
     ///
-    /// 0.02 m/s², rounded up.
+    /// 0.1 to 20.46 m/s² by 0.02 m/s², rounded up.
     pub acceleration: Acceleration,
     #[doc = meaning!(braking_limit)]
     ///
@@ -22,11 +22,11 @@ pub struct Limits {
     pub braking: Acceleration,
     #[doc = meaning!(jerk_limit)]
     ///
-    /// 0.05 m/s³.
+    /// 0.05 to 51.15 m/s³ by 0.05 m/s³.
     pub jerk: Jerk,
     #[doc = meaning!(emergency_braking)]
     ///
-    /// 0.02 m/s², rounded up.
+    /// 0.1 to 20.46 m/s² by 0.02 m/s², rounded up.
     pub emergency_braking: Acceleration,
 }
 
@@ -36,7 +36,7 @@ pub struct Limits {
 pub struct DrivingParameters {
     #[doc = meaning!(length)]
     ///
-    /// 0 to 40.95 m by 1 cm.
+    /// 0.5 to 40.95 m by 1 cm.
     pub length: Distance,
     #[doc = meaning!(standstill)]
     ///
@@ -77,7 +77,7 @@ pub struct DrivingParameters {
 }
 
 const PART: Field = Field::selector("Part", 14, 2, 3);
-const LENGTH: Field = Field::unsigned("Length", 16, 12).steps(100, "m").part(0);
+const LENGTH: Field = Field::unsigned("Length", 16, 12).limits(50, 4095).initially_largest().steps(100, "m").part(0);
 const STANDSTILL: Field = Field::unsigned("Standstill", 28, 10).steps(100, "m").part(0);
 const PREDECESSOR: predecessor::Fields = predecessor::fields(38).part(0);
 const TARGET_SPEED: Field = speed("TargetSpeed", 48).part(0);
@@ -86,11 +86,17 @@ const GAIN: Field = Field::unsigned("Gain", 26, 12).limits(0, 3999).steps(1000, 
 const DAMPING: Field = Field::unsigned("Damping", 38, 12).limits(0, 3999).steps(1000, "s").part(1);
 const LAG: Field = Field::unsigned("Lag", 50, 10).limits(0, 999).steps(500, "s").part(1);
 const CATCH_UP: Field = Field::unsigned("CatchUp", 60, 4).steps(20, "").part(1);
-const ACCELERATION: Field = Field::unsigned("AccelerationLimit", 16, 10).steps(50, "m/s2").part(2);
+const ACCELERATION: Field = certain("AccelerationLimit", 16);
 const BRAKING: Field = Field::unsigned("BrakingLimit", 26, 10).steps(50, "m/s2").part(2);
-const JERK: Field = Field::unsigned("JerkLimit", 36, 10).steps(20, "m/s3").part(2);
-const EMERGENCY: Field = Field::unsigned("EmergencyBraking", 46, 10).steps(50, "m/s2").part(2);
+const JERK: Field = Field::unsigned("JerkLimit", 36, 10).limits(1, 1023).steps(20, "m/s3").part(2);
+const EMERGENCY: Field = certain("EmergencyBraking", 46);
 const HORIZON: Field = Field::unsigned("HorizonLength", 56, 8).steps(10, "s").part(2);
+
+/// A limit from which receivers conclude where the vehicle is for certain; below 0.1 m/s² is reserved, and with it the 0 of a stack that
+/// was not set up.
+const fn certain(name: &'static str, start: u32) -> Field {
+    Field::unsigned(name, start, 10).limits(5, 1023).initially_largest().steps(50, "m/s2").part(2)
+}
 
 /// Desired time gap, shared with `DriverRequest`; below 0.1 s, and 800 and above, are reserved.
 pub(super) const fn time_gap(start: u32) -> Field {

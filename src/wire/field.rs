@@ -39,6 +39,8 @@ pub struct Field {
     pub max: i64,
     /// The raw value that says that there is none.
     pub none: Option<i64>,
+    /// The raw value that a sender has before it knows better, if it is not the one that is nearest to 0.
+    pub initial: Option<i64>,
     /// Names of raw values.
     pub values: &'static [(i64, &'static str)],
     /// Where it stands.
@@ -59,6 +61,7 @@ impl Field {
             min: 0,
             max: ones(length),
             none: None,
+            initial: None,
             values: &[],
             place: Place::Always,
         }
@@ -81,6 +84,12 @@ impl Field {
     #[must_use]
     pub const fn limits(self, min: i64, max: i64) -> Self {
         Self { min, max, ..self }
+    }
+
+    /// Before a sender knows better it says the largest value, from which a receiver concludes the least.
+    #[must_use]
+    pub const fn initially_largest(self) -> Self {
+        Self { initial: Some(self.max), ..self }
     }
 
     /// The largest raw value says that there is none.

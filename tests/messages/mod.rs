@@ -69,8 +69,8 @@ prop_compose! {
 
 prop_compose! {
     fn limits()(
-        acceleration in steps(0..=1023, 50), braking in steps(0..=1023, 50), jerk in steps::<Jerk>(0..=1023, 20),
-        emergency_braking in steps(0..=1023, 50),
+        acceleration in steps(5..=1023, 50), braking in steps(0..=1023, 50), jerk in steps::<Jerk>(1..=1023, 20),
+        emergency_braking in steps(5..=1023, 50),
     ) -> Limits {
         Limits { acceleration, braking, jerk, emergency_braking }
     }
@@ -78,7 +78,7 @@ prop_compose! {
 
 prop_compose! {
     pub fn parameters()(
-        length in steps(0..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
+        length in steps(50..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
         target_speed in speed(), catch_up in steps::<Fraction>(0..=15, 20),
         time_gap in steps(20..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
         damping in steps(0..=3999, 1000), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),

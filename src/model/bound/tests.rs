@@ -184,7 +184,11 @@ fn what_is_published_is_taken_but_a_rest_takes_finite_time() {
     };
     for value in [0, 99, 100, 101, 8_000, 20_460] {
         let reach = AccelerationRange::published(&limits(value, value));
-        assert_eq!((reach.acceleration.to_mm_per_s2(), reach.braking.to_mm_per_s2()), (value.max(100), value.max(100)));
+        assert_eq!(
+            (reach.acceleration.to_mm_per_s2(), reach.braking.to_mm_per_s2()),
+            (value.max(100), value.max(1_000)),
+            "the harder of the two brakings"
+        );
     }
     assert_eq!(AccelerationRange::published(&limits(300, 7_000)).braking.to_mm_per_s2(), 7_000);
     assert_eq!(AccelerationRange::published(&limits(300, 7_000)).acceleration.to_mm_per_s2(), 300);

@@ -80,9 +80,9 @@ impl Signal {
         meaning::signal(self.content, self.field.name, is_over_fd)
     }
 
-    /// The raw value before anything is known: the code for none, or the value nearest to zero.
+    /// The raw value before anything is known: the code for none, or the one that the field names, or the value nearest to zero.
     pub(super) fn start(&self) -> i64 {
-        self.field.none.unwrap_or(0i64.max(self.field.min).min(self.field.max))
+        self.field.none.or(self.field.initial).unwrap_or(0i64.max(self.field.min).min(self.field.max))
     }
 }
 
