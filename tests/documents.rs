@@ -77,25 +77,25 @@ fn the_two_documents_that_are_read_first_have_at_most_two_hundred_lines() {
 
 #[test]
 fn the_load_of_the_bus_is_the_one_that_the_catalogue_makes() {
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/INTEGRATION.md")).unwrap();
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/CAN.md")).unwrap();
     let page = page.split_whitespace().collect::<Vec<_>>().join(" ");
     let percent =
         |counted: fn(&Line) -> bool| f64::from(load_ppm(500_000, 8, &Identifiers::DEFAULT, counted)) / 10_000.0;
     let (all, peers) = (percent(|_| true), percent(Line::is_per_slot));
     let stated = format!("at most {all:.1} % of the bus, the peers' messages {peers:.1} %");
-    assert!(page.contains(&stated), "docs/INTEGRATION.md does not say: {stated}");
+    assert!(page.contains(&stated), "docs/CAN.md does not say: {stated}");
 }
 
 #[cfg(feature = "fd")]
 #[test]
 fn the_loads_of_both_buses_are_those_that_the_catalogue_makes() {
     use holdover::wire::load::fd;
-    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/INTEGRATION.md")).unwrap();
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/CAN.md")).unwrap();
     let percent = |ppm: u32| format!("{:.1} %", f64::from(ppm) / 10_000.0);
     for peers in [1, 4, 8, 16] {
         let classic = load_ppm(500_000, peers, &Identifiers::DEFAULT, |_| true);
         let over_fd = fd::load_ppm((500_000, 2_000_000), peers, &Identifiers::DEFAULT, |_| true);
         let stated = format!("| {peers} | {} | {} |", percent(classic), percent(over_fd));
-        assert!(page.contains(&stated), "docs/INTEGRATION.md does not say: {stated}");
+        assert!(page.contains(&stated), "docs/CAN.md does not say: {stated}");
     }
 }

@@ -3,12 +3,14 @@
 
 The program is the vehicle (EgoMotion, DriverRequest), its modem (TimeSync, TimeFollowUp), and one vehicle ahead that the
 modem hears (Peer0Motion, Peer0DrivingParameters). It knows the unit by `holdover.dbc` alone, or over CAN FD (`--fd`) by
-`holdover-fd.dbc`. It engages the unit and moves its vehicle as the unit commands. The vehicle ahead begins to accelerate, falls silent for 16.5 s, and speaks again. So the
-unit goes from standby to cooperative, holdover, fallback and back. The program prints what it saw.
+`holdover-fd.dbc`. It engages the unit and moves its vehicle as the unit commands. The vehicle ahead begins to accelerate,
+falls silent for 16.5 s, and speaks again. So the unit goes from standby to cooperative, holdover, fallback and back. The
+program prints what it saw.
 
     pip install -r examples/first-node/requirements.txt
     holdover-sim ecu --bus vcan0 --station 1 &
     python3 examples/first-node/first_node.py --channel vcan0
+    kill $!
 
 Exit code: 0 all was as it should be; 1 something was not, and the last lines say what; 3 so too, but this program was late
 itself, so that it says nothing of the unit. docs/FIRST-NODE.md explains it all.

@@ -131,7 +131,7 @@ fn load(folder: &Path, kind: &str) -> f64 {
 fn the_bus_is_busy_for_less_than_half_of_what_it_is_over_classic_can() {
     let folder = tempfile::tempdir().unwrap();
     let [classic, over_fd] = ["classic", "fd"].map(|kind| load(folder.path(), kind));
-    // docs/INTEGRATION.md has these figures.
+    // docs/CAN.md has these figures.
     let percent = [classic, over_fd].map(|load| (load * 1000.0).round() / 10.0);
     assert_eq!(percent, [18.1, 5.6]);
 }
