@@ -1,7 +1,9 @@
 """dbc_check.py FILE...: the DBC files as other tools read them.
 
 cantools reads each file strictly. canmatrix turns it into a DBC, a KCD, a SYM and an ARXML file, and each of these, read back, has
-the same identifiers, lengths and signals, as far as canmatrix keeps them in that format. A warning of either tool is a failure.
+the same identifiers, lengths and signals, and is of CAN FD or not, as far as canmatrix keeps these in that format. Every message and
+signal has a comment, every attribute of a message stands in the file, and in a file of CAN FD every frame is of CAN FD. A warning of
+either tool is a failure.
 Exit code: 0 all is the same, 1 something is not.
 """
 
@@ -26,9 +28,18 @@ class Warnings(logging.Handler):
         self.said.append(f"{record.name}: {record.getMessage()}")
 
 
+def frames(path):
+    """Every frame of a file, as canmatrix reads it."""
+    return next(iter(canmatrix.formats.loadp(str(path)).values())).frames
+
+
+def kinds(path):
+    """The kind of bus of every frame of a file."""
+    return {(frame.arbitration_id.id, frame.arbitration_id.extended, "CAN FD" if frame.is_fd else "CAN") for frame in frames(path)}
+
+
 def signals(path, is_whole=True):
     """Every signal of a file; if not whole, by its place alone."""
-    matrix = next(iter(canmatrix.formats.loadp(str(path)).values()))
     return {
         (
             frame.arbitration_id.id,
@@ -39,7 +50,7 @@ def signals(path, is_whole=True):
         + ((frame.name, signal.size, signal.is_signed, float(signal.factor), float(signal.offset)) if is_whole else ())
         # A SYM file has a name of its own for the signal that selects the part.
         + ((signal.name,) if is_whole and not signal.is_multiplexer else ())
-        for frame in matrix.frames
+        for frame in frames(path)
         for signal in frame.signals
     }
 
@@ -47,13 +58,21 @@ def signals(path, is_whole=True):
 # In an ARXML file canmatrix keeps one definition of all signals of one name, and it reads no scales back.
 FORMATS = {"dbc": True, "kcd": True, "sym": True, "arxml": False}
 
+# KCD and SYM do not keep the kind of bus.
+KINDS = {"dbc", "arxml"}
+
 
 def check(path):
     """What is wrong with a file."""
     database = cantools.database.load_file(path, strict=True)
     wrong = []
     named = [signal for message in database.messages for signal in message.signals]
-    wrong += [f"{signal.name} has no comment" for signal in named if not signal.comment]
+    wrong += [f"{item.name} has no comment" for item in [*database.messages, *named] if not item.comment]
+    bus = database.dbc.attributes["BusType"].value
+    wrong += [f"{number:#x} is of {kind}, and the bus of {bus}" for number, _, kind in sorted(kinds(path)) if kind != bus]
+    defined = {name for name, definition in database.dbc.attribute_definitions.items() if definition.kind == "BO_"}
+    for message in database.messages:
+        wrong += [f"{message.name} has no {name}" for name in sorted(defined - message.dbc.attributes.keys())]
     with tempfile.TemporaryDirectory() as folder:
         for suffix, is_whole in FORMATS.items():
             other = Path(folder) / f"other.{suffix}"
@@ -61,6 +80,8 @@ def check(path):
             ours, theirs = signals(path, is_whole), signals(other, is_whole)
             wrong += [f"not in {suffix}: {signal}" for signal in sorted(ours - theirs)]
             wrong += [f"only in {suffix}: {signal}" for signal in sorted(theirs - ours)]
+            if suffix in KINDS:
+                wrong += [f"not so in {suffix}: {kind}" for kind in sorted(kinds(path) ^ kinds(other))]
     print(f"{path}: {len(database.messages)} messages, {len(named)} signals, the same in {', '.join(FORMATS)}")
     return wrong
 

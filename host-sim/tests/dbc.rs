@@ -233,7 +233,7 @@ fn expected_of(message: &Message) -> Expected {
                 .name("Mode", mode(c.mode))
                 .name("Limited", if c.limited { "changed by the envelope" } else { "as computed" })
                 .value("Tick", c.tick)
-                .name("Hold", if c.hold { "hold at standstill" } else { "drive" })
+                .name("Hold", if c.hold { "hold at standstill" } else { "no hold" })
                 .value("Time", f64::from(c.time_ms) / 1e3);
             match c.effort {
                 Effort::Force(newtons) => e.name("Effort", "force").value("Force", newtons),

@@ -1,8 +1,9 @@
 //! The messages of the DBC files against the catalogue: their attributes, and the files of messages on extended identifiers.
 
-use can_dbc::{AttributeValue, Dbc, MessageId};
+use can_dbc::{AttributeDefinition, AttributeValue, AttributeValueType, Comment, Dbc, MessageId};
 use holdover::wire;
 use holdover::wire::catalogue::{CATALOGUE, Content, Speaker, data_id};
+use holdover::wire::status::INTERFACE;
 use holdover::wire::{Identifiers, Slot};
 
 fn read(name: &str) -> Dbc {
@@ -69,4 +70,87 @@ fn the_file_tells_cycles_and_protection_of_every_message() {
         }
     }
     assert_eq!(file.messages.len(), messages);
+}
+
+/// The number of an attribute's value.
+fn number(value: Option<&AttributeValue>) -> Option<i64> {
+    match value? {
+        AttributeValue::Uint(value) => i64::try_from(*value).ok(),
+        AttributeValue::Int(value) => Some(*value),
+        _ => None,
+    }
+}
+
+/// The names of the messages with this send type, of the peers those of slot 0.
+fn sent(file: &Dbc, send_type: &str) -> Vec<String> {
+    let names = file.attribute_definitions.iter().find_map(|definition| match definition {
+        AttributeDefinition::Message(name, AttributeValueType::Enum(names)) if name == "GenMsgSendType" => Some(names),
+        _ => None,
+    });
+    let place = names.unwrap().iter().position(|name| name == send_type).map(|place| place as i64);
+    let of = |id| number(file.message_attribute(id, "GenMsgSendType"));
+    let is_of_first = |name: &str| !name.starts_with("Peer") || name.starts_with("Peer0") || name == "PeersUnserved";
+    let messages = file.messages.iter().filter(|message| place.is_some() && of(message.id) == place);
+    messages.map(|message| message.name.clone()).filter(|name| is_of_first(name)).collect()
+}
+
+#[test]
+fn every_attribute_is_written_for_every_message_and_signal() {
+    for (file, bus) in [(read("holdover.dbc"), "CAN"), (read("holdover-fd.dbc"), "CAN FD")] {
+        let of_bus = |name: &str| file.attribute_values_database.iter().find(|a| a.name == name).map(|a| &a.value);
+        assert_eq!(of_bus("BusType"), Some(&AttributeValue::String(bus.into())));
+        assert_eq!(number(of_bus("InterfaceVersion")), Some(INTERFACE.into()));
+        assert_eq!(number(file.attribute_default("InterfaceVersion")), Some(INTERFACE.into()));
+        for message in &file.messages {
+            for definition in &file.attribute_definitions {
+                let AttributeDefinition::Message(name, _) = definition else { continue };
+                assert!(file.message_attribute(message.id, name).is_some(), "{} has no {name}", message.name);
+            }
+            for signal in &message.signals {
+                let start = file.signal_attribute(message.id, &signal.name, "GenSigStartValue");
+                assert!(start.is_some(), "{} {}", message.name, signal.name);
+            }
+            let is_over_fd = bus == "CAN FD";
+            let profile = if is_over_fd { "PROFILE_05" } else { "PROFILE_01A" };
+            let written = file.message_attribute(message.id, "E2EProfile");
+            assert_eq!(written, Some(&AttributeValue::String(profile.into())), "{}", message.name);
+            let of_fd = ["VFrameFormat", "CANFD_BRS"].map(|name| number(file.message_attribute(message.id, name)));
+            assert_eq!(of_fd, if is_over_fd { [Some(14), Some(1)] } else { [None; 2] }, "{}", message.name);
+        }
+    }
+}
+
+#[test]
+fn the_file_tells_what_is_not_always_sent_and_when_it_is() {
+    let (classic, fd) = (read("holdover.dbc"), read("holdover-fd.dbc"));
+    for file in [&classic, &fd] {
+        assert_eq!(sent(file, "NoMsgSendType"), ["OwnPosition"]);
+    }
+    let always = ["TimeSync", "TimeFollowUp", "MotionCommand", "ActuatorState", "EgoMotionA", "EgoMotionB"];
+    assert_eq!(sent(&classic, "Cyclic"), [&always[..], &["DriverRequest", "Health"]].concat());
+    let always = ["TimeSync", "TimeFollowUp", "MotionCommand", "ActuatorState", "EgoMotion", "DriverRequest", "Health"];
+    assert_eq!(sent(&fd, "Cyclic"), always);
+    let conditional = ["EgoPosition", "RangeSensor", "PeersUnserved", "TargetEstimate", "OwnState", "OwnRoute"];
+    let of_peers = ["Peer0State", "Peer0Position", "Peer0Route"];
+    assert_eq!(sent(&fd, "CyclicIfActive"), [&conditional[..], &of_peers].concat());
+    for file in [&classic, &fd] {
+        let comment = |id: MessageId| {
+            let of = |comment: &Comment| match comment {
+                Comment::Message { id: of, comment } if *of == id => Some(comment.clone()),
+                _ => None,
+            };
+            file.comments.iter().find_map(of).unwrap_or_default()
+        };
+        for message in &file.messages {
+            let (comment, name) = (comment(message.id), &message.name);
+            let number = |name| number(file.message_attribute(message.id, name));
+            assert!(!comment.is_empty(), "{name}");
+            let is_conditional = number("GenMsgSendType") == Some(1);
+            assert_eq!(comment.starts_with("Sent only "), is_conditional, "{name}: {comment}");
+            if name == "OwnPosition" {
+                assert_eq!(comment, "Reserved: no unit of this version sends it.");
+                assert_eq!((number("GenMsgCycleTime"), number("GenMsgTimeout")), (Some(0), Some(0)));
+            }
+        }
+    }
 }

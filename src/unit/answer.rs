@@ -7,20 +7,19 @@ use crate::model::Reading;
 use crate::model::bound::Bound;
 use crate::time::Duration;
 use crate::wire::Frame;
-use crate::wire::catalogue::{About, CATALOGUE, Content, Node};
+use crate::wire::catalogue::{CATALOGUE, Node};
 use crate::wire::command::Command;
 
 /// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), status.
 pub const MAX_FRAMES: usize = 16;
 
-/// The number of frames of all messages that the catalogue assigns to the unit. The place on the globe is not among those that the unit
-/// sends: others hear of the ego by its route.
+/// The number of frames of all messages that the unit sends by the catalogue. The place on the globe is not among them: others hear of
+/// the ego by its route.
 #[allow(clippy::indexing_slicing, clippy::arithmetic_side_effects)] // in const
 const SENT: usize = {
     let (mut frames, mut line) = (0, 0);
     while line < CATALOGUE.len() {
-        let is_sent = !matches!(CATALOGUE[line].content, Content::Said(_, About::Geo));
-        if matches!(CATALOGUE[line].sender, Node::Unit) && is_sent {
+        if matches!(CATALOGUE[line].sender, Node::Unit) && CATALOGUE[line].is_sent() {
             frames += CATALOGUE[line].frames as usize;
         }
         line += 1;

@@ -106,7 +106,7 @@ const EFFORT: Field = Field { values: &[(0, "force"), (1, "brake torque")], ..Fi
 const FORCE: Field = Field::unsigned("Force", 37, 16).limits(0, 65_534).steps(1, "N").part(0);
 const BRAKE_TORQUE: Field = Field::unsigned("BrakeTorque", 37, 16).limits(0, 65_534).steps(1, "Nm").part(1);
 
-const HOLD: Field = Field::unsigned("Hold", 53, 1).named(&[(0, "drive"), (1, "hold at standstill")]);
+const HOLD: Field = Field::unsigned("Hold", 53, 1).named(&[(0, "no hold"), (1, "hold at standstill")]);
 const TIME: Field = Field::unsigned("Time", 54, 10).steps(1000, "s");
 
 /// The frame; the effort's kind selects which of its two readings applies.

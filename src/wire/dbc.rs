@@ -3,18 +3,17 @@
 
 use core::fmt::{Display, Formatter, Result};
 
-use super::catalogue::{CATALOGUE, Line, Node, OnFd, SLOTS, data_id};
+use super::catalogue::{CATALOGUE, Content, Line, Node, OnFd, SLOTS};
 use super::identifier::Identifier;
 use super::identifiers::Identifiers;
 use super::message_name::Name;
 use super::{Slot, Transport, meaning};
+use crate::health::Cause;
 use signal::Signal;
 
+mod attributes;
 mod signal;
 mod texts;
-
-/// The number of `ExtendedCAN_FD` among the values of `VFrameFormat`.
-const EXTENDED_CAN_FD: u16 = 15;
 
 /// The DBC of a bus.
 #[derive(Clone, Copy, Debug)]
@@ -100,36 +99,30 @@ impl Described {
         }
     }
 
-    fn attributes(&self) -> impl Iterator<Item = (&'static str, u16)> {
-        let (line, limits, is_over_fd) = (self.line, self.line.limits(), self.is_over_fd);
-        let classic = |name, value| (!is_over_fd).then_some((name, value));
-        let most_lost = u16::from(limits.max_delta_counter_init);
-        [
-            Some(("GenMsgCycleTime", line.cycle_ms)),
-            Some(("GenMsgTimeout", line.timeout_ms)),
-            classic("FramesPerCycle", line.frames.into()),
-            Some(("E2EDataId", data_id(line.offset_for(self.slot)))),
-            classic("E2EMaxDeltaCounterInit", most_lost),
-            classic("E2EMaxNoNewOrRepeatedData", limits.max_no_new_or_repeated.into()),
-            classic("E2ESyncCounterInit", limits.sync_counter_init.into()),
-            (is_over_fd && self.id.is_extended()).then_some(("VFrameFormat", EXTENDED_CAN_FD)),
-            is_over_fd.then_some(("E2EMaxDeltaCounter", most_lost.saturating_add(1))),
-        ]
-        .into_iter()
-        .flatten()
-    }
-
-    /// Rules for readers: of each line of the frame those that the line before it does not have.
+    /// When it is sent, and rules for readers: of each line of the frame those that the line before it does not have.
     fn write_comment(&self, f: &mut Formatter<'_>) -> Result {
-        let Line { tied, comment, .. } = self.line;
-        if !self.is_over_fd {
-            let gap = if tied.is_empty() || comment.is_empty() { "" } else { " " };
-            return write!(f, "{tied}{gap}{comment}");
+        let Line { only, tied, comment, .. } = self.line;
+        if self.line.is_sent() && !only.is_empty() {
+            write!(f, "Sent only {only}. ")?;
+        }
+        if self.line.is_sent() && !self.is_over_fd && !tied.is_empty() {
+            write!(f, "{tied} ")?;
         }
         f.write_str(comment)?;
+        if let Content::Status = self.line.content {
+            for cause in Cause::ALL {
+                write!(f, " {}: {}", cause.name(), cause.meaning())?;
+            }
+        }
+        if !self.is_over_fd {
+            return Ok(());
+        }
         let mut before = *comment;
         let followers = CATALOGUE.iter().skip(self.place.saturating_add(1)).take_while(|line| !line.begins(true));
-        for Line { comment, .. } in followers {
+        for Line { only, comment, on_fd, .. } in followers {
+            if let OnFd::MayFollow(flag) = on_fd {
+                write!(f, " {flag} is present only {only}.")?;
+            }
             if *comment != before {
                 write!(f, " {comment}")?;
             }
@@ -173,17 +166,17 @@ impl Display for Dbc {
                 writeln!(f, "CM_ SG_ {id} {} \"{}\";", signal.name(), signal.meaning(is_over_fd))?;
             }
         }
-        f.write_str(texts::attributes(is_over_fd))?;
+        attributes::define(f, is_over_fd)?;
         for message in self.messages() {
             let id = message.id.in_dbc();
             for (name, value) in message.attributes() {
                 writeln!(f, "BA_ \"{name}\" BO_ {id} {value};")?;
             }
+            for name in ["Crc", "Counter"] {
+                writeln!(f, "BA_ \"GenSigStartValue\" SG_ {id} {name} 0;")?;
+            }
             for signal in message.signals() {
-                let (name, start) = (signal.name(), signal.start());
-                if start != 0 {
-                    writeln!(f, "BA_ \"GenSigStartValue\" SG_ {id} {name} {start};")?;
-                }
+                writeln!(f, "BA_ \"GenSigStartValue\" SG_ {id} {} {};", signal.name(), signal.start())?;
             }
         }
         for message in self.messages() {
@@ -210,6 +203,63 @@ const fn node(node: Node) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parameters::{UNPUBLISHED_POSITION_ACCURACY, UNPUBLISHED_SPEED_ACCURACY};
+    use crate::wire::catalogue::{About, Speaker};
+
+    /// The comments of the messages and of their signals.
+    fn comments(dbc: Dbc) -> Vec<(String, String)> {
+        struct Comment<'a>(&'a Described);
+        impl Display for Comment<'_> {
+            fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+                self.0.write_comment(f)
+            }
+        }
+        let of = |message: Described| {
+            let signals = message.signals();
+            let signal = |signal: Signal| signal.meaning(message.is_over_fd).to_string();
+            let texts: Vec<_> = std::iter::once(Comment(&message).to_string()).chain(signals.map(signal)).collect();
+            texts.into_iter().map(move |text| (message.name().to_string(), text)).collect::<Vec<_>>()
+        };
+        dbc.messages().flat_map(of).collect()
+    }
+
+    /// Whatever looks like the name of a message or signal is one, or begins one: a file speaks of nothing that is not in it.
+    fn comments_name_only_what_is_there(dbc: Dbc) {
+        let signals =
+            dbc.messages().flat_map(|message| message.signals().map(|s| s.name().to_string()).collect::<Vec<_>>());
+        let names: Vec<_> = dbc.messages().map(|message| message.name().to_string()).chain(signals).collect();
+        for (message, comment) in comments(dbc) {
+            assert!(comment.ends_with('.') && !comment.contains('"'), "{message}: {comment}");
+            for word in comment.split(|c: char| !c.is_ascii_alphanumeric()) {
+                let humps = word
+                    .chars()
+                    .zip(word.chars().skip(1))
+                    .filter(|(a, b)| a.is_ascii_lowercase() && b.is_ascii_uppercase());
+                let is_known = names.iter().any(|name| name.starts_with(word));
+                assert!(humps.count() == 0 || is_known, "{message}: {word} is not in the file: {comment}");
+                let is_of_classic = ["FollowUp", "Sync", "Motion", "MotionA", "MotionB", "Tag"].contains(&word);
+                assert!(!is_of_classic || names.iter().any(|name| name == word), "{message}: {word}: {comment}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_message_has_a_comment_and_comments_name_only_what_is_there() {
+        comments_name_only_what_is_there(Dbc::new(Identifiers::DEFAULT, 1));
+        #[cfg(feature = "fd")]
+        comments_name_only_what_is_there(Dbc::new(Identifiers::DEFAULT, 1).over_fd());
+    }
+
+    #[test]
+    fn comments_tell_what_is_taken_for_an_accuracy_that_is_not_published() {
+        for (name, taken) in [
+            ("PositionAccuracy", format!("not published: {} m is", UNPUBLISHED_POSITION_ACCURACY.get())),
+            ("SpeedAccuracy", format!("not published: {} m/s is", UNPUBLISHED_SPEED_ACCURACY.get())),
+        ] {
+            let text = meaning::signal(Content::Said(Speaker::Peer, About::MotionB), name, false);
+            assert!(text.to_lowercase().contains(&taken), "{text}: {taken}");
+        }
+    }
 
     fn every_signal_says_what_it_means(dbc: Dbc) {
         for message in dbc.messages() {

@@ -18,14 +18,14 @@ pub const fn worst_frame_bits(is_extended: bool) -> u32 {
 }
 
 /// Worst-case load of the bus in parts per million: all lines that `counted` accepts, at their cycles, with so many
-/// peers, where these identifiers place them, at this bit rate (0 bit/s: saturated).
+/// peers, where these identifiers place them, at this bit rate (0 bit/s: saturated). What nobody sends takes nothing.
 #[must_use]
 pub fn load_ppm(bit_rate: u32, peers: u16, identifiers: &Identifiers, counted: impl Fn(&Line) -> bool) -> u32 {
     let bits_per_1000_s = |line: &Line| {
         let speakers = if line.is_per_slot() { u64::from(peers) } else { 1 };
         let frames = speakers.saturating_mul(u64::from(line.frames)).saturating_mul(1_000_000);
         let bits = u64::from(worst_frame_bits(is_extended(identifiers, line)));
-        frames.checked_div(u64::from(line.cycle_ms)).unwrap_or(u64::MAX).saturating_mul(bits)
+        frames.checked_div(u64::from(line.cycle_ms)).unwrap_or(0).saturating_mul(bits)
     };
     let bits = CATALOGUE.iter().filter(|line| counted(line)).map(bits_per_1000_s).fold(0, u64::saturating_add);
     let ppm = bits.saturating_mul(1000).checked_div(u64::from(bit_rate));
@@ -41,7 +41,7 @@ fn is_extended(identifiers: &Identifiers, line: &Line) -> bool {
 mod tests {
     use super::*;
     use crate::wire::Identifier;
-    use crate::wire::catalogue::Content;
+    use crate::wire::catalogue::{About, Content, Speaker};
 
     #[test]
     fn eight_peers_take_less_than_a_quarter_of_the_bus_and_everything_less_than_half() {
@@ -49,6 +49,13 @@ mod tests {
         let peers = load_ppm(500_000, 8, &Identifiers::DEFAULT, Line::is_per_slot);
         let all = load_ppm(500_000, 8, &Identifiers::DEFAULT, |_| true);
         assert!(peers < 250_000 && all < 500_000);
+    }
+
+    #[test]
+    fn what_nobody_sends_takes_nothing() {
+        let of = |content: Content| load_ppm(500_000, 8, &Identifiers::DEFAULT, |line: &Line| line.content == content);
+        assert_eq!(of(Content::Said(Speaker::Own, About::Geo)), 0);
+        assert_eq!(of(Content::Said(Speaker::Own, About::Route)), 2 * 5 * 135 * 2);
     }
 
     #[test]

@@ -6,17 +6,18 @@ use super::catalogue::{About, Content, Speaker};
 /// The text of a meaning, as a literal, so that `#[doc = meaning!(…)]` can have it.
 macro_rules! meaning {
     (tag) => { "Ties the frames of one message: all of them carry the same tag, which counts modulo 4 from message to message." };
-    (position) => { "Front bumper along the lane, in the direction of travel, modulo 33554.432 m. Take the position nearest to the own one." };
+    (position) => { "Front bumper along the lane, in the direction of travel, modulo 33554.432 m. Take the position nearest to your own." };
+    (ego_position) => { "Own front bumper along the lane: it increases in the direction of travel, from the origin that the peers use (on a route each vehicle may have its own), modulo 33554.432 m." };
     (stamp) => { "GNSS time (seconds since 1980-01-06, without leap seconds) at which all of this message was true, modulo 13.1072 s." };
     (station) => { "Low 8 bits of the identity of the station whose state it is: the name by which PredecessorStation refers to it. Two stations may have the same one; each is known by its slot." };
     (ego_station) => { "The own station, as the unit is configured. Another value is counted (ego_station in Health), and the motion is used." };
     (speed) => { "Speed along the lane; a vehicle that rolls back says 0." };
     (acceleration) => { "Acceleration along the lane; braking is negative." };
     (demand) => { "The acceleration that was demanded last of the actuators, in force up to the stamp: from it the receiver foresees what the lag still brings. Without a command in force, the same as Acceleration." };
-    (position_accuracy) => { "95 % of the errors of Position are below this. The receiver takes three times as much for certain." };
-    (speed_accuracy) => { "95 % of the errors of Speed are below this. The receiver takes three times as much for certain." };
+    (position_accuracy) => { "95 % of the errors of Position are below this. The receiver takes three times as much for certain. Not published: 5 m is taken for the largest error." };
+    (speed_accuracy) => { "95 % of the errors of Speed are below this. The receiver takes three times as much for certain. Not published: 1.5 m/s is taken for the largest error." };
     (part) => { "Which frame of the message this is." };
-    (displacement) => { "Way from Position of the Motion of the same Tag to where the front bumper will be at this knot." };
+    (displacement) => { "Way from Position of the motion of the same Tag to where the front bumper will be at this knot." };
     (displacement_fd) => { "Way from Position to where the front bumper will be at this knot." };
     (horizon_valid) => { "Whether a horizon is in this frame; where it is absent its signals are ignored." };
     (parameters_valid) => { "Whether driving parameters are in this frame: send them every 500 ms, and twice at once when they change. Where they are absent their signals are ignored, and the last ones hold." };
@@ -33,14 +34,14 @@ macro_rules! meaning {
     (gain) => { "Gain k of the law u = -k (gap error + Damping times the speed difference)." };
     (damping) => { "Weight of the speed difference in the law, in seconds." };
     (lag) => { "Time constant of its actuators: how its acceleration follows the demand." };
-    (acceleration_limit) => { "Largest acceleration that it demands; also the hardest that it is capable of, which others' safety rests on." };
+    (acceleration_limit) => { "Largest acceleration that it demands; also the hardest that it is capable of, which others' safety rests on. Publish a harder one 10 s before it is used." };
     (braking_limit) => { "Hardest braking that it demands in normal driving, as a magnitude." };
     (jerk_limit) => { "Fastest change of its demand in normal driving." };
     (emergency_braking) => { "Hardest braking that it is capable of, as a magnitude. Others' safety rests on its never being more. Publish a harder one 10 s before it is used." };
-    (horizon_length) => { "How far ahead in time its Horizon messages reach; 0: it sends none." };
+    (horizon_length) => { "How far ahead in time the horizon reaches that it sends; 0: it sends none." };
     (latitude) => { "Degrees north of the front bumper's middle, WGS 84." };
     (longitude) => { "Degrees east of the front bumper's middle, WGS 84." };
-    (heading) => { "Degrees clockwise from true north into which the vehicle points." };
+    (heading) => { "Degrees clockwise from true north into which the vehicle points. A vehicle that is turned away from a street by more than 60 degrees is not on that street." };
     (route_distance) => { "Way of the front bumper to the crossing point of its leg at Stamp; negative beyond it." };
     (leg) => { "Leg of the intersection by which it comes, by the numbers of the route data." };
     (intersection) => { "Number of the intersection in the route data." };
@@ -56,13 +57,13 @@ macro_rules! meaning {
     (range_speed_accuracy) => { "95 % of the errors of SpeedDifference are below this. Do not send a view that is worse than can be said." };
     (range_age) => { "How old the measurement was when the frame was sent, rounded up. Do not send an older one." };
     (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
-    (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to that crossing point; negative beyond it." };
+    (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to the crossing point of that leg at Intersection, which is the next one on the own way: any other is ignored. Negative beyond the crossing point." };
     (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };
     (sequence) => { "Ties TimeSync and TimeFollowUp: the same in both, and counts modulo 16." };
     (seconds) => { "Whole seconds of GNSS time (since 1980-01-06, without leap seconds) of the sending of this frame, as far as known beforehand." };
     (micros) => { "What to add to TimeSync.Seconds to get the GNSS time at which the TimeSync with this Sequence was on the bus." };
     (command_acceleration) => { "Demanded acceleration; braking is negative. Not to be used in Mode standby." };
-    (hold) => { "Asks the brakes to hold the vehicle: it stands and is to go on standing." };
+    (hold) => { "Asks the brakes to hold the vehicle: it stands and is to go on standing. 0 in standby: the driver holds the vehicle." };
     (time) => { "Time from the unit's first period to this one by its own clock, modulo 1.024 s: frames that waited on their way are as far apart by it as they were made." };
     (control) => { "Whether the actuators take the unit's commands. Off and failed make the unit stand by (Detail actuators not ready)." };
     (accelerator) => { "Whether the driver presses the accelerator pedal: the unit stands by for as long (Detail driver accelerates)." };
@@ -70,24 +71,24 @@ macro_rules! meaning {
     (holding) => { "Whether the brakes hold the vehicle at standstill, as MotionCommand.Hold asks." };
     (acknowledged) => { "Tick of the newest MotionCommand that is in force." };
     (effort) => { "Whether Force or BrakeTorque stands in the frame." };
-    (force) => { "Net engine force that brings the acceleration about, by the configured vehicle model." };
-    (brake_torque) => { "Brake torque that brings the acceleration about, by the configured vehicle model." };
+    (force) => { "Net engine force that brings the acceleration about, by the configured vehicle model. The largest value means that force or more." };
+    (brake_torque) => { "Brake torque that brings the acceleration about, by the configured vehicle model. The largest value means that torque or more." };
     (mode) => { "How the unit drives: standby (not at all), cooperative, holdover (by the estimate), fallback (by what is certain), fault (it brakes)." };
     (limited) => { "Whether the envelope, the last gate, changed the command." };
     (tick) => { "Counts the unit's periods modulo 64: a command that does not count on is an old one." };
-    (estimate_position) => { "Where the front bumper of the target is now, as estimated; modulo 33554.432 m, as in Motion." };
+    (estimate_position) => { "Where the front bumper of the target is now, as estimated; modulo 33554.432 m. Take the position nearest to your own." };
     (estimate_speed) => { "Speed of the target now, as estimated." };
     (age) => { "Age of the newest sample that the estimate rests on, rounded up." };
     (behind) => { "How far behind Position the target may be, at most." };
     (ahead) => { "How far ahead of Position the target may be, at most." };
     (slower) => { "How much slower than Speed the target may be, at most." };
     (faster) => { "How much faster than Speed the target may be, at most." };
-    (cause) => { "The cause that this page counts." };
-    (count) => { "How often the cause was met since start." };
-    (detail) => { "Why the unit is in fallback or fault; none in every other mode." };
+    (cause) => { "The cause that this page counts; the message's comment says what each means." };
+    (count) => { "How often the cause was met since start; it stops at its largest value." };
+    (detail) => { "Why the unit is in fallback or fault; in standby, why a unit that is asked to drive does not (8 to 10); otherwise none. Other numbers are reserved." };
     (synchronised) => { "Whether the unit knows GNSS time." };
     (links_on) => { "Number of peers whose messages come in time." };
-    (interface) => { "Version of the interface, 2: a node built for another version may misread signals." };
+    (interface) => { "Version of the interface that the unit speaks. A node built for another one than the InterfaceVersion of its DBC file may misread signals." };
 }
 
 pub(super) use meaning;
@@ -194,6 +195,7 @@ fn said(speaker: Speaker, about: About, name: &str) -> &'static str {
         (_, "Tag") => meaning!(tag),
         (_, "Part") => meaning!(part),
         (_, "Stamp") => meaning!(stamp),
+        (About::MotionA, "Position") if matches!(speaker, Speaker::Ego) => meaning!(ego_position),
         (About::MotionA, "Position") => meaning!(position),
         (About::MotionA, "Station") if matches!(speaker, Speaker::Ego) => meaning!(ego_station),
         (About::MotionA, "Station") => meaning!(station),

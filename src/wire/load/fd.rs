@@ -55,7 +55,8 @@ pub fn worst_nanos(bit_rate: u32, data_bit_rate: u32, is_extended: bool, bytes: 
 }
 
 /// Worst-case load of the bus in parts per million: the frames of all lines that `counted` accepts, at the cycles of the lines that
-/// begin them, with so many peers, where these identifiers place them, at these bit rates (0 bit/s: saturated).
+/// begin them, with so many peers, where these identifiers place them, at these bit rates (0 bit/s: saturated). What nobody sends takes
+/// nothing.
 #[must_use]
 pub fn load_ppm(
     (bit_rate, data_bit_rate): (u32, u32),
@@ -71,7 +72,7 @@ pub fn load_ppm(
         let speakers = if line.is_per_slot() { u64::from(peers) } else { 1 };
         let frame =
             u64::from(worst_nanos(bit_rate, data_bit_rate, is_extended(identifiers, line), layout.bytes.into()));
-        speakers.saturating_mul(frame).saturating_mul(1000).checked_div(line.cycle_ms.into()).unwrap_or(u64::MAX)
+        speakers.saturating_mul(frame).saturating_mul(1000).checked_div(line.cycle_ms.into()).unwrap_or(0)
     };
     let nanos = CATALOGUE.iter().enumerate().map(nanos_per_s).fold(0, u64::saturating_add);
     u32::try_from(nanos / 1000).unwrap_or(u32::MAX)
@@ -80,6 +81,7 @@ pub fn load_ppm(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wire::catalogue::{About, Content, Speaker};
     use crate::wire::load;
 
     #[test]
@@ -93,6 +95,8 @@ mod tests {
             assert!(over_fd < classic / 2, "{peers} peers: {over_fd} of {classic}");
         }
         assert!(load_ppm(rates, 8, block, Line::is_per_slot) < 60_000);
+        let is_own_place = |line: &Line| line.content == Content::Said(Speaker::Own, About::Geo);
+        assert_eq!(load_ppm(rates, 8, block, is_own_place), 0);
         assert_eq!([(0, 1), (1, 0)].map(|rates| load_ppm(rates, 1, block, |_| true)), [u32::MAX; 2]);
     }
 }
