@@ -61,7 +61,7 @@ step_doc() {
     while read -r file; do
         first=$(head -c 3 "$file")
         lines=$(wc -l <"$file")
-        [ "$first" = '//!' ] || { echo "$file: has to open with //! and what enters and leaves" && bad=1; }
+        [ "$first" = '//!' ] || { echo "$file: has to open with //! and what it does" && bad=1; }
         [ "$lines" -le 400 ] || { echo "$file: $lines lines, of at most 400; split it by concept" && bad=1; }
     done < <(source_files)
     RUSTDOCFLAGS='-D warnings' cargo doc --locked --no-deps --workspace

@@ -23,6 +23,17 @@ impl Verdict {
         if failures.is_empty() { Self::Pass } else { Self::Failed }
     }
 
+    /// The line that tells it, with its reasons if it did not pass.
+    #[must_use]
+    pub fn line(self, reasons: &[String]) -> String {
+        let reasons = reasons.join("; ");
+        match self {
+            Self::Pass => "verdict: passed".into(),
+            Self::Failed => format!("verdict: FAILED: {reasons}"),
+            Self::Inconclusive => format!("verdict: INCONCLUSIVE: {reasons}"),
+        }
+    }
+
     /// The exit code of this verdict.
     #[must_use]
     pub const fn code(self) -> u8 {
@@ -37,5 +48,18 @@ impl Verdict {
 impl From<Verdict> for ExitCode {
     fn from(verdict: Verdict) -> Self {
         verdict.code().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_of_a_verdict_has_all_reasons() {
+        let reasons = ["late".to_owned(), "wrong".to_owned()];
+        assert_eq!(Verdict::Pass.line(&[]), "verdict: passed");
+        assert_eq!(Verdict::of(&reasons).line(&reasons), "verdict: FAILED: late; wrong");
+        assert_eq!(Verdict::Inconclusive.line(&reasons[..1]), "verdict: INCONCLUSIVE: late");
     }
 }

@@ -52,9 +52,29 @@ fn what_cannot_be_is_refused_in_one_line() {
         ),
         (["--slots", "0"], "--slots: 0 slots; give 1 to 16"),
         (["--slots", "17"], "--slots: 17 slots; give 1 to 16"),
+        (["--slots", "256"], "--slots: 256 slots; give 1 to 16"),
+        (["--slots", "-1"], "--slots: -1 slots; give 1 to 16"),
+        (["--slots", "many"], "--slots: `many` is no number; give 1 to 16"),
+        (["--base-id", "foo"], "--base-id: `foo` is no number; give one such as 0x480"),
+        (["--base-id", "-1"], "--base-id: `-1` is no number; give one such as 0x480"),
+        (["--place", "EgoMotion=0x123"], "--place: there is no message `EgoMotion` on classic CAN; give one of "),
     ] {
         let (code, out, error) = dbc(&arguments);
         assert_eq!((code, out.as_str()), (2, ""));
         assert!(error.contains(refusal) && error.lines().count() == 1, "{error}");
     }
+}
+
+#[test]
+fn a_message_of_can_fd_lies_where_the_block_has_no_frame_of_can_fd() {
+    let (code, text, _) = dbc(&["--fd", "--place", "MotionCommand=0x485", "--place", "PeerState=0x123/1"]);
+    assert_eq!(code, 0);
+    let file = Dbc::try_from(text.as_str()).unwrap();
+    for (name, id) in [("MotionCommand", 0x485), ("Peer0State", 0x123), ("Peer7State", 0x12A)] {
+        let message = file.messages.iter().find(|message| message.name == name).unwrap();
+        assert_eq!(message.id, MessageId::Standard(id), "{name}");
+    }
+    let (code, _, error) = dbc(&["--fd", "--place", "EgoMotionB=0x123"]);
+    assert_eq!((code, error.lines().count()), (2, 1));
+    assert!(error.contains("--place: there is no message `EgoMotionB` on CAN FD; give one of "), "{error}");
 }

@@ -4,7 +4,7 @@ use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use holdover_sim::commands::motions::motion::TargetMotion;
-use holdover_sim::commands::motions::rows::{self, MethodFigures, Row, Standing};
+use holdover_sim::commands::motions::rows::{self, MethodFigures, Outcome, Row};
 use holdover_sim::commands::motions::table;
 use serde_json::Value;
 
@@ -63,7 +63,7 @@ fn every_method_is_as_good_as_documented_in_fifty_silences_of_each_motion() {
         }
     }
     for motion in [TargetMotion::FreeAcceleration, TargetMotion::SlotFollowing] {
-        assert_eq!(row(motion).standing, Standing::Wins, "{motion}");
+        assert_eq!(row(motion).standing, Outcome::Wins, "{motion}");
     }
 }
 
@@ -73,7 +73,7 @@ fn of_a_braking_that_begins_in_the_silence_nobody_knows() {
     let soft_m = 0.5 * 2.0 * (3.99_f64 - 0.2).powi(2);
     let hard_m = 13.4 * (3.99 - 0.1) - 13.4 * 13.4 / (2.0 * 5.0);
     for (motion, missed_m) in [(TargetMotion::Braking, soft_m), (TargetMotion::HardBraking, hard_m)] {
-        assert_eq!(row(motion).standing, Standing::Draws, "{motion}");
+        assert_eq!(row(motion).standing, Outcome::Draws, "{motion}");
         for name in ["holdover", "constant_speed", "constant_acceleration", "singer", "kalman", "paper", "consensus"] {
             let max_m = method(motion, name).max_position_m;
             // Messages tell positions to 1 mm.
@@ -84,7 +84,7 @@ fn of_a_braking_that_begins_in_the_silence_nobody_knows() {
 
 #[test]
 fn the_table_says_where_ours_loses() {
-    assert_eq!(row(TargetMotion::Sine).standing, Standing::Loses);
+    assert_eq!(row(TargetMotion::Sine).standing, Outcome::Loses);
     let text = table::text(&ROWS);
     let last = text.lines().last().unwrap();
     assert_eq!(last, format!("holdover loses: {}", TargetMotion::Sine));

@@ -8,7 +8,7 @@ use holdover::time::Instant;
 use holdover_sim::bus::Frame;
 use holdover_sim::bus::candump::LogWriter;
 use holdover_sim::bus::port::{BusError, Event, Port};
-use holdover_sim::commands::record::interruption::Interruption;
+use holdover_sim::commands::interruption::Interruption;
 use holdover_sim::commands::record::{Recorded, record};
 
 /// A port with these events. After the last one it asks for the end of the recording.

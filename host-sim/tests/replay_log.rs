@@ -1,7 +1,14 @@
 //! What logs `replay` reads, what it makes of their times, and how it refuses those that cannot be replayed.
 
-use std::io::Write;
+use std::io::{self, Write};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
+
+use holdover::time::Instant;
+use holdover_sim::bus::Frame;
+use holdover_sim::bus::candump::LogReader;
+use holdover_sim::bus::port::{BusError, Event, Port};
+use holdover_sim::commands::replay::onto_bus;
 
 fn holdover_sim(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(arguments).output().unwrap()
@@ -269,4 +276,62 @@ fn logs_of_other_tools_are_refused_by_name_with_the_way_to_convert_them() {
     std::fs::write(folder.path().join("good.asc"), "(1.000000) can0 123#\n").unwrap();
     let good = folder.path().join("good.asc");
     assert_eq!(holdover_sim(&["replay", good.to_str().unwrap()]).status.code(), Some(0));
+}
+
+#[test]
+fn frames_of_the_other_kind_of_bus_are_ignored_or_with_fd_refused_for_their_length() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = |kind: &str| {
+        let (scenario, log) = (folder.path().join("scenario.toml"), folder.path().join(format!("{kind}.log")));
+        std::fs::write(&scenario, format!("duration_s = 2\n[bus]\nkind = \"{kind}\"\n")).unwrap();
+        let [scenario, file] = [&scenario, &log].map(|path| path.to_str().unwrap());
+        assert!(holdover_sim(&["run", scenario, "--no-report", "--candump", file]).status.success());
+        std::fs::read(&log).unwrap()
+    };
+    let (classic, fd) = (log("classic"), log("fd"));
+    let ignored = summary(&fd, &[]);
+    assert!(ignored["frames"] == ignored["ignored"] && ignored["frames"].as_u64() > Some(100), "{ignored}");
+    let refused = summary(&classic, &["--fd"]);
+    let causes: Vec<&str> = refused["refused"].as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!((causes, refused["recognised"].as_object().unwrap().len()), (vec!["length"], 0), "{refused}");
+}
+
+/// A bus that keeps what is sent.
+struct Kept(Vec<Frame>);
+
+impl Port for Kept {
+    fn now(&self) -> Instant {
+        Instant::from_micros(0)
+    }
+
+    fn send(&mut self, frame: Frame) -> io::Result<()> {
+        self.0.push(frame);
+        Ok(())
+    }
+
+    fn send_error(&mut self, _: BusError) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn wait(&mut self, _: Instant) -> io::Result<Option<(Instant, Event)>> {
+        Ok(None)
+    }
+}
+
+#[test]
+fn frames_of_can_fd_are_put_on_a_bus_and_error_frames_are_left_out() {
+    let log = "(1.000000) can0 123#AB\n(1.000000) can0 123##5AABBCC\n(1.000000) can0 20000040#0000000000000000\n";
+    let mut port = Kept(Vec::new());
+    let file = Path::new("bus.log");
+    let sent = onto_bus::play(&mut port, None, file, LogReader::new(file, log.as_bytes())).unwrap();
+    assert_eq!((sent.frames, port.0.iter().map(Frame::is_fd).collect::<Vec<_>>()), (2, vec![false, true]));
+}
+
+#[test]
+fn the_help_says_what_becomes_of_can_fd() {
+    let help = String::from_utf8(holdover_sim(&["replay", "--help"]).stdout).unwrap();
+    for said in ["those of CAN FD too; error frames are left out", "with --fd also one of classic CAN (length)"] {
+        assert!(help.contains(said), "{said}");
+    }
+    assert!(!help.contains("error frames and CAN FD are left out"));
 }

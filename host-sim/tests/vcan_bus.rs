@@ -267,3 +267,15 @@ fn a_recording_ends_by_sigterm_as_by_ctrl_c_with_all_frames_and_their_number() {
         assert_eq!(std::fs::read_to_string(&file).unwrap().lines().count(), 300, "{signal}");
     }
 }
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_unit_ends_by_sigterm_as_by_ctrl_c_with_exit_code_0() {
+    for (signal, how) in [("TERM", &[][..]), ("INT", &["--lock-step"])] {
+        let mut unit =
+            Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(["ecu", "--bus", "vcan0"]).args(how).spawn().unwrap();
+        heard(&mut open(), 700);
+        shell(&format!("kill -{signal} {}", unit.id()));
+        assert_eq!(unit.wait().unwrap().code(), Some(0), "{signal}");
+    }
+}

@@ -1,9 +1,10 @@
 //! Where each line of the catalogue lies on the bus: an identifier of the bus enters and its offset in the catalogue leaves,
 //! and back.
 //!
-//! All lines lie in one block of standard identifiers, by offset, but for those that are placed one by one. A frame of the
-//! block is found by two comparisons. Any other frame costs a comparison for each placed line.
+//! All lines lie in one block of standard identifiers, by offset, but for those that are placed one by one. A frame is found by two
+//! comparisons in the block, and by one for each placed line before these.
 
+use super::Transport;
 use super::base_id::BaseId;
 use super::catalogue::{ABOUTS, About, Content, LINES, PEERS_OFFSET, SLOT_STRIDE, SLOTS, Speaker};
 use super::identifier::Identifier;
@@ -113,11 +114,11 @@ impl Identifiers {
     /// as long as nothing is placed.
     #[must_use]
     pub fn offset_of(&self, id: Identifier) -> Option<u16> {
-        match self.base.offset_of(id) {
-            Some(offset) if !self.is_any_placed || self.is_in_block(offset) => Some(offset),
-            _ if self.is_any_placed => self.placed_offset_of(id),
-            _ => None,
+        if !self.is_any_placed {
+            return self.base.offset_of(id);
         }
+        // On CAN FD a placed line may lie where the block has one without a frame of its own.
+        self.placed_offset_of(id).or_else(|| self.base.offset_of(id).filter(|offset| self.is_in_block(*offset)))
     }
 
     fn is_in_block(&self, offset: u16) -> bool {
@@ -137,15 +138,27 @@ impl Identifiers {
         })
     }
 
-    /// Whether every line has identifiers of its own, with all slots that there are.
+    /// Whether every line has identifiers of its own on a bus of classic CAN, with all slots that there are.
     ///
     /// # Errors
     /// The first line that has not.
     pub fn check(&self) -> Result<(), IdentifierError> {
+        self.check_over(Transport::Classic)
+    }
+
+    /// Whether every line that begins a frame of such a bus has identifiers of its own, with all slots that there are. Where another
+    /// line of the block would be, is free.
+    ///
+    /// # Errors
+    /// The first line that has not.
+    pub fn check_over(&self, transport: Transport) -> Result<(), IdentifierError> {
         if !self.is_any_placed {
             return Ok(());
         }
-        let lines = || (0..LINES).filter_map(|line| Some((line, index::offset_of(line)?)));
+        let lines = || {
+            let framed = (0..LINES).filter(|line| begins_frame(*line, transport));
+            framed.filter_map(|line| Some((line, index::offset_of(line)?)))
+        };
         for (line, offset) in lines().filter(|(_, offset)| *offset >= PEERS_OFFSET) {
             let has_room = self.placed_at(line).is_none_or(|(first, stride)| {
                 stride.checked_mul(u32::from(SLOTS - 1)).is_some_and(|further| first.has_room_for(further))
@@ -155,12 +168,15 @@ impl Identifiers {
             }
         }
         // Of two that share one, at most one is found there.
-        for (_, first) in lines() {
+        for (line, first) in lines() {
             let slots = if first >= PEERS_OFFSET { SLOTS } else { 1 };
             for offset in (0..slots).map(|slot| first.saturating_add(SLOT_STRIDE.saturating_mul(slot))) {
                 let found = self.offset_of(self.at(offset)).unwrap_or(offset);
                 if found != offset {
-                    return Err(IdentifierError::Shared(MessageName::at(found), MessageName::at(offset)));
+                    // The one that is in the block is named first.
+                    let is_placed = self.placed_at(line).is_some();
+                    let (one, other) = if is_placed { (found, offset) } else { (offset, found) };
+                    return Err(IdentifierError::Shared(MessageName::at(one), MessageName::at(other)));
                 }
             }
         }
@@ -171,5 +187,47 @@ impl Identifiers {
     pub fn of_line(&self, offset: u16, slots: u8) -> impl Iterator<Item = Identifier> {
         let slots = if offset >= PEERS_OFFSET { slots } else { 1 };
         (0..slots).map(move |slot| self.at(offset.saturating_add(SLOT_STRIDE.saturating_mul(u16::from(slot)))))
+    }
+}
+
+/// Whether a frame of such a bus begins with the line at this place in the catalogue.
+fn begins_frame(line: usize, transport: Transport) -> bool {
+    match transport {
+        #[cfg(feature = "fd")]
+        Transport::Fd => super::fd::layout::of(line).is_some(),
+        _ => line < LINES,
+    }
+}
+
+#[cfg(all(test, feature = "fd"))]
+mod tests {
+    use super::*;
+
+    fn id(number: u16) -> Identifier {
+        Identifier::standard(number).unwrap()
+    }
+
+    #[test]
+    fn where_a_line_of_the_block_has_no_frame_another_line_may_lie() {
+        let ego = Content::Said(Speaker::Ego, About::MotionA);
+        // EgoMotionB of the block, and Peer0MotionB: both follow in the frame of the line before.
+        for (content, offset, free) in [(Content::Command, 0x02, 0x485), (ego, 0x04, 0x4C1)] {
+            let placed = Identifiers::DEFAULT.place(content, id(free)).unwrap();
+            assert_eq!(placed.check_over(Transport::Fd), Ok(()));
+            assert!(matches!(placed.check(), Err(IdentifierError::Shared(..))), "{free:#x}");
+            assert_eq!((placed.offset_of(id(free)), placed.at(offset)), (Some(offset), id(free)));
+        }
+    }
+
+    #[test]
+    fn two_frames_of_can_fd_on_one_identifier_are_refused() {
+        let shared = |one, other| Err(IdentifierError::Shared(MessageName::at(one), MessageName::at(other)));
+        let command = Identifiers::DEFAULT.place(Content::Command, id(0x484)).unwrap();
+        assert_eq!(command.check_over(Transport::Fd), shared(0x04, 0x02));
+        let both = Identifiers::DEFAULT.place(Content::Command, id(0x123)).unwrap();
+        let both = both.place(Content::Status, id(0x123)).unwrap();
+        assert_eq!(both.check_over(Transport::Fd), shared(0x02, 0x18));
+        let peers = Identifiers::DEFAULT.place_peers(About::MotionA, id(0x7F1), 1);
+        assert_eq!(peers.check_over(Transport::Fd), Err(IdentifierError::Range(MessageName::at(0x40))));
     }
 }

@@ -1,14 +1,41 @@
 //! The end of a command: results, their text and their page enter; what the options ask for leaves: a table or JSON on
-//! stdout, and a report in its folder.
+//! stdout, and a report in its folder. The options for that are the same for every command that measures.
 
 use std::fs;
 use std::path::PathBuf;
 
+use clap::Args;
 use serde::Serialize;
 
 use crate::error::Error;
 use crate::output;
 use crate::places::can_be_folder;
+
+/// Where the results of a command go, as it is typed. A command with a folder of its own changes the default of `out`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct OutputArguments {
+    /// Print the results as one JSON value on stdout
+    #[arg(long)]
+    pub json: bool,
+
+    /// Folder for the HTML report; it is created
+    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
+    pub out: PathBuf,
+
+    /// Write no report
+    #[arg(long, conflicts_with = "out")]
+    pub no_report: bool,
+}
+
+impl OutputArguments {
+    /// The same, checked.
+    ///
+    /// # Errors
+    /// An impossible folder.
+    pub fn read(self) -> Result<Destination, Error> {
+        Destination::new(self.json, (!self.no_report).then_some(self.out))
+    }
+}
 
 /// The output of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,6 +14,7 @@ pub mod evaluate;
 pub mod gains;
 pub mod hil;
 pub mod identifiers;
+pub mod interruption;
 pub mod motions;
 pub mod options;
 pub mod record;

@@ -95,11 +95,15 @@ fn the_keys_of_evaluate_are_the_documented_ones() {
 }
 
 #[test]
-fn the_keys_of_sweep_and_price_are_the_documented_ones() {
+fn the_keys_of_sweep_and_envelope_cost_are_the_documented_ones() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 5").unwrap();
     holds("sweep", folder.path(), &["sweep short.toml --seeds 2 --steps 0.1,1 --no-report"]);
-    holds("envelope-cost", folder.path(), &["price short.toml --seeds 2 --silences 1 --distance 20 --no-report"]);
+    holds(
+        "envelope-cost",
+        folder.path(),
+        &["envelope-cost short.toml --seeds 2 --silences 1 --distance 20 --no-report"],
+    );
 }
 
 #[test]

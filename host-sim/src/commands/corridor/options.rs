@@ -76,7 +76,7 @@ impl CorridorOptions {
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
         let candump = candump(&corridor, &settings)?;
-        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
+        let destination = settings.output.read()?;
         let mut taken = vec![named];
         for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
             if let Some(file) = file {

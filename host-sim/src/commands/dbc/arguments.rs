@@ -12,8 +12,8 @@ pub struct DbcArguments {
     pub identifiers: IdentifierArguments,
 
     /// Slots of peers, 1 to 16; the firmware has 8
-    #[arg(long, value_name = "N", default_value_t = 8)]
-    pub slots: u8,
+    #[arg(long, value_name = "N", default_value = "8", allow_negative_numbers = true)]
+    pub slots: String,
 
     /// The bus is CAN FD
     #[arg(long)]

@@ -53,8 +53,8 @@ Examples:
   holdover-sim ecu --bus can0 --station 1  on a real bus, as the firmware would be
 
 It is the same core as on the ECU, behind a socket instead of a CAN controller.
-It runs until it is ended.
+It runs until it is ended by Ctrl-C (SIGINT) or SIGTERM.
 
 Exit codes:
-  0  it was ended
+  0  it was ended by one of the two
   2  bad input; one line on stderr names cause and remedy";

@@ -1,5 +1,5 @@
 //! `ecu`: the onboard unit as a Linux process in place of a device. Frames of a CAN interface enter; the unit's answers
-//! leave on it, by a clock every period, or in lock step with the bus's time synchronisation.
+//! leave on it, by a clock every period, or in lock step with the bus's time synchronisation, until SIGINT or SIGTERM.
 
 pub mod arguments;
 pub mod options;
@@ -12,6 +12,7 @@ use holdover::{Answer, Config, ConfigError, LockStep};
 
 use crate::bus;
 use crate::bus::port::{Event, Port};
+use crate::commands::interruption::Interruption;
 use crate::error::Error;
 use crate::output;
 use crate::sim::vehicle::Unit;
@@ -26,11 +27,12 @@ const AT_ONCE: usize = 256;
 /// Time between two checks of the bus in lock step.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Runs the unit for ever.
+/// Runs the unit until SIGINT or SIGTERM.
 ///
 /// # Errors
 /// An interface that cannot be used, or that is removed.
 pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
+    let interruption = Interruption::awaited()?;
     let mut port = bus::open(&options.bus)?;
     let failed = |error: &io::Error| {
         let cause = format!("the interface failed: {error}");
@@ -42,14 +44,14 @@ pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
         Error::new(format!("the unit refuses its configuration: {cause}"), "change the scenario accordingly")
     })?;
     output::say(&format!("a unit with station {} on {}", options.config.station.0, options.bus));
-    live(&mut ecu, &mut port).map_err(|error| failed(&error))?;
+    live(&mut ecu, &mut port, &interruption).map_err(|error| failed(&error))?;
     Ok(Verdict::Pass)
 }
 
-/// Runs on a port for ever. As in the firmware, frames that have arrived are taken in before the unit ticks. A flood of
+/// Runs on a port until it is interrupted, which it notices within a tick or [`PATIENCE`]. As in the firmware, frames that have arrived are taken in before the unit ticks. A flood of
 /// frames does not keep the unit from ticking.
-fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
-    loop {
+fn live(ecu: &mut Ecu, port: &mut impl Port, interruption: &Interruption) -> io::Result<()> {
+    while !interruption.is_asked() {
         let wake = ecu.wakes().unwrap_or(port.now().plus(PATIENCE));
         let mut until = if ecu.is_by_clock() && ecu.wakes().is_none() { port.now() } else { wake };
         for _ in 0..AT_ONCE {
@@ -65,6 +67,7 @@ fn live(ecu: &mut Ecu, port: &mut impl Port) -> io::Result<()> {
             transmit(ecu, port, &answer)?;
         }
     }
+    Ok(())
 }
 
 /// Sends an answer. An interface that is down may come up again, and a full queue may empty.
@@ -158,7 +161,51 @@ fn local(start: Instant, at: Instant) -> Instant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bus::port::BusError;
     use holdover::wire::StationHash;
+
+    /// A bus without other nodes, whose time passes in waits. It asks the unit to end at a time.
+    struct Lonely {
+        now: Instant,
+        ends: Instant,
+        sent: usize,
+        interruption: Interruption,
+    }
+
+    impl Port for Lonely {
+        fn now(&self) -> Instant {
+            self.now
+        }
+
+        fn send(&mut self, _: bus::Frame) -> io::Result<()> {
+            self.sent += 1;
+            Ok(())
+        }
+
+        fn send_error(&mut self, _: BusError) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn wait(&mut self, until: Instant) -> io::Result<Option<(Instant, Event)>> {
+            self.now = self.now.max(until);
+            if self.now >= self.ends {
+                self.interruption.ask();
+            }
+            Ok(None)
+        }
+    }
+
+    #[test]
+    fn it_runs_until_it_is_interrupted() {
+        for (lock_step, ticks) in [(false, 11), (true, 0)] {
+            let interruption = Interruption::default();
+            let mut port = Lonely { now: at(0), ends: at(100), sent: 0, interruption: interruption.clone() };
+            let mut ecu = Ecu::new(&Config::car(StationHash(1)), lock_step).unwrap();
+            live(&mut ecu, &mut port, &interruption).unwrap();
+            assert_eq!(port.now, at(100));
+            assert!(port.sent >= ticks && (ticks > 0 || port.sent == 0), "{} frames", port.sent);
+        }
+    }
 
     fn at(millis: u64) -> Instant {
         Instant::from_micros(1_700_000_000_000_000 + millis * 1000)

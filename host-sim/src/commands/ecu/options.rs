@@ -56,8 +56,8 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// # Errors
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
-    let identifiers = arguments.identifiers.read()?;
     let transport = if arguments.fd { Transport::Fd } else { scenario.transport };
+    let identifiers = arguments.identifiers.read(transport, slots())?;
     if let Some(station) = arguments.station {
         return Ok(Config { identifiers, transport, ..Config::car(StationHash(station)) });
     }
@@ -77,7 +77,13 @@ pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Er
 /// The identifiers that a unit listens to.
 pub fn heard(identifiers: &Identifiers) -> impl Iterator<Item = Identifier> {
     let lines = CATALOGUE.iter().filter(|line| line.sender != Node::Unit);
-    lines.flat_map(|line| identifiers.of_line(line.offset, u8::try_from(PEERS).unwrap_or(u8::MAX)))
+    lines.flat_map(|line| identifiers.of_line(line.offset, slots()))
+}
+
+/// The slots of a unit here.
+#[must_use]
+pub fn slots() -> u8 {
+    u8::try_from(PEERS).unwrap_or(u8::MAX)
 }
 
 #[cfg(test)]

@@ -3,8 +3,11 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::commands::ending::OutputArguments;
+
 /// The arguments of `envelope-cost`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/envelope-cost")))]
 pub struct EnvelopeCostArguments {
     /// The scenario; the paper's if none is given
     #[arg(value_name = "SCENARIO.toml")]
@@ -34,17 +37,9 @@ pub struct EnvelopeCostArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/envelope-cost")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 }
 
 /// The end of `envelope-cost --help`.

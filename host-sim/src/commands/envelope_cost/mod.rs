@@ -36,8 +36,9 @@ pub fn run(options: &EnvelopeCostOptions) -> Result<Verdict, Error> {
     let rows = options.scenarios.iter().map(run).collect::<Result<Vec<Row>, Error>>()?;
     bar.finish_and_clear();
     let failures = rows::failures(&rows);
-    let said: String = failures.iter().map(|failure| format!("verdict: FAILED: {failure}\n")).collect();
+    let verdict = Verdict::of(&failures);
+    let said = if verdict == Verdict::Pass { String::new() } else { verdict.line(&failures) };
     let page = || page::render(options, &rows, &failures);
     options.destination.deliver(&Results { rows: &rows }, &table::text(&rows, &failures), &said, page)?;
-    Ok(Verdict::of(&failures))
+    Ok(verdict)
 }

@@ -44,17 +44,7 @@ impl EnvelopeCostOptions {
     /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: EnvelopeCostArguments) -> Result<Self, Error> {
         let words = typed(&arguments);
-        let EnvelopeCostArguments {
-            scenario: scenario_file,
-            silences,
-            seeds,
-            seed,
-            distance,
-            json,
-            out,
-            no_report,
-            ..
-        } = arguments;
+        let EnvelopeCostArguments { scenario: scenario_file, silences, seeds, seed, distance, output, .. } = arguments;
         let overrides = Overrides {
             seed,
             leader_motion: arguments.leader_motion,
@@ -68,7 +58,7 @@ impl EnvelopeCostOptions {
             let error = Error::new(format!("is {distance}"), "give metres from 1 to 1000000");
             return Err(error.in_option("--distance"));
         }
-        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let destination = output.read()?;
         Ok(Self {
             scenarios,
             scenario_file,

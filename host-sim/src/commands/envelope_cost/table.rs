@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::rows::{Row, Side};
+use crate::verdict::Verdict;
 
 /// The table.
 #[must_use]
@@ -19,8 +20,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
         line(&mut text, &silence(row), "off", &row.off, row.seeds);
         line(&mut text, "", "on", &row.on, row.seeds);
     }
-    let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
-    let _ = writeln!(text, "verdict: {verdict}");
+    let _ = writeln!(text, "{}", Verdict::of(failures).line(failures));
     text
 }
 

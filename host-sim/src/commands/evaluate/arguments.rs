@@ -3,6 +3,8 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::commands::ending::OutputArguments;
+
 /// The arguments of `evaluate`.
 #[derive(Clone, Debug, Args)]
 pub struct EvaluateArguments {
@@ -26,17 +28,9 @@ pub struct EvaluateArguments {
     #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_negative_numbers = true)]
     pub step: f64,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 
     /// Write every tick that counts: time, truth, age, the unit's estimate and each baseline's
     #[arg(long, value_name = "FILE.csv")]

@@ -57,7 +57,7 @@ impl EvaluateOptions {
         if let Impairment::Channel(file, trace) = &impairment {
             recordings.iter().try_for_each(|recording| recording.overlaps(file, trace))?;
         }
-        let destination = Destination::new(arguments.json, (!arguments.no_report).then_some(arguments.out))?;
+        let destination = arguments.output.read()?;
         if let Some(file) = &arguments.trace {
             let inputs = arguments.motion.iter().chain(&arguments.predecessor).chain(&arguments.channel);
             can_be_file("--trace", file, &inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;

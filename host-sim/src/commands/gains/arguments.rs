@@ -3,24 +3,19 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::commands::ending::OutputArguments;
+
 /// The arguments of `gains`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/gains")))]
 pub struct GainsArguments {
     /// Write the table to this file, as Rust
     #[arg(long, value_name = "FILE.rs")]
     pub write: Option<PathBuf>,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/gains")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 }
 
 /// The end of `gains --help`.

@@ -43,8 +43,8 @@ impl GainsOptions {
     /// # Errors
     /// Output that cannot be written.
     pub fn read(arguments: GainsArguments) -> Result<Self, Error> {
-        let GainsArguments { write, json, out, no_report } = arguments;
-        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let GainsArguments { write, output } = arguments;
+        let destination = output.read()?;
         if let Some(file) = &write {
             can_be_file("--write", file, &[])?;
         }
@@ -117,10 +117,9 @@ pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
 
 fn text(results: &Results) -> String {
     let proofs: String = results.proofs.iter().map(of_proof).collect();
-    let verdict =
-        if results.failures.is_empty() { "passed".into() } else { format!("FAILED: {}", results.failures.join("; ")) };
+    let verdict = Verdict::of(results.failures).line(results.failures);
     format!(
-        "{} cells; curve: k {:?}/1000, damping {:?} ms\n{proofs}verdict: {verdict}\n",
+        "{} cells; curve: k {:?}/1000, damping {:?} ms\n{proofs}{verdict}\n",
         results.cells, results.curve_gain_milli, results.curve_damping_milli,
     )
 }

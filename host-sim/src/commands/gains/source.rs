@@ -10,7 +10,7 @@ use super::grid::{
 
 const HEAD: &str = "\
 //! The table of eq. 6. Generated, and every cell proved, by `holdover-sim gains --write src/controller/gain_table.rs`; do not
-//! edit. Nothing enters; constants leave.
+//! edit. The gain over both speeds and the headway, and the damping over the gain.
 
 ";
 

@@ -153,7 +153,7 @@ impl<P: Port> Bench<P> {
         let mut frames = Vec::new();
         for message in [Message::Sync(Sync { sequence, seconds }), Message::FollowUp(FollowUp { sequence, micros })] {
             let sent = self.sender.send(&message, &mut |frame| frames.push((&frame).into()));
-            debug_assert!(sent.is_ok(), "the catalogue has lines for the time synchronisation");
+            sent.expect("the catalogue has a line for each step of the time synchronisation");
         }
         frames
     }

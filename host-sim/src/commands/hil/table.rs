@@ -44,13 +44,7 @@ pub fn text(results: &Results) -> String {
     row("  collisions", scenario.collisions.to_string());
     row("harness: late p50 / p99 / max, ms", spread(&timing.harness.lateness));
     row("  frames sent / lost", format!("{} / {}", timing.harness.frames, timing.harness.lost));
-    let reasons = results.reasons.join("; ");
-    let verdict = match results.verdict {
-        "passed" => "passed".into(),
-        "failed" => format!("FAILED: {reasons}"),
-        _ => format!("INCONCLUSIVE: {reasons}"),
-    };
-    let _ = writeln!(text, "verdict: {verdict}");
+    let _ = writeln!(text, "{}", results.code().line(&results.reasons));
     text
 }
 

@@ -227,7 +227,7 @@ impl<P: Port> Talk<P> {
             Sender::<0>::new(self.identifiers).over(transport).send(&Message::FollowUp(follow_up), &mut |made| {
                 dated = (&recounted(&self.identifiers, &made, counter_of(frame))).into();
             });
-        debug_assert!(sent.is_ok(), "the catalogue has a line for the time synchronisation");
+        sent.expect("the catalogue has a line for the time synchronisation");
         dated
     }
 

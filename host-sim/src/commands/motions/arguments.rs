@@ -1,10 +1,12 @@
 //! The arguments of `motions`, as they are typed.
 
 use clap::Args;
-use std::path::PathBuf;
+
+use crate::commands::ending::OutputArguments;
 
 /// The arguments of `motions`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/motions")))]
 pub struct MotionsArguments {
     /// Silences of each motion, 1 to 1000; ten successive ones differ in their beginning, or in when the target brakes
     /// in them
@@ -15,17 +17,9 @@ pub struct MotionsArguments {
     #[arg(long, value_name = "N", default_value = "1")]
     pub seed: u64,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/motions")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 }
 
 /// The end of `motions --help`.

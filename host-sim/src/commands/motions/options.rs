@@ -25,13 +25,13 @@ impl MotionsOptions {
     /// # Errors
     /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: MotionsArguments) -> Result<Self, Error> {
-        let MotionsArguments { silences, seed, json, out, no_report } = arguments;
+        let MotionsArguments { silences, seed, output } = arguments;
         if !(1..=MOST_SILENCES).contains(&silences) {
             let remedy = format!("give a number from 1 to {MOST_SILENCES}");
             return Err(Error::new(format!("is {silences}"), remedy).in_option("--silences"));
         }
         seeds::from(seed, u64::from(silences))?;
-        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let destination = output.read()?;
         Ok(Self { silences, seed, destination })
     }
 

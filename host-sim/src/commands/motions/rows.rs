@@ -33,15 +33,15 @@ pub struct Row {
     /// The unit's rms over that of the best baseline.
     pub ours_over_best: f64,
     /// The unit beside the best baseline.
-    pub standing: Standing,
+    pub standing: Outcome,
     /// The figures of the unit, then of the baselines.
     pub methods: Vec<MethodFigures>,
 }
 
-/// The unit beside the best baseline, by the rms of the position error.
+/// How the unit comes out beside the best baseline, by the rms of the position error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Standing {
+pub enum Outcome {
     /// More than 5 % smaller.
     Wins,
     /// Within 5 %.
@@ -105,12 +105,12 @@ fn row(motion: TargetMotion, silences: u32, errors: &[Errors]) -> Option<Row> {
         comparisons: errors.len(),
         best_baseline: best.name,
         ours_over_best,
-        standing: Standing::of(ours_over_best),
+        standing: Outcome::of(ours_over_best),
         methods,
     })
 }
 
-impl Standing {
+impl Outcome {
     fn of(ours_over_best: f64) -> Self {
         if ours_over_best < 1.0 - LEVEL {
             Self::Wins
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn the_least_rms_is_the_best_and_ours_stands_to_it() {
         let mut errors = Errors { since_s: 0.1, position_m: [3.0; METHODS], speed_mps: [1.0; METHODS] };
-        for (singers, standing) in [(4.0, Standing::Wins), (3.1, Standing::Draws), (2.9, Standing::Draws)] {
+        for (singers, standing) in [(4.0, Outcome::Wins), (3.1, Outcome::Draws), (2.9, Outcome::Draws)] {
             errors.position_m = [9.0; METHODS];
             (errors.position_m[0], errors.position_m[4]) = (-3.0, singers);
             let row = row(TargetMotion::Sine, 1, &[errors; 2]).unwrap();
@@ -171,7 +171,7 @@ mod tests {
         }
         errors.position_m[4] = 1.0;
         let row = row(TargetMotion::Sine, 1, &[errors]).unwrap();
-        assert_eq!((row.standing, row.ours_over_best, row.methods[0].max_position_m), (Standing::Loses, 3.0, 3.0));
+        assert_eq!((row.standing, row.ours_over_best, row.methods[0].max_position_m), (Outcome::Loses, 3.0, 3.0));
     }
 
     #[test]

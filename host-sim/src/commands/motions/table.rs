@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::rows::{Row, Standing};
+use super::rows::{Outcome, Row};
 use crate::report::markup::significant;
 
 /// The table.
@@ -24,7 +24,7 @@ pub fn text(rows: &[Row]) -> String {
         text.push('\n');
     }
     let losses: Vec<String> =
-        rows.iter().filter(|row| row.standing == Standing::Loses).map(|row| row.motion.to_string()).collect();
+        rows.iter().filter(|row| row.standing == Outcome::Loses).map(|row| row.motion.to_string()).collect();
     let _ = writeln!(text, "holdover loses: {}", if losses.is_empty() { "nowhere".into() } else { losses.join("; ") });
     text
 }

@@ -1,7 +1,6 @@
 //! `record`: the events on a CAN interface enter, a candump log with the kernel's time stamps leaves.
 
 pub mod arguments;
-pub mod interruption;
 
 use std::fmt;
 use std::fs::File;
@@ -13,13 +12,13 @@ use holdover::time::{Duration, Instant};
 use crate::bus;
 use crate::bus::candump::LogWriter;
 use crate::bus::port::{Event, Port};
+use crate::commands::interruption::Interruption;
 use crate::error::Error;
 use crate::output;
 use crate::places::can_be_file;
 use crate::sim::quantities::duration;
 use crate::verdict::Verdict;
 use arguments::RecordArguments;
-use interruption::Interruption;
 
 /// Time between two checks of the end, and between two flushes of the log.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -57,9 +56,7 @@ impl RecordOptions {
 /// # Errors
 /// An interface that cannot be used, and a log that cannot be written.
 pub fn run(options: &RecordOptions) -> Result<Verdict, Error> {
-    let interruption = Interruption::awaited().map_err(|error| {
-        Error::new(format!("signals cannot be awaited ({error})"), "report this, with the system's name and version")
-    })?;
+    let interruption = Interruption::awaited()?;
     let mut port = bus::open(&options.interface)?;
     let (name, out): (&Path, Box<dyn Write>) = match &options.file {
         Some(file) => (file, Box::new(File::create(file).map_err(|error| Error::unwritable(file, &error))?)),

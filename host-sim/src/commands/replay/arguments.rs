@@ -96,14 +96,15 @@ Time:
   line. Lines are read one by one, so frames may have been printed by then.
 
   With --bus the first frame is sent at once and every further one as long after
-  it as the log says; error frames and CAN FD are left out. How late the latest
-  of them was is told at the end.
+  it as the log says, those of CAN FD too; error frames are left out, and so is
+  CAN XL. How late the latest of them was is told at the end.
 
 What becomes of a frame:
   recognised  a good frame of one of the catalogue's messages to the unit
-  refused     such a frame that is damaged, repeated, late, torn or implausible
-  ignored     any other: of other senders, the unit's own, CAN FD, error
-              frames, and other interfaces
+  refused     such a frame that is damaged, repeated, late, torn or implausible;
+              with --fd also one of classic CAN (length)
+  ignored     any other: of other senders, the unit's own, CAN FD without --fd,
+              CAN XL, error frames, and other interfaces
 
 Exit codes:
   0  the whole log was replayed

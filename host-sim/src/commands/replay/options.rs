@@ -10,6 +10,7 @@ use holdover::wire::{StationHash, Transport};
 use super::arguments::ReplayArguments;
 use crate::bus::candump::Interface;
 use crate::commands::corridor::options::exists;
+use crate::commands::ecu::options::slots;
 use crate::error::{Error, quoted};
 use crate::input::library;
 use crate::input::scenario::{Overrides, Scenario};
@@ -67,10 +68,10 @@ impl ReplayOptions {
             (None, vehicle) => (of_string(None, vehicle, &overrides)?, None),
             (Some(named), vehicle) => of_scenario(named, vehicle, &overrides)?,
         };
-        config.identifiers = identifiers.read()?;
         if arguments.fd {
             config.transport = Transport::Fd;
         }
+        config.identifiers = identifiers.read(config.transport, slots())?;
         let output = match (bus, arguments.json, arguments.summary) {
             (Some(bus), ..) => Output::Bus(bus),
             (None, true, _) => Output::Json,

@@ -1,6 +1,7 @@
 //! The arguments of `run`, as they are typed.
 
 use super::candump::Times;
+use crate::commands::ending::OutputArguments;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -66,17 +67,9 @@ pub struct RunSettings {
     #[arg(long)]
     pub envelope: bool,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 
     /// Write every tick: time, truth, estimate and its bound, age, mode, command, and whether the envelope changed the
     /// command

@@ -23,7 +23,6 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let scenario = &options.scenario;
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of 1000
     let (trace, summary) =
         simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();

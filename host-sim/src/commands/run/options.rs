@@ -58,7 +58,7 @@ impl RunOptions {
             let error = Error::new(format!("there is no vehicle {vehicle}"), format!("give an index from 0 to {last}"));
             return Err(error.in_option("--candump-vehicle"));
         }
-        let destination = Destination::new(settings.json, (!settings.no_report).then_some(settings.out))?;
+        let destination = settings.output.read()?;
         let inputs = [scenario_file.as_ref(), settings.leader_motion.as_ref(), settings.channel_trace.as_ref()];
         let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use crate::input::scenario::Scenario;
 use crate::measure::figures::{Errors, Summary};
+use crate::verdict::Verdict;
 
 /// The table.
 pub fn text(scenario: &Scenario, summary: &Summary, failures: &[String]) -> String {
@@ -32,8 +33,7 @@ pub fn text(scenario: &Scenario, summary: &Summary, failures: &[String]) -> Stri
         let _ = writeln!(text, "{:<26}{percent:>12}", "limited by the envelope");
     }
     let _ = writeln!(text, "{:<26}{:>12.0}", "simulated s per s", summary.timing.realtime_factor);
-    let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
-    let _ = writeln!(text, "verdict: {verdict}");
+    let _ = writeln!(text, "{}", Verdict::of(failures).line(failures));
     text
 }
 

@@ -1,10 +1,12 @@
 //! The arguments of `string`, as they are typed.
 
 use clap::Args;
-use std::path::PathBuf;
+
+use crate::commands::ending::OutputArguments;
 
 /// The arguments of `string`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/string")))]
 pub struct StringArguments {
     /// Time gaps of the ten followers, in seconds from 0.1 to 3.995; by default the shipped one
     #[arg(long, value_name = "SECONDS,…", value_delimiter = ',', allow_negative_numbers = true)]
@@ -52,17 +54,9 @@ pub struct StringArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seeds: Option<u64>,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/string")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 }
 
 /// The end of `string --help`.

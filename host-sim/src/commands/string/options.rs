@@ -38,15 +38,14 @@ impl StringOptions {
     /// # Errors
     /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
-        let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, json, out, no_report } =
-            arguments;
+        let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, output } = arguments;
         let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
         within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
         seeds::checked(seed, seeds.unwrap_or(STEP_SEEDS))?;
-        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let destination = output.read()?;
         let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
         Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, destination })

@@ -6,6 +6,7 @@ use super::amplification::Worst;
 use super::disturbance::Disturbance;
 use super::options::{StringOptions, shipped_time_gap_s};
 use super::rows::{LIMIT, Row, smallest_time_gap_s};
+use crate::verdict::Verdict;
 
 /// The table.
 #[must_use]
@@ -52,8 +53,7 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
 /// The verdict, and what it is based on.
 #[must_use]
 pub fn verdict(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
-    let verdict = if failures.is_empty() { "passed".into() } else { format!("FAILED: {}", failures.join("; ")) };
-    format!("verdict: {verdict}; {}", runs(options, rows))
+    format!("{}; {}", Verdict::of(failures).line(failures), runs(options, rows))
 }
 
 /// The number of runs, and of seeds of each disturbance.

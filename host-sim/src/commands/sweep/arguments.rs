@@ -3,8 +3,11 @@
 use clap::Args;
 use std::path::PathBuf;
 
+use crate::commands::ending::OutputArguments;
+
 /// The arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/sweep")))]
 pub struct SweepArguments {
     /// The scenario; by default the paper's
     #[arg(value_name = "SCENARIO.toml")]
@@ -28,17 +31,9 @@ pub struct SweepArguments {
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
-    /// Print the results as one JSON value on stdout
-    #[arg(long)]
-    pub json: bool,
-
-    /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report/sweep")]
-    pub out: PathBuf,
-
-    /// Write no report
-    #[arg(long, conflicts_with = "out")]
-    pub no_report: bool,
+    /// Where its results go.
+    #[command(flatten)]
+    pub output: OutputArguments,
 }
 
 /// The end of `sweep --help`.

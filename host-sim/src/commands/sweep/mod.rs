@@ -46,7 +46,7 @@ pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
     bar.finish_and_clear();
     let said = match &failures[..] {
         [] => String::new(),
-        failures => format!("verdict: {}", verdict(options.runs(), failures)),
+        failures => verdict(options.runs(), failures),
     };
     let page = || page::report(options, &rows, &failures).render();
     options.destination.deliver(&Results { rows: &rows }, &table::text(options, &rows, &failures), &said, page)?;
@@ -62,12 +62,15 @@ fn progress(options: &SweepOptions) -> ProgressBar {
     bar
 }
 
-/// The verdict in words.
+/// The line of the verdict.
 fn verdict(runs: u64, failures: &[Failure]) -> String {
-    let Some(first) = failures.first() else { return "passed".into() };
+    let reasons: Vec<String> = reason(runs, failures).into_iter().collect();
+    Verdict::of(failures).line(&reasons)
+}
+
+/// How many runs failed, and how the first one did; `None` if none did.
+fn reason(runs: u64, failures: &[Failure]) -> Option<String> {
+    let first = failures.first()?;
     let (count, causes) = (failures.len(), first.causes.join("; "));
-    format!(
-        "FAILED: {count} of {runs} runs, the first at a step of {} s with seed {}: {causes}",
-        first.step, first.seed
-    )
+    Some(format!("{count} of {runs} runs, the first at a step of {} s with seed {}: {causes}", first.step, first.seed))
 }

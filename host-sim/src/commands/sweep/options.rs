@@ -31,12 +31,12 @@ impl SweepOptions {
     /// # Errors
     /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
-        let SweepArguments { scenario: scenario_file, steps, seeds, seed, json, out, no_report } = arguments;
+        let SweepArguments { scenario: scenario_file, steps, seeds, seed, output } = arguments;
         let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
         let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
         let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
         seeds::checked(scenario.seed, seeds)?;
-        let destination = Destination::new(json, (!no_report).then_some(out))?;
+        let destination = output.read()?;
         Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, destination })
     }
 

@@ -1,8 +1,8 @@
 //! The report of a sweep: options, rows and failures enter, the page's content leaves.
 
 use super::options::SweepOptions;
+use super::reason;
 use super::rows::{Failure, Row};
-use super::verdict;
 use crate::report::run::Verdict;
 use crate::report::sweep::{SweepReport, SweepRow};
 
@@ -10,10 +10,8 @@ use crate::report::sweep::{SweepReport, SweepRow};
 pub fn report(options: &SweepOptions, rows: &[Row], failures: &[Failure]) -> SweepReport {
     let name = options.scenario_file.as_ref().and_then(|file| file.file_stem());
     let name = name.map_or("The paper’s scenario".into(), |stem| stem.to_string_lossy().into_owned());
-    let reason = match failures {
-        [] => format!("No collision, and nobody stopped without need, in {} runs.", options.runs()),
-        _ => verdict(options.runs(), failures),
-    };
+    let passed = || format!("No collision, and nobody stopped without need, in {} runs.", options.runs());
+    let reason = reason(options.runs(), failures).map_or_else(passed, |reason| format!("FAILED: {reason}"));
     SweepReport {
         title: format!("{name} over prediction steps"),
         facts: facts(options),

@@ -36,7 +36,7 @@ pub fn text(options: &SweepOptions, rows: &[Row], failures: &[Failure]) -> Strin
     }
     let published = PUBLISHED.map(|(step_s, error_m)| format!("{error_m} m at {step_s} s")).join(", ");
     let _ = writeln!(text, "the paper reports a maximum of {published}");
-    let _ = writeln!(text, "verdict: {}", verdict(options.runs(), failures));
+    let _ = writeln!(text, "{}", verdict(options.runs(), failures));
     text
 }
 

@@ -48,7 +48,6 @@ pub const HORIZON_S: f64 = 3.9;
 
 /// A horizon of at least this length in whole steps, within the capacity.
 #[must_use]
-#[allow(clippy::cast_precision_loss)]
 pub fn horizon(horizon_s: f64, step_s: f64) -> Duration {
     let steps = (horizon_s / step_s).ceil().clamp(2.0, (STEPS - 2) as f64);
     duration(steps * step_s)
