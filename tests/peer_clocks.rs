@@ -80,3 +80,34 @@ fn who_is_only_late_by_turns_is_not_taken_for_behind() {
         assert!(outside == 0.0 && taken > 100 && named == 0, "{spread}: {outside} {taken} {named}");
     }
 }
+
+/// The time is lost while messages take long; a sample from then says little of when it was true.
+#[test]
+fn after_a_time_without_gnss_the_truth_is_inside_though_all_messages_were_slow() {
+    let mut rig = Rig::new(&rig::config());
+    let truth = |at: i64| 1_000.0 + 15.0 * at as f64 / 1e6;
+    let mut checked = 0;
+    for tick in 0..3_000i64 {
+        let now = tick * 10_000;
+        let is_timed = !(8_000_000..16_000_000).contains(&now);
+        if is_timed && now % 500_000 == 0 {
+            rig.synchronise(now, 0);
+        }
+        let _ = rig.ego(now, 950.0 + 15.0 * now as f64 / 1e6, 15.0, 0.0, 0.0);
+        let delay = if now < 12_000_000 { 150_000 } else { 1_850_000 };
+        if now % 100_000 == 0 && now > 2_000_000 {
+            let then = now - delay;
+            let motion = rig.motion(TARGET, then, truth(then), 15.0, 0.0, 0.0, Some((0.05, 0.02)));
+            let _ = rig.target(now, Said::Motion(motion));
+        }
+        rig.tick(now);
+        let track = rig.unit.peers().get(2).expect("a slot");
+        if let Some(bound) = track.certainty().bound().filter(|_| now > 10_000_000) {
+            let bound = bound.after(instant(now), &track.reach());
+            let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
+            assert!(low <= truth(now) && truth(now) <= high, "{now}: {low} <= {} <= {high}", truth(now));
+            checked += 1;
+        }
+    }
+    assert!(checked > 1_000, "{checked}");
+}

@@ -5,7 +5,7 @@ mod rig;
 
 use holdover::controller::Mode;
 use holdover::health::Cause;
-use holdover::wire::{Message, Said, Slot};
+use holdover::wire::{Message, Said, Slot, StationHash};
 use rig::plant::Body;
 use rig::road::Road;
 use rig::{TARGET, m_of};
@@ -95,4 +95,30 @@ fn a_late_motion_in_another_slot_is_of_the_target_that_the_range_sensor_sees() {
     }
     assert_eq!(heard.answer.mode, Mode::Cooperative);
     assert_eq!(road.rig.unit.peers().get(2).expect("a slot").station(), None, "the slot that it left is free");
+}
+
+#[test]
+fn the_target_stays_minded_when_it_has_a_new_name_and_its_old_one_is_that_of_a_vehicle_far_ahead() {
+    const NEW: StationHash = StationHash(9);
+    let mut config = rig::config();
+    config.envelope = Some(holdover::config::Envelope::CAR);
+    let mut road = Road::new(&config, 15.0, 25.0);
+    road.power_up();
+    road.run(2.0);
+    road.senses.v2x = false;
+    let mut far = Body { position: road.target.position + 200.0, speed: 15.0 };
+    for period in 0..300 {
+        if period % 10 == 0 {
+            let (now, target) = (road.now, road.target);
+            let named = road.rig.motion(NEW, now, target.position, target.speed, 0.0, 0.0, Some((0.05, 0.02)));
+            let _ = road.rig.put(now, &Message::Peer(Slot(2), Said::Motion(named)));
+            let other = road.rig.motion(TARGET, now, far.position, far.speed, 0.0, 0.0, Some((0.05, 0.02)));
+            let _ = road.rig.put(now, &Message::Peer(OTHER, Said::Motion(other)));
+        }
+        road.step();
+        far = far.after(0.0, 0.01);
+    }
+    road.acceleration = -8.0;
+    let least = road.run_to_rest();
+    assert!(least > 0.0, "{least}");
 }

@@ -144,4 +144,30 @@ mod tests {
         assert_eq!(link.silence(at(1110)), Some(Duration::from_millis(100)));
         assert_eq!(link.period(), Duration::from_millis(100));
     }
+
+    #[test]
+    fn a_peer_that_sends_less_often_than_it_did_is_on_again() {
+        let (mut link, settings) =
+            (Link::new(Duration::from_millis(50)), crate::Config::car(crate::wire::StationHash(1)).link);
+        let mut now = Instant::from_micros(1_000_000);
+        for _ in 0..100 {
+            now = now.plus(Duration::from_millis(222));
+            link.heard(now, now);
+        }
+        assert!(link.is_on(now.plus(Duration::from_millis(222)), &settings), "{:?}", link.period());
+    }
+
+    #[test]
+    fn losses_do_not_make_the_period_longer() {
+        let mut link = Link::new(Duration::from_millis(100));
+        let mut now = Instant::from_micros(1_000_000);
+        for number in 0u32..2_000 {
+            now = now.plus(Duration::from_millis(100));
+            // Two of five are lost, nine in a row now and then.
+            if number % 5 < 3 && number % 100 > 9 {
+                link.heard(now, now);
+            }
+        }
+        assert_eq!(link.period(), Duration::from_millis(100));
+    }
 }
