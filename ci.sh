@@ -22,7 +22,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   doc       documentation without a warning; each source file opens with what it does, and has at most 400 lines
   test      unit, property, integration and documentation tests, with overflow checks
   dbc       the DBC files as cantools and canmatrix read them: without a warning, and the same as DBC, KCD, SYM and ARXML
-  study     the verdicts of the case study: the four intersections for ten minutes, and the worst link of the string of ten
+  study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
+            the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
@@ -83,7 +84,11 @@ step_dbc() {
 step_study() {
     cargo build --locked --release -p holdover-sim
     local sim=${CARGO_TARGET_DIR:-target}/release/holdover-sim
-    "$sim" run corridor --no-report
+    local results=${CARGO_TARGET_DIR:-target}/corridor.json
+    source scripts/need.sh
+    need python3 python3
+    "$sim" run corridor --no-report --json >"$results"
+    python3 scripts/documented_corridor.py docs/RESULTS.md "$results"
     "$sim" string --delays 0.2 --losses 0.4 --step-only --seeds 20 --no-report
 }
 

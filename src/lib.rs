@@ -1,12 +1,6 @@
 //! **holdover** keeps a connected vehicle's cooperative control running while its V2X link is late or silent.
 //!
-//! ```text
-//! a frame:  wire -> message -> scene: clock, ego, peers, places, range sensor   (each refusal is counted, by cause, in health)
-//! a tick:   review -> update -> decide -> drive -> limit -> actuate -> foresee -> send
-//!           order     horizons  mode      demand   command  effort     own horizon  frames
-//! ```
-//!
-//! Imports run one way only: `unit -> coordination, controller -> estimator -> peers -> model -> wire -> time -> units -> fixed`.
+//! `unit.rs` has the picture of a frame's way and of a tick, and ARCHITECTURE.md the layers.
 //!
 //! The two doors are [`OnboardUnit::receive`] and [`OnboardUnit::tick`]. Time is an argument, frames are
 //! [`embedded_can::Frame`]s; there is no clock, no bus, no allocator and no global in here. Same input, same output,

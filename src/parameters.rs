@@ -1,5 +1,5 @@
 //! The design numbers of the core, each with its source or derivation, and the relations between them, proved at
-//! compile time. Nothing enters; constants leave.
+//! compile time.
 
 use crate::time::{Duration, Stamp};
 use crate::units::{Acceleration, Distance, Gain, Seconds, Speed};

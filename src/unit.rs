@@ -14,7 +14,7 @@
 //!         send     frames                                                         outbox
 //! ```
 //!
-//! From `decide` on the scene is only looked at, but for the own horizon.
+//! From `decide` on the scene is only looked at, but `foresee` writes the own horizon into it. ARCHITECTURE.md explains the order.
 
 use embedded_can::Frame as CanFrame;
 use heapless::Vec;
@@ -176,30 +176,38 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The stages in the order of the diagram above.
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
-        let last_tick = self.last_tick;
-        let now = self.monotonic(now);
-        let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
-        let last = self.controller.last_demand();
-        coordinate::review(&mut self.scene, now, last, &mut self.health);
-        self.scene.note_others(now);
-        let target = self.scene.target();
-        self.scene.note_named(target);
+        let (now, last) = self.begin(now);
+        let target = self.review(now, last);
         let (before, reading) = self.update(now, target);
         self.decide(now, target, before, reading);
-        let ego = self.scene.ego_at(now, last);
+        let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
-        let (acceleration, limited) = self.limit(now, demand, Last { demand: last, age }, ego.as_ref());
+        let (acceleration, limited) = self.limit(now, demand, last, ego.as_ref());
         answer.command = self.actuate(now, acceleration, limited, ego.as_ref());
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
-            let (command, estimate) = (&answer.command, answer.estimate.as_ref());
-            self.outbox.send_answer(command, estimate, &mut self.health, &mut answer.frames);
-            if self.outbox.is_due(now, self.scene.config.link.period) {
-                let own = self.foresee(now, last, target);
-                self.send_own(now, own.as_ref(), &mut answer.frames);
-            }
+            let is_due = self.outbox.is_due(now, self.scene.config.link.period);
+            let own = is_due.then(|| self.foresee(now, last.demand, target));
+            self.send(now, own.as_ref().map(Option::as_ref), answer);
         }
+    }
+
+    /// The time of this tick, and the demand of the last one with its age.
+    fn begin(&mut self, now: Instant) -> (Instant, Last) {
+        let last_tick = self.last_tick;
+        let now = self.monotonic(now);
+        let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
+        (now, Last { demand: self.controller.last_demand(), age })
+    }
+
+    /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.
+    fn review(&mut self, now: Instant, last: Last) -> Option<usize> {
+        coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
+        self.scene.note_others(now);
+        let target = self.scene.target();
+        self.scene.note_named(target);
+        target
     }
 
     fn monotonic(&mut self, now: Instant) -> Instant {
@@ -295,6 +303,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             ego_horizon::foresee(&mut self.scene, now, &own, target, self.association.gains());
         }
         Some(own)
+    }
+
+    /// Sends the answer, and the own messages if they are due: then `own` is the ego's motion as far as it is known.
+    fn send(&mut self, now: Instant, own: Option<Option<&Sample>>, answer: &mut Answer) {
+        let Answer { command, estimate, frames, .. } = answer;
+        self.outbox.send_answer(command, estimate.as_ref(), &mut self.health, frames);
+        if let Some(own) = own {
+            self.send_own(now, own, frames);
+        }
     }
 
     fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {

@@ -26,6 +26,9 @@ const ORDER: [&str; 19] = [
     "lockstep",
 ];
 
+/// The rooms that know neither one another nor the estimator.
+const APART: [&str; 4] = ["controller", "coordination", "envelope", "estimator"];
+
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -70,13 +73,15 @@ fn no_room_of_the_core_imports_from_one_above_it() {
         for (number, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
             for name in named(line) {
                 imports += 1;
-                if place(name).is_none_or(|other| other > own) {
+                let is_apart =
+                    room != "estimator" && room != name && [room, name].iter().all(|one| APART.contains(one));
+                if is_apart || place(name).is_none_or(|other| other > own) {
                     wrong.push(format!("src/{}:{}: {room} names crate::{name}", below.display(), number + 1));
                 }
             }
         }
     }
-    assert!(wrong.is_empty(), "imports that run up:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "imports that run up, or across:\n{}", wrong.join("\n"));
     assert!(imports > 300, "only {imports} imports were found, so they are not looked for rightly");
     let empty: Vec<_> = ORDER.iter().zip(seen).filter(|(_, seen)| !seen).map(|(room, _)| room).collect();
     assert!(empty.is_empty(), "rooms that are not there: {empty:?}");

@@ -123,7 +123,7 @@ fn what_was_said_in_a_slot_long_before_the_first_motion_is_not_that_ones() {
 }
 
 #[test]
-fn what_was_said_just_before_is() {
+fn what_was_sent_just_before_the_first_motion_is_of_its_station() {
     let said = parameters(1.0, 5.0);
     let road = after_parameters_of_nobody(&said, 1.5);
     assert_eq!(road.rig.unit.peers().get(2).unwrap().parameters(), Some(&said));

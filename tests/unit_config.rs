@@ -28,7 +28,7 @@ fn int(value: i64) -> i32 {
 }
 
 #[test]
-fn the_car_is_sound() {
+fn the_default_configuration_of_a_car_is_accepted() {
     assert_eq!(Config::car(StationHash(1)).check(CAPACITY), Ok(()));
 }
 

@@ -147,8 +147,7 @@ mod tests {
 
     #[test]
     fn a_peer_that_sends_less_often_than_it_did_is_on_again() {
-        let (mut link, settings) =
-            (Link::new(Duration::from_millis(50)), crate::Config::car(crate::wire::StationHash(1)).link);
+        let (mut link, settings) = (Link::new(Duration::from_millis(50)), Config::car(StationHash(1)).link);
         let mut now = Instant::from_micros(1_000_000);
         for _ in 0..100 {
             now = now.plus(Duration::from_millis(222));

@@ -218,7 +218,7 @@ fn around(points: &[i64], reach: i64, range: std::ops::RangeInclusive<i64>) -> V
 }
 
 #[test]
-fn the_identities_are_about_the_code() {
+fn the_code_computes_both_sides_of_each_identity() {
     let speeds = [0, 2_000, 499_999, 8_000_000, 13_400_000, 39_999_999, TOP_SPEED, 1 << 26, NEAR_SPEED, FAR_SPEED - 1];
     let rates = [1, 997, 100_000, 1_000_000, 2_500_000, 7_999_999, 12_000_000, 20_460_000, HARDEST];
     let mut points = 0;

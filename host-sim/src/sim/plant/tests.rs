@@ -109,7 +109,7 @@ fn with_true_parameters_the_acceleration_reached_is_the_demand_behind_the_lag() 
 }
 
 #[test]
-fn a_grade_and_a_wind_take_what_they_take() {
+fn a_grade_and_a_wind_take_their_share_of_the_acceleration() {
     let uphill = off_from_the_lag(Kind::Car, &Difference { grade: 0.04, ..Difference::NONE });
     assert!((0.38..0.41).contains(&uphill), "four per cent of g: {uphill}");
     let machine = Machine::new(Kind::Car, 0.3, &Difference { grade: 0.04, ..Difference::NONE });
