@@ -4,7 +4,7 @@
 mod rig;
 
 use holdover::controller::Mode;
-use rig::junction::{CROSSING, Driver, HALF, Junction};
+use rig::junction::{Driver, HALF, Junction};
 use rig::plant::Plant;
 use rig::random::Random;
 
@@ -77,15 +77,12 @@ fn who_was_beyond_the_radio_s_reach_when_it_was_heard_last_is_not_waited_for() {
 
 /// Whether two bodies met, on a leg or in the conflict area of the first crossing.
 fn met(drivers: &[Driver]) -> bool {
-    let inside = |driver: &Driver| (CROSSING - HALF..CROSSING + HALF + LENGTH).contains(&driver.body.position);
     let pairs =
         drivers.iter().enumerate().flat_map(|(at, one)| drivers[at + 1..].iter().map(move |other| (one, other)));
     let apart = |one: &Driver, other: &Driver| (one.body.position - other.body.position).abs();
-    pairs.into_iter().any(
-        |(one, other)| {
-            if one.way == other.way { apart(one, other) < LENGTH } else { inside(one) && inside(other) }
-        },
-    )
+    pairs.into_iter().any(|(one, other)| {
+        if one.way == other.way { apart(one, other) < LENGTH } else { one.is_inside() && other.is_inside() }
+    })
 }
 
 #[test]

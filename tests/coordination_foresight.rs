@@ -111,8 +111,7 @@ fn far_from_the_crossing_it_makes_way_gently_and_is_out_of_the_way_all_the_same(
         if junction.drivers[1].body.position < CROSSING - HALF - 130.0 {
             far_hardest = far_hardest.min(command);
         }
-        let inside = |driver: &Driver| (CROSSING - HALF..CROSSING + HALF + 4.8).contains(&driver.body.position);
-        both |= junction.drivers.iter().all(inside);
+        both |= junction.drivers.iter().all(Driver::is_inside);
     });
     // 0.6 m/s², and the command's resolution; the law alone would ask for the 4 m/s² that are the limit.
     assert!(far_hardest > -0.62 && far_hardest < -0.5, "{far_hardest}");
@@ -126,8 +125,7 @@ fn near_the_crossing_it_brakes_as_hard_as_it_has_to() {
     let (mut hardest, mut both): (f64, bool) = (0.0, false);
     junction.run(20.0, |junction| {
         hardest = hardest.min(junction.drivers[1].command());
-        let inside = |driver: &Driver| (CROSSING - HALF..CROSSING + HALF + 4.8).contains(&driver.body.position);
-        both |= junction.drivers.iter().all(inside);
+        both |= junction.drivers.iter().all(Driver::is_inside);
     });
     assert!(hardest < -2.0 && !both, "{hardest}");
 }

@@ -128,9 +128,7 @@ fn overlaps(junction: &mut Junction, seconds: f64, mut each: impl FnMut(f64, &mu
     let mut overlaps = false;
     junction.run(seconds, |junction| {
         each(junction.now as f64 * 1e-6, &mut junction.drivers);
-        let is_inside =
-            |driver: &Driver| driver.body.position > CROSSING - HALF && driver.body.position - LENGTH < CROSSING + HALF;
-        overlaps |= junction.drivers.iter().all(is_inside);
+        overlaps |= junction.drivers.iter().all(Driver::is_inside);
     });
     overlaps
 }

@@ -69,8 +69,7 @@ fn neither_stops_nor_meets_the_other_in_the_conflict_area_and_no_command_jumps()
         let (mut slowest, mut jump, mut both): (f64, f64, bool) = (f64::MAX, 0.0, false);
         let mut last = [0.0, 0.0];
         junction.run(25.0, |junction| {
-            let inside = |driver: &Driver| (CROSSING - HALF..CROSSING + HALF + 4.8).contains(&driver.body.position);
-            both |= junction.drivers.iter().all(inside);
+            both |= junction.drivers.iter().all(Driver::is_inside);
             for (driver, last) in junction.drivers.iter().zip(&mut last) {
                 slowest = slowest.min(driver.body.speed);
                 jump = jump.max((driver.command() - *last).abs());

@@ -1,6 +1,7 @@
 //! Facts about every message on the bus: what is sent is received; no byte is a panic; what is refused leaves no trace.
 
 mod messages;
+mod traffic;
 
 use embedded_can::{ExtendedId, Id, StandardId};
 use holdover::health::Cause;
@@ -9,6 +10,7 @@ use holdover::wire::catalogue::{CATALOGUE, data_id};
 use holdover::wire::{Frame, Identifiers, Message, Received, Receiver, Role, Said, Sender, Slot, Unsent, e2e};
 use messages::{from_unit, geo, knots, motion, parameters, to_unit};
 use proptest::prelude::*;
+use traffic::AnyFrame;
 
 const BASE: Identifiers = Identifiers::DEFAULT;
 
@@ -45,39 +47,7 @@ fn sent_is_received(role: Role, sent: &[Message]) {
     }
 }
 
-/// A frame of any kind: extended, remote, short.
-#[derive(Clone, Debug)]
-struct Odd {
-    id: Id,
-    remote: bool,
-    data: Vec<u8>,
-}
-
-impl embedded_can::Frame for Odd {
-    fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
-        Some(Self { id: id.into(), remote: false, data: data.to_vec() })
-    }
-    fn new_remote(id: impl Into<Id>, dlc: usize) -> Option<Self> {
-        Some(Self { id: id.into(), remote: true, data: vec![0; dlc] })
-    }
-    fn is_extended(&self) -> bool {
-        matches!(self.id, Id::Extended(_))
-    }
-    fn is_remote_frame(&self) -> bool {
-        self.remote
-    }
-    fn id(&self) -> Id {
-        self.id
-    }
-    fn dlc(&self) -> usize {
-        self.data.len()
-    }
-    fn data(&self) -> &[u8] {
-        &self.data
-    }
-}
-
-fn odd() -> impl Strategy<Value = Odd> {
+fn odd() -> impl Strategy<Value = AnyFrame> {
     let id = prop_oneof![
         (0x478u16..0x548).prop_map(|id| Id::Standard(StandardId::new(id).unwrap())),
         (0u16..0x800).prop_map(|id| Id::Standard(StandardId::new(id).unwrap())),
@@ -85,7 +55,7 @@ fn odd() -> impl Strategy<Value = Odd> {
     ];
     let data =
         prop_oneof![4 => proptest::collection::vec(any::<u8>(), 8), 1 => proptest::collection::vec(any::<u8>(), 0..=8)];
-    (id, proptest::bool::weighted(0.1), data).prop_map(|(id, remote, data)| Odd { id, remote, data })
+    (id, proptest::bool::weighted(0.1), data).prop_map(|(id, remote, data)| AnyFrame { id, remote, data })
 }
 
 proptest! {
@@ -204,9 +174,9 @@ proptest! {
 #[test]
 fn frames_that_are_not_ours_to_read_are_told_apart_from_bad_ones() {
     let id = |id| Id::Standard(StandardId::new(id).unwrap());
-    let odd = |id, remote, length| Odd { id, remote, data: vec![0; length] };
+    let odd = |id, remote, length| AnyFrame { id, remote, data: vec![0; length] };
     let mut receiver = Receiver::<2>::new(BASE, Role::Unit);
-    let mut heard = |frame: Odd| receiver.receive(Instant::ZERO, &frame);
+    let mut heard = |frame: AnyFrame| receiver.receive(Instant::ZERO, &frame);
     assert_eq!(heard(odd(id(0x47F), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x540), false, 8)), Ok(Received::Foreign));
     assert_eq!(heard(odd(id(0x53F), false, 8)), Ok(Received::Foreign), "an identifier without a line");
