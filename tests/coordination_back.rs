@@ -4,12 +4,14 @@
 mod rig;
 
 use holdover::controller::Mode;
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary};
 use holdover::units::{Distance, Position};
 use holdover::wire::driver_request::DriverRequest;
+use holdover::wire::driving_parameters::DrivingParameters;
+use holdover::wire::geo::GeoPosition;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
-use rig::junction::{CROSSING, Driver, Junction};
+use rig::junction::{CROSSING, Driver, Junction, NORTHWARD};
 use rig::plant::Body;
 
 /// A vehicle on the ego's street in this slot: a car whose odometer begins somewhere else.
@@ -148,30 +150,19 @@ fn the_vehicle_that_the_driver_has_named_is_minded_on_a_way_too_also_when_it_say
     }
 }
 
-const CM: i32 = 687_194_767; // 0.01 · 2³⁶
-static NORTH: [Segment; 1] = [Segment {
-    latitude: 0,
-    longitude: 0,
-    begins: Position::ZERO,
-    length: Distance::from_mm(600_000),
-    along: Scale { north: CM, east: 0 },
-    across: Scale { north: 0, east: CM },
-    heading: 0,
-}];
-static STREET: Path = Path { segments: &NORTH };
 /// Two intersections on the street, 20 m apart.
 static AT_200: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
-    approaches: &[Approach { leg: 0, path: &STREET, crossing: Position::from_mm(200_000), conflicts: 0b10 }],
+    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b10 }],
 };
 static AT_220: Intersection = Intersection {
     id: 6,
-    approaches: &[Approach { leg: 0, path: &STREET, crossing: Position::from_mm(220_000), conflicts: 0b10 }],
+    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(220_000), conflicts: 0b10 }],
     ..AT_200
 };
 static CLOSE: Itinerary = Itinerary {
-    path: &STREET,
+    path: &NORTHWARD,
     crossings: &[
         Crossing { intersection: &AT_200, leg: 0, at: Position::from_mm(200_000) },
         Crossing { intersection: &AT_220, leg: 0, at: Position::from_mm(220_000) },
@@ -210,4 +201,28 @@ fn before_the_intersection_after_the_next_one_the_ego_can_stop_in_any_case() {
     let mut slowest = f64::MAX;
     junction.run(20.0, |junction| slowest = slowest.min(junction.drivers[0].body.speed));
     assert!(slowest > 14.5, "{slowest}");
+}
+
+#[test]
+fn a_long_vehicle_that_says_its_place_alone_is_in_the_area_until_its_rear_has_left() {
+    // An articulated lorry of 18 m stands with its front 13 m past the crossing point of the other street: 1 m of it is in the area.
+    let mut junction = Junction::new(vec![Driver::new(1, 0, 60.0, 13.0, true)]);
+    let length = 18.0;
+    let front = CROSSING + 13.0;
+    let parameters = DrivingParameters { length: rig::metres(length), ..rig::parameters(2.0, 8.0) };
+    junction.run(25.0, |junction| {
+        let (now, slot) = (junction.now, Slot(2));
+        if now % 100_000 == 0 {
+            let rig = &mut junction.drivers[0].rig;
+            let motion = rig.motion(StationHash(42), now, 7_000.0, 0.0, 0.0, 0.0, Some((0.05, 0.02)));
+            let (tag, stamp) = (motion.tag, motion.stamp);
+            let longitude = (front * 100.0) as i32 - 20_000;
+            let geo = GeoPosition { tag, latitude: 20_000, longitude, heading: 7_200, stamp };
+            for said in [Said::DrivingParameters(parameters), Said::Geo(geo), Said::Motion(motion)] {
+                let _ = rig.put(now, &Message::Peer(slot, said));
+            }
+        }
+        assert!(!junction.drivers[0].is_inside(), "in the area with it at {:.2} s", now as f64 * 1e-6);
+    });
+    assert!(junction.drivers[0].body.position > 180.0, "it comes up to the area");
 }

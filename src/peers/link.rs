@@ -19,7 +19,8 @@ pub struct Link {
 /// Weight of a new measurement in the running means: 1/8.
 const WEIGHT: i64 = 8;
 /// So many gaps in a row that are longer than a period show another period. Of a link that loses 40 % of the messages at random, one in
-/// two million runs of gaps is that long.
+/// two million runs of gaps is that long. Of one that loses 80 %, one in 35 is: the period is then too long until gaps of one period have
+/// made it shorter again.
 const LONGER: u8 = 16;
 /// The full scale of [`Link::loss`].
 pub const LOSS_ONE: u16 = 10_000;
@@ -53,7 +54,7 @@ impl Link {
         self.loss = u16::try_from(mean(self.loss.into(), lost)).unwrap_or(LOSS_ONE);
     }
 
-    /// Where every gap is of several periods, the peer has begun to send less often: so many losses in a row do not happen.
+    /// Where every gap is of several periods, the peer has begun to send less often.
     fn measure_period(&mut self, step: Duration, periods: i64) {
         let limited = |period: Duration| period.clamp(Duration::from_millis(10), Duration::from_millis(1000));
         self.longer = if periods == 1 { 0 } else { self.longer.saturating_add(1) };
@@ -157,15 +158,26 @@ mod tests {
     }
 
     #[test]
-    fn losses_do_not_make_the_period_longer() {
-        let mut link = Link::new(Duration::from_millis(100));
-        let mut now = Instant::from_micros(1_000_000);
-        for number in 0u32..2_000 {
-            now = now.plus(Duration::from_millis(100));
-            // Two of five are lost, nine in a row now and then.
-            if number % 5 < 3 && number % 100 > 9 {
+    fn fifteen_long_gaps_in_a_row_are_losses_and_sixteen_another_period() {
+        for (gaps, period) in [(LONGER - 1, 100), (LONGER, 200)] {
+            let mut link = Link::new(Duration::from_millis(100));
+            let mut now = Instant::from_micros(1_000_000);
+            link.heard(now, now);
+            for _ in 0..gaps {
+                now = now.plus(Duration::from_millis(200));
                 link.heard(now, now);
             }
+            assert_eq!(link.period(), Duration::from_millis(period), "{gaps} gaps");
+        }
+    }
+
+    #[test]
+    fn a_gap_of_one_period_ends_a_row_of_long_ones() {
+        let mut link = Link::new(Duration::from_millis(100));
+        let mut now = Instant::from_micros(1_000_000);
+        for number in 0..2_000 {
+            now = now.plus(Duration::from_millis(if number % 16 == 0 { 100 } else { 300 }));
+            link.heard(now, now);
         }
         assert_eq!(link.period(), Duration::from_millis(100));
     }

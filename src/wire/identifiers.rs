@@ -138,14 +138,6 @@ impl Identifiers {
         })
     }
 
-    /// Whether every line has identifiers of its own on a bus of classic CAN, with all slots that there are.
-    ///
-    /// # Errors
-    /// The first line that has not.
-    pub fn check(&self) -> Result<(), IdentifierError> {
-        self.check_over(Transport::Classic)
-    }
-
     /// Whether every line that begins a frame of such a bus has identifiers of its own, with all slots that there are. Where another
     /// line of the block would be, is free.
     ///
@@ -214,7 +206,7 @@ mod tests {
         for (content, offset, free) in [(Content::Command, 0x02, 0x485), (ego, 0x04, 0x4C1)] {
             let placed = Identifiers::DEFAULT.place(content, id(free)).unwrap();
             assert_eq!(placed.check_over(Transport::Fd), Ok(()));
-            assert!(matches!(placed.check(), Err(IdentifierError::Shared(..))), "{free:#x}");
+            assert!(matches!(placed.check_over(Transport::Classic), Err(IdentifierError::Shared(..))), "{free:#x}");
             assert_eq!((placed.offset_of(id(free)), placed.at(offset)), (Some(offset), id(free)));
         }
     }

@@ -28,7 +28,7 @@ static EAST: [Segment; 1] = [Segment {
 }];
 static FAR_EAST: [Segment; 1] =
     [Segment { latitude: 39_000, longitude: -40_000, length: Distance::from_mm(700_000), ..EAST[0] }];
-static NORTHWARD: Path = Path { segments: &NORTH };
+pub static NORTHWARD: Path = Path { segments: &NORTH };
 static EASTWARD: Path = Path { segments: &EAST };
 static FAR_EASTWARD: Path = Path { segments: &FAR_EAST };
 
