@@ -183,6 +183,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_EGO_STATION = -97,
   // Not a refusal of a frame: the driver took over by a pedal.
   HOLDOVER_REFUSED_DRIVER_OVERRIDE = -98,
+  // Not a refusal of a frame: the actuators acknowledge no command in force.
+  HOLDOVER_REFUSED_COMMAND_UNHEEDED = -99,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

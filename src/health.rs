@@ -89,6 +89,7 @@ causes! {
     RequestLost = 32, "request_lost", "No refusal: DriverRequest stopped coming while the unit drove, which hands back; once for each time.";
     EgoStation = 33, "ego_station", "No refusal: an EgoMotion of another station than the unit is configured for.";
     DriverOverride = 34, "driver_override", "No refusal: the driver took over by a pedal while the unit was asked to drive; once for each time.";
+    CommandUnheeded = 35, "command_unheeded", "No refusal: for 200 ms ActuatorState has acknowledged no command of the last 50 ms while the unit drove; once for each time.";
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so

@@ -279,6 +279,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let stands = ego.is_some_and(|ego| ego.speed <= Speed::ZERO);
         let hold = is_driving && stands && acceleration <= Acceleration::ZERO;
         let (mode, tick) = (self.mode.code(), self.outbox.next_tick());
+        self.scene.actuators.note_command(tick);
         // Since the first tick, so that it does not matter where the clock began.
         let since = now.since(self.scene.estimator.grid().origin);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 10 bits

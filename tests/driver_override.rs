@@ -1,5 +1,6 @@
 //! The driver's pedals and the actuators: the brake hands back at once and for good, the accelerator for as long as it is pressed, and
-//! actuators that take no commands make the unit stand by; each is said in `Health`. At standstill the command asks to hold.
+//! actuators that take no commands make the unit stand by; each is said in `Health`, and so are actuators that acknowledge no command. At
+//! standstill the command asks to hold.
 
 mod rig;
 
@@ -148,4 +149,59 @@ fn the_time_in_the_command_counts_milliseconds() {
     for period in 1..300u16 {
         assert_eq!(road.step().command.time_ms, (first + 10 * period) % 1024);
     }
+}
+
+/// Drives for so long; the actuators say this of each command every 20 ms.
+fn acknowledge(road: &mut Road, seconds: f64, says: impl Fn(u8) -> ActuatorState) {
+    for _ in 0..(seconds / 0.02).round() as usize {
+        road.step();
+        let command = road.step().command;
+        say(road, says(command.tick));
+    }
+}
+
+#[test]
+fn actuators_that_do_what_they_are_told_are_not_named() {
+    let mut road = road();
+    // A command of 50 ms ago is the oldest that is in force.
+    acknowledge(&mut road, 5.0, |tick| ActuatorState { tick: tick.wrapping_sub(5) % 64, ..DRIVES });
+    assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), 0);
+}
+
+#[test]
+fn actuators_that_acknowledge_no_command_in_force_are_named_once_each_time() {
+    for unheeding in [
+        |tick: u8| ActuatorState { tick: tick.wrapping_sub(6) % 64, ..DRIVES },
+        |tick| ActuatorState { control: Control::Ready, tick, ..DRIVES },
+    ] {
+        let mut road = road();
+        for times in 1..4 {
+            acknowledge(&mut road, 1.0, |tick| ActuatorState { tick, ..DRIVES });
+            acknowledge(&mut road, 0.16, unheeding);
+            assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), times - 1, "not before 200 ms");
+            acknowledge(&mut road, 1.0, unheeding);
+            assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), times);
+            assert_eq!(told(&mut road).0, ModeCode::Cooperative, "it drives on");
+        }
+    }
+}
+
+#[test]
+fn a_number_that_stands_still_is_named_whenever_it_has_come_round() {
+    let mut road = road();
+    acknowledge(&mut road, 6.4, |_| ActuatorState { tick: 7, ..DRIVES });
+    assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), 10, "every 64 periods");
+}
+
+#[test]
+fn while_the_unit_is_not_asked_to_drive_no_acknowledgement_is_expected() {
+    let mut road = road();
+    road.engaged = false;
+    road.run(0.2);
+    acknowledge(&mut road, 2.0, |_| ActuatorState { control: Control::Ready, ..DRIVES });
+    assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), 0);
+    road.engaged = true;
+    road.run(0.2);
+    acknowledge(&mut road, 2.0, |tick| ActuatorState { tick, ..DRIVES });
+    assert_eq!(road.rig.unit.health().of(Cause::CommandUnheeded), 0);
 }

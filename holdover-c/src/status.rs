@@ -154,6 +154,8 @@ pub enum Status {
     RefusedEgoStation = -97,
     /// Not a refusal of a frame: the driver took over by a pedal.
     RefusedDriverOverride = -98,
+    /// Not a refusal of a frame: the actuators acknowledge no command in force.
+    RefusedCommandUnheeded = -99,
 }
 
 impl From<ConfigError> for Status {
@@ -220,6 +222,7 @@ impl From<Cause> for Status {
             Cause::RequestLost => Self::RefusedRequestLost,
             Cause::EgoStation => Self::RefusedEgoStation,
             Cause::DriverOverride => Self::RefusedDriverOverride,
+            Cause::CommandUnheeded => Self::RefusedCommandUnheeded,
         }
     }
 }
@@ -295,6 +298,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedRequestLost, c"counted: request_lost"),
     (Status::RefusedEgoStation, c"counted: ego_station"),
     (Status::RefusedDriverOverride, c"counted: driver_override"),
+    (Status::RefusedCommandUnheeded, c"counted: command_unheeded"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

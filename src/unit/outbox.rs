@@ -16,7 +16,7 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Speed};
 #[cfg(feature = "fd")]
 use crate::wire::Transport;
-use crate::wire::command::Command;
+use crate::wire::command::{Command, TICKS};
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::estimate::{Ends, TargetEstimate};
 #[cfg(feature = "fd")]
@@ -84,7 +84,7 @@ impl Outbox {
 
     /// The number of this tick's command.
     pub(super) fn next_tick(&mut self) -> u8 {
-        self.tick = self.tick.wrapping_add(1) % 64;
+        self.tick = self.tick.wrapping_add(1) % TICKS;
         self.tick
     }
 

@@ -72,6 +72,9 @@ impl Command {
     };
 }
 
+/// Commands are counted modulo this.
+pub(crate) const TICKS: u8 = 64;
+
 /// Names of the modes.
 const MODES: &[(i64, &str)] = &[(0, "standby"), (1, "cooperative"), (2, "holdover"), (3, "fallback"), (4, "fault")];
 

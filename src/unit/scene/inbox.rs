@@ -33,8 +33,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 self.requested_at = at;
             }
             Message::Actuators(state) => {
-                if self.actuators.take(at, *state, self.is_asked()) {
-                    health.count(Cause::DriverOverride);
+                let is_asked = self.is_asked();
+                if let Some(cause) = self.actuators.take(at, *state, is_asked, self.config.period) {
+                    health.count(cause);
                 }
             }
             Message::Peer(slot, said) => self.take_peer(at, *slot, said, health)?,
