@@ -36,6 +36,7 @@ mod held;
 pub mod lockstep;
 pub mod model;
 pub mod parameters;
+pub mod passes;
 pub mod peers;
 #[cfg(test)]
 mod polynomial;

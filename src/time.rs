@@ -162,6 +162,12 @@ impl GnssTime {
         self.0
     }
 
+    /// That much later (earlier if negative), saturating.
+    #[must_use]
+    pub const fn plus(self, duration: Duration) -> Self {
+        Self(self.0.saturating_add_signed(duration.0))
+    }
+
     /// The stamp that a message of this time carries: rounded to nearest 0.1 ms, modulo the stamp's range.
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // the modulo is below 2¹⁷

@@ -4,11 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the bottom up. Each folder or file of `src/` that the library is made of is one room.
-const ORDER: [&str; 19] = [
+const ORDER: [&str; 20] = [
     "polynomial", // for the proofs alone
     "fixed",
     "units",
     "time",
+    "passes",
     "held",
     "health",
     "parameters",

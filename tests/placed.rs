@@ -231,12 +231,12 @@ fn two_messages_on_one_identifier_are_refused_by_their_names() {
         "Peer0Position and Peer1Position have the same identifier"
     );
     let shared = IdentifierError::Shared(MessageName::at(0), MessageName::at(0x18));
-    assert_eq!(health(0x480).check_over(Transport::Classic), Err(shared));
+    assert_eq!(health(0x480).check(Transport::Classic), Err(shared));
 }
 
 #[test]
 fn slots_beyond_the_bits_are_refused_by_the_name_of_their_message() {
-    let check = |first, stride| BLOCK.place_peers(About::Horizon, first, stride).check_over(Transport::Classic);
+    let check = |first, stride| BLOCK.place_peers(About::Horizon, first, stride).check(Transport::Classic);
     let error = IdentifierError::Range(MessageName::at(0x42));
     let beyond = Err(error);
     let standard = |number| Identifier::standard(number).unwrap();

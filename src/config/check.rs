@@ -100,7 +100,7 @@ impl Config {
         let positive = |d: Duration| d > Duration::ZERO;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
         let millis = Duration::from_millis;
-        self.identifiers.check_over(self.transport).map_err(ConfigError::Identifiers)?;
+        self.identifiers.check(self.transport).map_err(ConfigError::Identifiers)?;
         ensure(cfg!(feature = "fd") || self.transport == Transport::Classic, ConfigError::Transport)?;
         ensure((millis(1)..=millis(100)).contains(&self.period), ConfigError::Period)?;
         let Prediction { step, horizon, .. } = self.prediction;

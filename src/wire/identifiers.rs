@@ -143,7 +143,7 @@ impl Identifiers {
     ///
     /// # Errors
     /// The first line that has not.
-    pub fn check_over(&self, transport: Transport) -> Result<(), IdentifierError> {
+    pub fn check(&self, transport: Transport) -> Result<(), IdentifierError> {
         if !self.is_any_placed {
             return Ok(());
         }
@@ -205,8 +205,8 @@ mod tests {
         // EgoMotionB of the block, and Peer0MotionB: both follow in the frame of the line before.
         for (content, offset, free) in [(Content::Command, 0x02, 0x485), (ego, 0x04, 0x4C1)] {
             let placed = Identifiers::DEFAULT.place(content, id(free)).unwrap();
-            assert_eq!(placed.check_over(Transport::Fd), Ok(()));
-            assert!(matches!(placed.check_over(Transport::Classic), Err(IdentifierError::Shared(..))), "{free:#x}");
+            assert_eq!(placed.check(Transport::Fd), Ok(()));
+            assert!(matches!(placed.check(Transport::Classic), Err(IdentifierError::Shared(..))), "{free:#x}");
             assert_eq!((placed.offset_of(id(free)), placed.at(offset)), (Some(offset), id(free)));
         }
     }
@@ -215,11 +215,11 @@ mod tests {
     fn two_frames_of_can_fd_on_one_identifier_are_refused() {
         let shared = |one, other| Err(IdentifierError::Shared(MessageName::at(one), MessageName::at(other)));
         let command = Identifiers::DEFAULT.place(Content::Command, id(0x484)).unwrap();
-        assert_eq!(command.check_over(Transport::Fd), shared(0x04, 0x02));
+        assert_eq!(command.check(Transport::Fd), shared(0x04, 0x02));
         let both = Identifiers::DEFAULT.place(Content::Command, id(0x123)).unwrap();
         let both = both.place(Content::Status, id(0x123)).unwrap();
-        assert_eq!(both.check_over(Transport::Fd), shared(0x02, 0x18));
+        assert_eq!(both.check(Transport::Fd), shared(0x02, 0x18));
         let peers = Identifiers::DEFAULT.place_peers(About::MotionA, id(0x7F1), 1);
-        assert_eq!(peers.check_over(Transport::Fd), Err(IdentifierError::Range(MessageName::at(0x40))));
+        assert_eq!(peers.check(Transport::Fd), Err(IdentifierError::Range(MessageName::at(0x40))));
     }
 }

@@ -46,7 +46,7 @@ impl IdentifierArguments {
             identifiers = place.put(identifiers);
             placed.push(place.name);
         }
-        identifiers.check_over(transport).map_err(|cause| refusal(cause, &identifiers, transport, slots))?;
+        identifiers.check(transport).map_err(|cause| refusal(cause, &identifiers, transport, slots))?;
         Ok(identifiers)
     }
 }
