@@ -110,7 +110,7 @@ fn at_an_acute_angle_a_body_begins_where_its_corner_is_and_its_speed_is_the_part
     let angle = 60.0_f64.to_radians().sin_cos();
     let place = Crossing { other: 1, at_m: [100.0, 0.0], angle };
     let own = body(0, 50.0);
-    // From the crossing on, the body is on the own way with all its corners but those of its front, which is beyond it.
+    // The body reaches from 4 m before the crossing to 1 m beyond it.
     let seen = place.seen(&own, &body(1, 1.0)).unwrap();
     assert!((seen.speed_mps - 4.0).abs() < 1e-9);
     // The edge on the right enters the strip at its left side: `s sin 60° + w cos 60° = -w`, `s = -w (1 + ½) / sin 60°`.
