@@ -1,9 +1,11 @@
-//! The range sensor on the way through intersections: what it sees is not taken for a vehicle that may be behind the ego.
+//! The range sensor on the way through intersections: what it sees is not taken for a vehicle that may be behind the ego, and a vehicle
+//! that crosses and that the ego already minds is no stranger.
 
 mod rig;
 
-use rig::junction::{Driver, Junction};
-use rig::m_of;
+use holdover::controller::{FallbackCause, Mode};
+use rig::junction::{CROSSING, Driver, Junction};
+use rig::{LENGTH, m_of};
 
 /// The vehicle behind did not hear the ego, and drives on by its own horizon; then it is silent, and stops in time.
 #[test]
@@ -36,4 +38,73 @@ fn a_vehicle_behind_that_is_estimated_to_have_driven_on_is_not_the_one_that_the_
         checked += 1;
     });
     assert!(checked > 1_500, "{checked}");
+}
+
+/// From here on a vehicle on the other street is in the ego's way: half the width of a body before the place where both cross.
+const SIDE: f64 = CROSSING - 1.25;
+
+/// What the ego's sensor sees of the nearest vehicle in its way: of one on its street the rear, of one that crosses the side.
+fn look(junction: &mut Junction) {
+    let now = junction.now;
+    let own = junction.drivers[0].body;
+    let views = junction.drivers[1..].iter().filter_map(|other| {
+        let (rear, speed) = if other.way == 0 { (other.body.position - LENGTH, other.body.speed) } else { (SIDE, 0.0) };
+        let front = other.body.position;
+        let is_there = other.way == 0 || front > SIDE && front - LENGTH < CROSSING + (CROSSING - SIDE);
+        (is_there && rear > own.position).then_some((rear - own.position, speed - own.speed))
+    });
+    let nearest = views.filter(|(gap, _)| *gap < 100.0).min_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((gap, difference)) = nearest.filter(|_| now % 20_000 == 0) {
+        let _ = junction.drivers[0].rig.range(now, gap, difference, 0);
+    }
+}
+
+/// A vehicle far ahead of the ego on its street, one that crosses between the two, and the ego with the envelope. Returns when the ego is
+/// past the crossing, in seconds, and for how many ticks its sensor disagreed with what it heard.
+fn behind_one_that_crosses(sees: bool) -> (f64, u32) {
+    // Arrivals are equal, and the lower number goes first.
+    let ego = Driver::new(4, 0, 95.0, 10.0, true);
+    let ahead = Driver::new(3, 0, 390.0, 10.0, false);
+    let across = Driver::new(2, 1, 118.0, 10.0, false);
+    let mut junction = Junction::new(vec![ego, ahead, across]);
+    let (mut past, mut disagreed, mut hidden) = (None, 0, 0);
+    junction.run(40.0, |junction| {
+        let [ego, ahead, across] = &junction.drivers[..] else { panic!("three") };
+        assert!(!(ego.is_inside() && across.is_inside()), "at {:.2} s", junction.now as f64 * 1e-6);
+        let mode = ego.rig.unit.mode();
+        disagreed += u32::from(matches!(mode, Mode::Fallback { cause: FallbackCause::RangeDisagrees, .. }));
+        hidden += u32::from(across.body.position > SIDE && ego.body.position < SIDE && ahead.body.position > CROSSING);
+        if ego.body.position > CROSSING + LENGTH {
+            past.get_or_insert(junction.now as f64 * 1e-6);
+        }
+        if sees {
+            look(junction);
+        }
+    });
+    assert!(hidden > 30, "the one that crosses hides the one ahead: {hidden}");
+    (past.expect("it passes"), disagreed)
+}
+
+#[test]
+fn one_that_crosses_and_is_heard_neither_contradicts_the_one_ahead_nor_is_remembered_as_standing() {
+    let (without, _) = behind_one_that_crosses(false);
+    let (with, disagreed) = behind_one_that_crosses(true);
+    // When it has crossed, nobody is in the sensor's range, so no view shows that it has gone.
+    assert!(with < without + 0.3, "{with} {without}");
+    assert_eq!(disagreed, 0);
+}
+
+#[test]
+fn the_ego_stops_for_one_that_stands_across_its_way_and_was_never_heard() {
+    let ego = Driver::new(1, 0, 95.0, 10.0, true);
+    let mut across = Driver::new(2, 1, CROSSING + 2.0, 0.0, false);
+    (across.speaks, across.hears) = (false, false);
+    let mut junction = Junction::new(vec![ego, across]);
+    junction.run(40.0, |junction| {
+        junction.drivers[1].body =
+            rig::plant::Plant { position: CROSSING + 2.0, speed: 0.0, acceleration: 0.0, lag: 0.3 };
+        look(junction);
+        assert!(junction.drivers[0].body.position < SIDE, "at {:.2} s", junction.now as f64 * 1e-6);
+    });
+    assert!(junction.drivers[0].body.speed < 0.1, "it stands");
 }

@@ -24,6 +24,8 @@ pub enum Purpose {
     ClockOffset(u32),
     /// Errors of the range sensor of the vehicle with that index.
     RangeSensor(u32),
+    /// Whether the vehicle with that index has a range sensor, and the faults of that sensor.
+    RangeFaults(u32),
     /// Arrivals by the road with that index, and what is drawn of those who arrive.
     Arrivals(u32),
 }
@@ -38,6 +40,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::ClockOffset(vehicle) => (4, vehicle),
         Purpose::RangeSensor(vehicle) => (5, vehicle),
         Purpose::Arrivals(road) => (6, road),
+        Purpose::RangeFaults(vehicle) => (7, vehicle),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

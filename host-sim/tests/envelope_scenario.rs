@@ -1,7 +1,7 @@
 //! What the keys of the envelope and of the sensors mean, and what is said of ones that cannot be.
 
 use holdover::config::Envelope;
-use holdover_sim::input::scenario::{Overrides, RangeSensor, Scenario};
+use holdover_sim::input::scenario::{Faults, Overrides, RangeSensor, Scenario};
 use std::path::Path;
 
 fn parse(text: &str) -> Result<Scenario, String> {
@@ -54,7 +54,8 @@ fn nobody_has_a_range_sensor_unless_it_is_given_one() {
     assert!(sensors("").iter().all(Option::is_none));
     let given = "[[vehicle]]\n[[vehicle]]\nrange_sensor = true\n[[vehicle]]\nrange_sensor = true\n\
                  range_accuracy_m = 0.5\nrange_speed_accuracy_mps = 0.3\n[[vehicle]]\nrange_sensor = false\n";
-    let sensor = |distance_m, speed_mps| Some(RangeSensor { distance_m, speed_mps });
+    let (sees_up_to_m, faults) = (200.0, Faults::NONE);
+    let sensor = |distance_m, speed_mps| Some(RangeSensor { distance_m, speed_mps, sees_up_to_m, faults });
     assert_eq!(sensors(given), [None, sensor(0.25, 0.1), sensor(0.5, 0.3), None]);
 }
 

@@ -104,7 +104,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// the area all the same. The ego also stops before an area at which it has not arrived because it does not know the time: no vehicle
     /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
-        let others = (0..PEERS).filter_map(|index| self.stop_before_area(index));
+        let others = (0..PEERS).filter_map(|index| self.scene.stop_before_area(index, self.now, self.rearmost));
         others.chain(self.stop_without_time()).chain(self.stop_before_later()).min()
     }
 
@@ -126,24 +126,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         let crossing = coordination.itinerary()?.crossings.get(next)?;
         let point = coordination.crossing_point(crossing)?;
         Some(point.ahead(crossing.intersection.half.negated())).filter(|begins| self.rearmost <= *begins)
-    }
-
-    fn stop_before_area(&self, index: usize) -> Option<Position> {
-        let coordination = &self.scene.coordination;
-        let (approach, crossing) = (coordination.approach(index)?, coordination.crossing()?);
-        let intersection = crossing.intersection;
-        let point = coordination.crossing_point(crossing)?;
-        let area_begins = self.scene.area_begins()?;
-        if self.rearmost > area_begins || !intersection.conflict(crossing.leg, approach.leg) {
-            return None;
-        }
-        let near_end = self.scene.bound(index, self.now)?.lowest_position();
-        let is_inside = near_end >= area_begins && coordination.is_here(approach);
-        if !is_inside && !coordination.choice().ahead.contains(index) {
-            return None;
-        }
-        let length = self.scene.peers.length_of(index);
-        envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
     /// The rears of all vehicles that the range sensor has seen and that are not known to be the target. A vehicle that the ego has

@@ -4,6 +4,7 @@
 //! of the order and the estimator. Every other stage of the tick only reads it. So a reference to the scene is the one view that the
 //! rules need.
 
+mod across;
 mod actuators;
 mod admission;
 mod inbox;

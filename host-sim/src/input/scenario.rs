@@ -8,12 +8,12 @@ mod draw;
 pub(crate) mod envelope;
 pub(crate) mod keys;
 mod plant;
-mod sensors;
+pub(crate) mod sensors;
 mod start;
 mod validate;
 
 pub use envelope::Envelope;
-pub use sensors::{Accuracy, RangeSensor};
+pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
 
 use crate::error::Error;
 use crate::input::impairment::ChannelModel;

@@ -3,7 +3,7 @@
 
 use holdover::wire::Transport;
 
-use crate::input::scenario::{Envelope, Span};
+use crate::input::scenario::{Envelope, Fitted, Span};
 use crate::sim::ground::Point;
 
 /// A network of roads that cross, and its traffic.
@@ -35,6 +35,8 @@ pub struct Corridor {
     pub wrong: Wrong,
     /// The envelope of every unit.
     pub envelope: Envelope,
+    /// The vehicles' range sensors.
+    pub sensors: Fitted,
     /// The frames on every vehicle's own bus.
     pub transport: Transport,
     /// Limits for the verdict.

@@ -19,6 +19,7 @@ use super::watch::Watch;
 use crate::error::Error;
 use crate::input::scenario::Envelope;
 use crate::parallel;
+use crate::sim::sensors::faults::is_fitted;
 
 /// The prediction steps of the study over `δt`.
 pub const STEPS_S: [f64; 7] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0];
@@ -63,6 +64,13 @@ impl Experiment {
     #[must_use]
     pub fn trips(&self, seed: u64) -> (Vec<Trip>, Option<usize>) {
         with_ego(&self.corridor, &self.network, seed)
+    }
+
+    /// Number of vehicles of a seed that have a range sensor.
+    #[must_use]
+    pub fn fitted(&self, seed: u64) -> usize {
+        let is_fitted = |trip: &usize| is_fitted(self.corridor.sensors.share, seed, *trip as u32);
+        (0..self.trips(seed).0.len()).filter(is_fitted).count()
     }
 
     /// One run.

@@ -4,11 +4,11 @@
 use holdover::coordination::map::LEGS;
 
 use super::description::Corridor;
-use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, cross};
+use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, WIDTH_M, cross};
 use crate::sim::globe::Shift;
 
-/// Least distance between ways that do not cross, in metres: the width of a bus.
-const LEAST_APART_M: f64 = 2.5;
+/// Least distance between ways that do not cross, in metres.
+const LEAST_APART_M: f64 = WIDTH_M;
 
 /// Distance between the places at which ways are compared, in metres. Two ways that meet at too small an angle for a
 /// crossing are within [`LEAST_APART_M`] of one another for longer than this.

@@ -20,6 +20,7 @@ pub mod map;
 pub mod network;
 pub mod read;
 pub mod referee;
+pub mod sight;
 pub mod tally;
 pub mod traffic;
 pub mod trips;

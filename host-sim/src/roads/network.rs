@@ -11,6 +11,9 @@ pub const PASSES_WITHIN_M: f64 = 12.0;
 /// two directions of one street.
 const LEAST_ANGLE_DEG: f64 = 20.0;
 
+/// Width of the widest vehicle, a bus, in metres. The way of every vehicle is as wide.
+pub const WIDTH_M: f64 = 2.5;
+
 /// Vehicles drive on for this distance beyond the end of their way, in metres. When they vanish there, no vehicle on
 /// its way depends on them.
 pub const RUN_OUT_M: f64 = 60.0;

@@ -8,7 +8,7 @@ use super::description::{Corridor, IntersectionPlan, Limits, Radio, RoadPlan, Tr
 use super::fit::{self, Part};
 use crate::error::{Error, quoted};
 use crate::input::scenario::keys::{Document, Number, Section};
-use crate::input::scenario::{Overrides, Span, bus, envelope};
+use crate::input::scenario::{Overrides, Span, bus, envelope, sensors};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
 use crate::sim::modem::PEERS;
@@ -71,6 +71,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let radio = radio(top.section("channel")?)?;
     let wrong = wrong(top.section("wrong")?)?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
+    let sensors = sensors::fitted(&document, top.section("sensors")?)?;
     let transport = bus::read(top.section("bus")?)?;
     let limits = limits(top.section("limits")?)?;
     let road_sections = counted(&document, "road", top.sections("road")?, ROADS, kind_line)?;
@@ -116,6 +117,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         radio,
         wrong,
         envelope,
+        sensors,
         transport,
         limits,
         roads,

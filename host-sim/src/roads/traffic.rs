@@ -18,6 +18,7 @@ use super::alone::{self, Lost};
 use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Radio};
 use super::network::Network;
+use super::sight::{Body, Sights};
 use super::tally::Tally;
 use super::trips::Trip;
 use super::watch::{Sighting, Watch};
@@ -29,6 +30,7 @@ use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
 use crate::sim::modem::V2xMessage;
 use crate::sim::road::Ground;
+use crate::sim::sensors::Ahead;
 use crate::sim::stages::Stages;
 use crate::sim::station::station;
 use crate::sim::vehicle::Vehicle;
@@ -50,6 +52,8 @@ struct Traveller {
     ground: Ground,
     dark: Window,
     log: Option<MemoryNode>,
+    /// Whether it has a range sensor.
+    sees: bool,
 }
 
 impl Traveller {
@@ -64,6 +68,11 @@ impl Traveller {
             log.push((self.vehicle.time_of(at), frame));
         }
         Ok(())
+    }
+
+    fn body(&self, road: usize) -> Body {
+        let vehicle = &self.vehicle;
+        Body { road, front_m: self.way_m(), length_m: vehicle.length_m, speed_mps: vehicle.plant.speed_mps }
     }
 
     fn has_left(&self) -> bool {
@@ -94,6 +103,7 @@ pub struct Traffic<'a> {
     remains: Remains,
     tally: Tally,
     logged: Option<usize>,
+    sights: Sights,
 }
 
 /// The counts at the end of a run.
@@ -149,6 +159,7 @@ impl<'a> Traffic<'a> {
             remains: Remains::default(),
             tally: Tally::default(),
             logged: None,
+            sights: Sights::of(network),
         }
     }
 
@@ -265,6 +276,24 @@ impl<'a> Traffic<'a> {
         }
     }
 
+    /// Sensors and time base of every vehicle send.
+    fn sense(&mut self, at_s: f64) -> io::Result<()> {
+        let (period_s, range_m) = (self.corridor.period_s, self.corridor.sensors.sensor.sees_up_to_m);
+        let bodies: Vec<Body> =
+            self.travellers.values().map(|traveller| traveller.body(self.trips[traveller.trip].road)).collect();
+        for (traveller, own) in self.travellers.values_mut().zip(&bodies) {
+            let ahead = traveller.sees.then(|| match self.sights.nearest(own, &bodies, range_m) {
+                None => Ahead::NOBODY,
+                Some(seen) => {
+                    let rear_m = traveller.vehicle.plant.position_m + seen.gap_m;
+                    Ahead { rear_m, speed_mps: seen.speed_mps }
+                }
+            });
+            traveller.vehicle.speak(at_s, period_s, ahead)?;
+        }
+        Ok(())
+    }
+
     fn drive_alone(&mut self, at_s: f64) {
         let sightings: Vec<Sighting> = self.travellers.values().map(|traveller| self.sight(at_s, traveller)).collect();
         for own in &sightings {
@@ -287,8 +316,7 @@ impl Stages for Traffic<'_> {
             }
         }
         self.admit(at_s)?;
-        let period_s = self.corridor.period_s;
-        self.travellers.values_mut().try_for_each(|traveller| traveller.vehicle.speak(at_s, period_s, None))
+        self.sense(at_s)
     }
 
     fn act(&mut self, at_s: f64) -> io::Result<()> {

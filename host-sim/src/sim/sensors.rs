@@ -1,5 +1,7 @@
 //! A vehicle's sensors: its true motion and that of the vehicle ahead enter; the measurements leave, with their
-//! published accuracies and errors within these.
+//! published accuracies and errors within these. The faults of a range sensor are in [`faults`].
+
+pub mod faults;
 
 use holdover::time::Duration;
 use holdover::units::{Distance, Speed};
@@ -9,20 +11,23 @@ use rand_chacha::ChaCha8Rng;
 use crate::input::scenario::{Accuracy, RangeSensor, Vehicle};
 use crate::sim::quantities::{distance, speed};
 use crate::streams::{Purpose, stream, unit};
+use faults::{Faulty, Shows};
 
 /// Cycle of the range sensor, in seconds.
 pub const RANGE_EVERY_S: f64 = 0.02;
 
-/// Range of the sensor, in metres: a long-range radar.
-const SEES_UP_TO_M: f64 = 200.0;
-
 /// A vehicle as a sensor behind it sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {
-    /// Position of its rear bumper.
+    /// Position of its rear bumper on the own way; of one that crosses that way, where its body begins.
     pub rear_m: f64,
-    /// Its speed.
+    /// Its speed along the own way.
     pub speed_mps: f64,
+}
+
+impl Ahead {
+    /// Nobody is ahead, however far the sensor sees.
+    pub const NOBODY: Self = Self { rear_m: f64::INFINITY, speed_mps: 0.0 };
 }
 
 /// The sensors of one vehicle.
@@ -32,42 +37,61 @@ pub struct Sensors {
     pub position_accuracy: Distance,
     /// Published accuracy (95 %) of the own speed.
     pub speed_accuracy: Speed,
-    range: Option<(RangeSensor, ChaCha8Rng)>,
+    range: Option<Range>,
+}
+
+/// A range sensor at work.
+#[derive(Clone, Debug)]
+struct Range {
+    sensor: RangeSensor,
+    errors: ChaCha8Rng,
+    faults: Faulty,
 }
 
 impl Sensors {
     /// The sensors that a scenario gives to the vehicle with this index.
     #[must_use]
     pub fn new(described: &Vehicle, seed: u64, index: usize) -> Self {
-        let generator = || stream(seed, Purpose::RangeSensor(index as u32));
-        Self {
-            position_accuracy: distance(described.accuracy.position_m),
-            speed_accuracy: speed(described.accuracy.speed_mps),
-            range: described.range_sensor.map(|sensor| (sensor, generator())),
-        }
+        Self::with(described.accuracy, described.range_sensor, seed, index)
     }
 
-    /// The sensors of a vehicle that measures its own motion with these accuracies and has no range sensor.
+    /// The sensors of a vehicle with this index that measures its own motion with these accuracies, and the vehicle
+    /// ahead with this range sensor, if it has one.
     #[must_use]
-    pub fn blind(accuracy: Accuracy) -> Self {
+    pub fn with(accuracy: Accuracy, sensor: Option<RangeSensor>, seed: u64, index: usize) -> Self {
+        let index = index as u32;
+        let range = |sensor: RangeSensor| Range {
+            sensor,
+            errors: stream(seed, Purpose::RangeSensor(index)),
+            faults: Faulty::new(sensor.faults, seed, index),
+        };
         Self {
             position_accuracy: distance(accuracy.position_m),
             speed_accuracy: speed(accuracy.speed_mps),
-            range: None,
+            range: sensor.map(range),
         }
     }
 
-    /// The measurement of the range sensor, at a front bumper and a speed. `None` without a sensor, and if no vehicle
-    /// is in its range.
-    pub fn look(&mut self, front_m: f64, speed_mps: f64, ahead: Ahead) -> Option<RangeSample> {
-        let (sensor, generator) = self.range.as_mut()?;
+    /// The measurement of the range sensor at a time, a front bumper and a speed. `None` without a sensor, and if no
+    /// vehicle is in its range.
+    pub fn look(&mut self, at_s: f64, front_m: f64, speed_mps: f64, ahead: Ahead) -> Option<RangeSample> {
+        let Range { sensor, errors, faults } = self.range.as_mut()?;
         // Drawn whether or not a vehicle is there, so that later draws do not depend on how often there is one.
-        let mut within = |accuracy: f64| (2.0 * unit(generator) - 1.0) * accuracy;
+        let mut within = |accuracy: f64| (2.0 * unit(errors) - 1.0) * accuracy;
         let (off_m, off_mps) = (within(sensor.distance_m), within(sensor.speed_mps));
-        let gap_m = ahead.rear_m - front_m;
-        (0.0..=SEES_UP_TO_M).contains(&gap_m).then(|| RangeSample {
-            distance: distance((gap_m + off_m).max(0.0)),
-            speed_difference: difference(ahead.speed_mps - speed_mps + off_mps),
+        let nearest = Some(ahead).filter(|ahead| (0.0..=sensor.sees_up_to_m).contains(&(ahead.rear_m - front_m)));
+        let shown = match faults.at(at_s) {
+            Shows::What => nearest,
+            Shows::Nothing => None,
+            // On the way before all that is there, or within the range.
+            Shows::Ghost(share) => {
+                let free_m = nearest.map_or(sensor.sees_up_to_m, |ahead| ahead.rear_m - front_m);
+                Some(Ahead { rear_m: front_m + share * free_m, speed_mps: 0.0 })
+            }
+        }?;
+        Some(RangeSample {
+            distance: distance((shown.rear_m - front_m + off_m).max(0.0)),
+            speed_difference: difference(shown.speed_mps - speed_mps + off_mps),
             distance_accuracy: distance(sensor.distance_m),
             speed_accuracy: speed(sensor.speed_mps),
             age: Duration::ZERO,

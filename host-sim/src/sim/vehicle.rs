@@ -217,7 +217,7 @@ impl Vehicle {
     }
 
     /// Puts on the unit's bus what the vehicle sends in a period: its motion, and when they are due the view of the
-    /// vehicle `ahead`, the driver's request and the time base.
+    /// vehicle `ahead`, the driver's request and the time base. `None`: the range sensor is not at work.
     ///
     /// # Errors
     /// Errors of the bus.
@@ -229,7 +229,7 @@ impl Vehicle {
             self.put(at_s, &Message::Ego(Said::Geo(place)))?;
         }
         if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
-            && let Some(seen) = self.sensors.look(self.plant.position_m, self.plant.speed_mps, ahead)
+            && let Some(seen) = self.sensors.look(at_s, self.plant.position_m, self.plant.speed_mps, ahead)
         {
             self.put(at_s, &Message::Range(seen))?;
         }

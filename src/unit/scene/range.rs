@@ -41,7 +41,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         // The ego's own motion, moved to the instant of the view.
         let gained = ego.acceleration.over(since.fine_seconds());
         let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
-        let rear = ego.position.ahead(mean.over(since.seconds())).ahead(seen.distance);
+        let front = ego.position.ahead(mean.over(since.seconds()));
+        let rear = front.ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
         let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
         let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
@@ -49,6 +50,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
+        }
+        if self.is_of_one_that_crosses(at, front, rear) {
+            return Ok(());
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at)) {
             sight.station = self.compare(received, index, &sight, health);

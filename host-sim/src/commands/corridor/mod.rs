@@ -19,6 +19,7 @@ use serde::Serialize;
 use crate::commands::ending::json;
 use crate::commands::motions::rows::{self, Row};
 use crate::error::Error;
+use crate::input::scenario::{Faults, Fitted};
 use crate::output::{self, LongRuns};
 use crate::roads::conditions::Conditions;
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
@@ -46,6 +47,40 @@ pub struct Timing {
     pub scale: Vec<scale::Load>,
 }
 
+/// The range sensors, as the scenario says, and how many vehicles have one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Sensors {
+    /// Share of the vehicles that have one, as the scenario says.
+    pub share: f64,
+    /// Vehicles of all seeds that have one.
+    pub vehicles: usize,
+    /// Range.
+    pub range_m: f64,
+    /// Accuracy of the distance.
+    pub range_accuracy_m: f64,
+    /// Accuracy of the speed difference.
+    pub range_speed_accuracy_mps: f64,
+    /// Faults.
+    #[serde(flatten)]
+    pub faults: Faults,
+}
+
+impl Sensors {
+    /// Those of an experiment with these seeds.
+    #[must_use]
+    pub fn of(experiment: &Experiment, seeds: &[u64]) -> Self {
+        let Fitted { share, sensor } = experiment.corridor.sensors;
+        Self {
+            share,
+            vehicles: seeds.iter().map(|seed| experiment.fitted(*seed)).sum(),
+            range_m: sensor.sees_up_to_m,
+            range_accuracy_m: sensor.distance_m,
+            range_speed_accuracy_mps: sensor.speed_mps,
+            faults: sensor.faults,
+        }
+    }
+}
+
 /// The results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Results {
@@ -55,6 +90,8 @@ pub struct Results {
     pub seed: u64,
     /// Number of seeds.
     pub seeds: usize,
+    /// The range sensors.
+    pub sensors: Sensors,
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]
     pub sides: Sides,
@@ -129,6 +166,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         scenario: options.name.clone(),
         seed: first,
         seeds: options.seeds.len(),
+        sensors: Sensors::of(&experiment, &options.seeds),
         sides,
         excerpts_with_envelope: engaged,
         wrong,

@@ -1,10 +1,10 @@
 //! The report of a corridor: results and journals enter, an HTML page leaves.
 
-use super::Results;
 use super::options::CorridorOptions;
 use super::plots::{plots, scale};
 use super::scale::{Load, SPAN_S};
 use super::table::{LINES, SCALE, SIDES, proportion, scale_row, sides};
+use super::{Results, Sensors};
 use crate::commands::motions;
 use crate::report::page::{Cell, Page};
 use crate::roads::experiment::{EXCERPT_S, Experiment};
@@ -32,7 +32,7 @@ pub fn render(
                    the envelope.";
     page.table(caption, &header, &LINES.iter().map(row).collect::<Vec<Vec<Cell>>>());
     page.section("Scenario");
-    page.facts(&facts(options));
+    page.facts(&facts(options, &results.sensors));
     page.command(&options.command);
     page.section("Figures");
     let how = if results.excerpts_with_envelope { "with" } else { "without" };
@@ -90,7 +90,7 @@ fn reasons(results: &Results) -> Vec<String> {
     )]
 }
 
-fn facts(options: &CorridorOptions) -> Vec<(String, String)> {
+fn facts(options: &CorridorOptions, sensors: &Sensors) -> Vec<(String, String)> {
     let corridor = &options.corridor;
     let (radio, traffic) = (&corridor.radio, &corridor.traffic);
     let rate: f64 = corridor.roads.iter().map(|road| road.vehicles_per_min).sum();
@@ -113,8 +113,30 @@ fn facts(options: &CorridorOptions) -> Vec<(String, String)> {
             ),
         ),
         ("every vehicle", format!("silent for {} s from a random moment on", radio.dark_s)),
+        ("range sensors", said(sensors)),
         ("envelope in the figures", if corridor.envelope.engaged { "engaged" } else { "not engaged" }.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec()
+}
+
+/// The range sensors, in words.
+fn said(sensors: &Sensors) -> String {
+    if sensors.vehicles == 0 {
+        return "none".to_owned();
+    }
+    let faults = &sensors.faults;
+    format!(
+        "share {}: {} vehicles, up to {} m, ±{} m and ±{} m/s; {} % of the views missing, {} dropouts of {} s and {} ghosts a \
+         minute",
+        sensors.share,
+        sensors.vehicles,
+        sensors.range_m,
+        sensors.range_accuracy_m,
+        sensors.range_speed_accuracy_mps,
+        faults.misses * 100.0,
+        faults.dropouts_per_min,
+        faults.dropout_s,
+        faults.ghosts_per_min
+    )
 }

@@ -53,6 +53,10 @@ pub fn text(results: &Results) -> String {
     let last = results.seed + (results.seeds as u64 - 1);
     // Writing to a String cannot fail.
     let _ = writeln!(text, "{}: seeds {} to {last}", results.scenario, results.seed);
+    if results.sensors.vehicles > 0 {
+        let all = results.sides.holdover.served + results.sides.holdover.unserved;
+        let _ = writeln!(text, "{} of {all} vehicles have a range sensor", results.sensors.vehicles);
+    }
     let _ = writeln!(text, "{:30}{:>14}{:>14}{:>14}{:>14}", "", SIDES[0], SIDES[1], SIDES[2], SIDES[3]);
     for (name, of) in LINES {
         let _ = write!(text, "{name:30}");

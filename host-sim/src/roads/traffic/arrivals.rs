@@ -21,6 +21,7 @@ use crate::sim::plant::{Machine, Plant};
 use crate::sim::quantities::{seconds, speed};
 use crate::sim::road::Ground;
 use crate::sim::sensors::Sensors;
+use crate::sim::sensors::faults::is_fitted;
 use crate::sim::vehicle::Vehicle;
 use crate::sim::world::{WARM_UP_S, clock_offset, warm_up_ticks};
 
@@ -105,7 +106,9 @@ impl Traffic<'_> {
         };
         let config = config(self.corridor, &self.conditions, called, trip.kind);
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
-        let sensors = Sensors::blind(ACCURACY);
+        let fitted = &self.corridor.sensors;
+        let sees = is_fitted(fitted.share, self.seed, index as u32);
+        let sensors = Sensors::with(ACCURACY, sees.then_some(fitted.sensor), self.seed, index);
         let mut vehicle = Box::new(
             Vehicle::new(called, &config, plant, length_m, request, offset_us, sensors)
                 .map_err(|cause| refused(&cause))?,
@@ -134,7 +137,7 @@ impl Traffic<'_> {
             vehicle.hear(at_s, &message)?;
         }
         let dark = trip.dark(at_s, &self.conditions.radio);
-        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log })
+        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees })
     }
 }
 
