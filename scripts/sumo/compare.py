@@ -8,6 +8,7 @@ not.
 
 import argparse
 import json
+import math
 import sys
 from pathlib import Path
 
@@ -16,10 +17,11 @@ if sys.version_info < (3, 11):
 
 from corridor import SHIPPED, Corridor, Unusable
 from network import RULES, export
-from simulation import FILLED_S, Run, run
+from simulation import FILLED_S, Case, Run, run
 from sumo_programs import version
 
 ROOT = Path(__file__).resolve().parents[2]
+KNOWN_TRIPS = [(30, 1, 301), (90, 1, 891)]  # demand, seed, vehicles in ten minutes
 EPILOG = """examples:
   compare.py                                     the table of scripts/sumo/README.md
   compare.py --check                             only export the network and examine it
@@ -32,37 +34,49 @@ exit codes: 0 done; 2 something is wrong, and one line on stderr names cause and
 
 def numbers(text):
     """Numbers above 0 with commas between them."""
-    values = [float(part) for part in text.split(",")]
-    if not values or min(values) <= 0.0:
-        raise ValueError
+    try:
+        values = [float(part) for part in text.split(",")]
+    except ValueError:
+        values = []
+    if not values or not all(0.0 < value < math.inf for value in values):
+        raise argparse.ArgumentTypeError(f"is {text!r}; give numbers above 0, such as 30,60,90")
     return values
 
 
-def at_least(least, kind):
-    """A number that is not below `least`."""
+def within(least, most, kind=float):
+    """A number between two limits."""
 
     def checked(text):
-        value = kind(text)
-        if not value >= least:
-            raise argparse.ArgumentTypeError(f"is {text}; give at least {least}")
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"is {text!r}; give a number from {least:g} to {most:g}")
         return value
 
     return checked
 
 
+class Parser(argparse.ArgumentParser):
+    """A parser that says in one line what is wrong."""
+
+    def error(self, message):
+        self.exit(2, f"{self.prog}: {message}; --help lists the options\n")
+
+
 def arguments():
     """The options."""
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         description=__doc__.split(": ", 1)[1], epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    numbers.__name__ = "list of numbers above 0"
     add = parser.add_argument
     add("--scenario", type=Path, default=SHIPPED, metavar="FILE", help="scenario of a corridor [default: the shipped one]")
     add("--demand", type=numbers, default=[30.0, 60.0, 90.0], metavar="N,…", help="vehicles a minute on all roads [30,60,90]")
-    add("--seeds", type=at_least(1, int), default=2, metavar="N", help="number of seeds, from the scenario's on [2]")
-    add("--duration", type=at_least(2 * FILLED_S, float), metavar="S", help="vehicles arrive for so long [the scenario's]")
+    add("--seeds", type=within(1, 10_000, int), default=2, metavar="N", help="number of seeds, from the scenario's on [2]")
+    add("--duration", type=within(2 * FILLED_S, 86_400), metavar="S", help="vehicles arrive for so long [the scenario's]")
     add("--rules", default=",".join(RULES), metavar="RULE,…", help="rules at the intersections [none,priority,actuated,allway]")
-    add("--sigma", type=at_least(0.0, float), default=0.5, metavar="X", help="imperfection of the drivers, 0 to 1 [SUMO's 0.5]")
+    add("--sigma", type=within(0, 1), default=0.5, metavar="X", help="imperfection of the drivers, 0 to 1 [SUMO's 0.5]")
     add("--out", type=Path, default=ROOT / "target/sumo", metavar="FOLDER", help="folder for all files [target/sumo]")
     add("--beside", type=Path, metavar="FILE", help="result of `holdover-sim run corridor --demand … --json`, for two more rows")
     add("--json", action="store_true", help="print the figures as JSON")
@@ -89,7 +103,8 @@ def rows(given, corridor, nets):
         for demand in given.demand:
             result = Run()
             for seed in seeds:
-                result += run(corridor, net, trips[demand, seed], rule, seed, duration, given.out, given.sigma)
+                case = Case(rule, net, demand, seed, trips[demand, seed])
+                result += run(corridor, case, duration, given.sigma, given.out)
                 done += 1
                 say(f"{done} of {total} runs done ({rule}, {demand:g} a minute, seed {seed})")
             what = RULES[rule][1].format(main=corridor.main)
@@ -100,7 +115,7 @@ def rows(given, corridor, nets):
 def beside(path):
     """The rows of holdover-sim over the scenario's link, with the most slots that its result has."""
     try:
-        theirs = json.loads(path.read_text())["demand"]
+        theirs = json.loads(path.read_text())
         slots = max(row["slots"] for row in theirs)
         return [
             {
@@ -120,6 +135,26 @@ def beside(path):
     except (OSError, ValueError, KeyError, TypeError) as error:
         remedy = "give the output of `holdover-sim run corridor --demand N,… --json`"
         raise Unusable(f"{path} is not a result of a corridor ({error}); {remedy}") from error
+
+
+def known_trips():
+    """The trips of the shipped scenario are as many as holdover-sim has (docs/RESULTS.md, docs/CORRIDOR.md)."""
+    shipped = Corridor()
+    for demand, seed, vehicles in KNOWN_TRIPS:
+        found = len(shipped.trips(demand, seed, 600.0))
+        if found != vehicles:
+            cause = f"seed {seed} at {demand} a minute has {found} trips, and holdover-sim has {vehicles}"
+            raise Unusable(f"{cause}; let trips() do what host-sim/src/roads/trips.rs does")
+
+
+def same_trips(found, theirs):
+    """Both have as many vehicles at each demand, as they have if they have the same trips."""
+    ours = {row["vehicles_per_min"]: row["vehicles"] for row in found}
+    for row in theirs:
+        demand, vehicles = row["vehicles_per_min"], row["vehicles"]
+        if ours.get(demand, vehicles) != vehicles:
+            cause = f"at {demand:g} a minute the result of --beside has {vehicles} vehicles, and SUMO had {ours[demand]}"
+            raise Unusable(f"{cause}; give both the same scenario, seeds and duration")
 
 
 def table(found, demands):
@@ -155,10 +190,13 @@ def main():
     say(f"SUMO {sumo}; files go to {given.out}")
     nets = {rule: export(corridor, rule, given.out) for rule in given.rules}
     if given.check:
+        known_trips()
         ways = ", ".join(f"{road.name} {road.length:.1f} m" for road in corridor.roads)
         print(f"{len(nets)} networks are as the scenario says: {ways}")
         return
-    found = rows(given, corridor, nets) + theirs
+    found = rows(given, corridor, nets)
+    same_trips(found, theirs)
+    found += theirs
     if given.json:
         print(json.dumps({"sumo": sumo, "seeds": given.seeds, "sigma": given.sigma, "rows": found}, indent=2))
     else:

@@ -6,8 +6,9 @@ Times are those of SUMO's tripinfo. Full stops are counted from the speeds at ev
 import subprocess
 import xml.etree.ElementTree as xml
 from dataclasses import dataclass, field
+from pathlib import Path
 
-from corridor import KINDS, Unusable
+from corridor import KINDS, Trip, Unusable
 from network import edges, write
 from sumo_programs import failed, program
 
@@ -44,7 +45,7 @@ class Run:
         }
 
 
-def demand(corridor, trips, path, sigma):
+def write_trips(corridor, trips, path, sigma):
     """Writes the kinds of vehicles, the routes and the trips."""
     traffic = corridor.traffic
     kinds = (("vType", {
@@ -74,24 +75,38 @@ def demand(corridor, trips, path, sigma):
     write(path, "routes", [*kinds, *routes, *vehicles])
 
 
-def run(corridor, net, trips, rule, seed, duration, folder, sigma):
+@dataclass(frozen=True)
+class Case:
+    """What is run: a net under a rule, and the trips of one demand and seed."""
+
+    rule: str
+    net: Path
+    demand: float
+    seed: int
+    trips: list[Trip]
+
+    @property
+    def name(self):
+        return f"{self.rule}-{self.demand:g}-{self.seed}"
+
+
+def run(corridor, case, duration, sigma, folder):
     """One run, until every vehicle has left, or twice the duration and five minutes have passed."""
-    name = f"{rule}-{seed}-{len(trips)}"
-    routes, info, statistic, said = (folder / f"{name}.{part}" for part in ("rou.xml", "tripinfo.xml", "statistic.xml", "log"))
-    demand(corridor, trips, routes, sigma)
+    routes, info, statistic, said = (folder / f"{case.name}.{part}" for part in ("rou.xml", "tripinfo.xml", "statistic.xml", "log"))
+    write_trips(corridor, case.trips, routes, sigma)
     path, environment = program("sumo")
     options = [
-        "--net-file", net, "--route-files", routes, "--seed", seed, "--step-length", STEP_S, "--end", 2 * duration + 300,
-        "--tripinfo-output", info, "--statistic-output", statistic, "--fcd-output", "/dev/stdout",
+        "--net-file", case.net, "--route-files", routes, "--seed", case.seed, "--step-length", STEP_S, "--end", 2 * duration + 300,
+        "--tripinfo-output", info, "--statistic-output", statistic, "--fcd-output", "stdout",
         "--fcd-output.attributes", "speed", "--fcd-output.skip-empty", "--time-to-teleport", -1, "--collision.action", "warn",
-        "--collision.check-junctions", str(rule != "none").lower(), "--no-step-log", "--error-log", said, "--xml-validation", "never",
+        "--collision.check-junctions", str(case.rule != "none").lower(), "--no-step-log", "--error-log", said, "--xml-validation", "never",
     ]  # fmt: skip
     command = [path, *map(str, options)]
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         stops = full_stops(process.stdout)
     if process.returncode:
         raise Unusable(failed("sumo", process.returncode, said.read_text() if said.exists() else ""))
-    return measured(trips, info, statistic, stops, duration)
+    return measured(case.trips, info, statistic, stops, duration)
 
 
 def full_stops(lines):
