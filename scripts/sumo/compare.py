@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """compare.py: SUMO on the roads and the trips of `holdover-sim run corridor`, with four rules at the intersections.
 
 It exports the scenario's roads to SUMO, runs SUMO on the same trips, and prints a table: the mean travel time and the full stops per
@@ -67,9 +66,7 @@ class Parser(argparse.ArgumentParser):
 
 def arguments():
     """The options."""
-    parser = Parser(
-        description=__doc__.split(": ", 1)[1], epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = Parser(description=__doc__.split(": ", 1)[1], epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
     add = parser.add_argument
     add("--scenario", type=Path, default=SHIPPED, metavar="FILE", help="scenario of a corridor [default: the shipped one]")
     add("--demand", type=numbers, default=[30.0, 60.0, 90.0], metavar="N,…", help="vehicles a minute on all roads [30,60,90]")
@@ -93,17 +90,22 @@ def say(text):
     print(text, file=sys.stderr, flush=True)
 
 
-def rows(given, corridor, nets):
+def load(path):
+    """The scenario."""
+    try:
+        return Corridor(path)
+    except (KeyError, TypeError, ValueError, ZeroDivisionError) as error:
+        raise Unusable(f"{path} is no scenario of a corridor ({error!r}); `holdover-sim run {path}` names the line") from error
+
+
+def rows(given, corridor, nets, trips, duration):
     """Runs everything. The result: the figures of every rule and demand, of all seeds together."""
-    duration = given.duration or corridor.duration
-    seeds = range(corridor.seed, corridor.seed + given.seeds)
-    trips = {(demand, seed): corridor.trips(demand, seed, duration) for demand in given.demand for seed in seeds}
-    total, done, found = len(nets) * len(trips), 0, []
+    total, done, found = len(nets) * len(given.demand) * given.seeds, 0, []
     for rule, net in nets.items():
         for demand in given.demand:
             result = Run()
-            for seed in seeds:
-                case = Case(rule, net, demand, seed, trips[demand, seed])
+            for seed, some in trips[demand].items():
+                case = Case(rule, net, demand, seed, some)
                 result += run(corridor, case, duration, given.sigma, given.out)
                 done += 1
                 say(f"{done} of {total} runs done ({rule}, {demand:g} a minute, seed {seed})")
@@ -147,13 +149,13 @@ def known_trips():
             raise Unusable(f"{cause}; let trips() do what host-sim/src/roads/trips.rs does")
 
 
-def same_trips(found, theirs):
-    """Both have as many vehicles at each demand, as they have if they have the same trips."""
-    ours = {row["vehicles_per_min"]: row["vehicles"] for row in found}
+def same_trips(trips, theirs):
+    """The result of holdover-sim has as many vehicles at each demand as the trips, as it has if they are the same."""
     for row in theirs:
         demand, vehicles = row["vehicles_per_min"], row["vehicles"]
-        if ours.get(demand, vehicles) != vehicles:
-            cause = f"at {demand:g} a minute the result of --beside has {vehicles} vehicles, and SUMO had {ours[demand]}"
+        own = sum(map(len, trips[demand].values())) if demand in trips else vehicles
+        if own != vehicles:
+            cause = f"at {demand:g} a minute the result of --beside has {vehicles} vehicles, and there are {own} here"
             raise Unusable(f"{cause}; give both the same scenario, seeds and duration")
 
 
@@ -184,8 +186,12 @@ def cell(row):
 
 def main():
     given = arguments()
-    corridor = Corridor(given.scenario)
+    corridor = load(given.scenario)
+    duration = given.duration or corridor.duration
+    seeds = range(corridor.seed, corridor.seed + given.seeds)
+    trips = {demand: {seed: corridor.trips(demand, seed, duration) for seed in seeds} for demand in given.demand}
     theirs = beside(given.beside) if given.beside else []
+    same_trips(trips, theirs)
     sumo = version()
     say(f"SUMO {sumo}; files go to {given.out}")
     nets = {rule: export(corridor, rule, given.out) for rule in given.rules}
@@ -194,9 +200,7 @@ def main():
         ways = ", ".join(f"{road.name} {road.length:.1f} m" for road in corridor.roads)
         print(f"{len(nets)} networks are as the scenario says: {ways}")
         return
-    found = rows(given, corridor, nets)
-    same_trips(found, theirs)
-    found += theirs
+    found = rows(given, corridor, nets, trips, duration) + theirs
     if given.json:
         print(json.dumps({"sumo": sumo, "seeds": given.seeds, "sigma": given.sigma, "rows": found}, indent=2))
     else:

@@ -83,7 +83,7 @@ class Corridor:
     def __init__(self, path=SHIPPED):
         own, shipped = read(path), read(SHIPPED)
         if own.get("kind") != "corridor" or not own.get("road") or not own.get("intersection"):
-            raise Unusable(f"{path} has no roads that cross; give a scenario with `kind = \"corridor\"`, as {SHIPPED.name}")
+            raise Unusable(f'{path} has no roads that cross; give a scenario with `kind = "corridor"`, as {SHIPPED.name}')
         self.traffic = shipped["traffic"] | own.get("traffic", {})
         self.seed = own.get("seed", shipped["seed"])
         self.duration = own.get("duration_s", shipped["duration_s"])

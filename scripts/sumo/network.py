@@ -5,6 +5,7 @@ under every rule: one lane a road, straight on only, and a junction that reaches
 """
 
 import xml.etree.ElementTree as xml
+from itertools import pairwise
 from xml.sax.saxutils import quoteattr
 
 from corridor import Unusable
@@ -40,9 +41,11 @@ def export(corridor, rule, folder):
     write(files["nod"], "nodes", nodes(corridor, RULES[rule][0]))
     write(files["edg"], "edges", pieces(corridor))
     write(files["con"], "connections", connections(corridor))
-    call("netconvert", "--node-files", files["nod"], "--edge-files", files["edg"], "--connection-files", files["con"],
-         "--output-file", files["net"], "--no-turnarounds", "--offset.disable-normalization", "--junctions.limit-turn-speed", "-1",
-         "--tls.default-type", "actuated")
+    options = [
+        "--node-files", files["nod"], "--edge-files", files["edg"], "--connection-files", files["con"], "--output-file", files["net"],
+        "--no-turnarounds", "--offset.disable-normalization", "--junctions.limit-turn-speed", -1, "--tls.default-type", "actuated",
+    ]  # fmt: skip
+    call("netconvert", *options)
     validate(corridor, files["net"], RULES[rule][0])
     return files["net"]
 
@@ -61,7 +64,7 @@ def pieces(corridor):
     """Every road, from end to end, in pieces between its intersections."""
     for index, road in enumerate(corridor.roads):
         ends = [(f"in{index}", road.entry), *((f"j{stop}", along) for stop, along in road.stops), (f"out{index}", road.exit)]
-        for piece, ((start, begins), (end, finishes)) in enumerate(zip(ends, ends[1:])):
+        for piece, ((start, begins), (end, finishes)) in enumerate(pairwise(ends)):
             yield "edge", {
                 "id": edge(index, piece),
                 "name": road.name,
@@ -80,7 +83,7 @@ def connections(corridor):
     """Everyone goes straight on."""
     for index in range(len(corridor.roads)):
         names = edges(corridor, index)
-        for start, end in zip(names, names[1:]):
+        for start, end in pairwise(names):
             yield "connection", {"from": start, "to": end, "fromLane": 0, "toLane": 0}
 
 
@@ -138,7 +141,7 @@ def validate(corridor, net, kind):
     ways = {(one.get("from"), one.get("to")): one.get("via") for one in tree.iter("connection") if one.get("from")[0] != ":"}
     for index, road in enumerate(corridor.roads):
         names = edges(corridor, index)
-        inside = [ways.pop(pair, None) for pair in zip(names, names[1:])]
+        inside = [ways.pop(pair, None) for pair in pairwise(names)]
         if None in inside or not all(f"{name}_0" in lanes for name in names):
             raise Unusable(f"{net} does not lead through “{road.name}”; look at it with netedit")
         length = sum(lanes[f"{name}_0"] for name in names) + sum(lanes[via] for via in inside)
