@@ -46,8 +46,8 @@ fn main() -> ExitCode {
         has_failed |= !check(name, plan.clone(), arguments.threads);
         for broken in Broken::ALL.into_iter().filter(|_| arguments.broken) {
             let plan = Plan { broken: Some(broken), ..plan.clone() };
-            let is_found = plan.checker().threads(arguments.threads.into()).spawn_bfs().join().discoveries().len() > 0;
-            println!("{name}, {broken:?}: {}", if is_found { "found" } else { "not found" });
+            let found = plan.checker().threads(arguments.threads.into()).spawn_bfs().join().discoveries();
+            println!("{name}, {broken:?}: {}", if found.is_empty() { "not found" } else { "found" });
         }
     }
     ExitCode::from(u8::from(has_failed))

@@ -62,11 +62,20 @@ impl Plan {
 
     /// Two vehicles that add a window to the one that they have, so that one stay is in two windows.
     pub const PIECES: Self =
-        Self { pieces: PIECES, stay: 1, window: 1, entries: 3, delays: false, until: 6, ..Self::LONG };
+        Self { pieces: PIECES, stay: 1, window: 1, entries: 3, delays: false, until: 5, ..Self::LONG };
 
     /// Three vehicles.
-    pub const THREE: Self =
-        Self { vehicles: 3, stay: 1, window: 1, until: 5, delays: false, relay: true, ..Self::LONG };
+    pub const THREE: Self = Self {
+        vehicles: 3,
+        stay: 1,
+        window: 1,
+        entries: 1,
+        silence: 1,
+        until: 3,
+        delays: false,
+        relay: true,
+        ..Self::LONG
+    };
 
     /// Two vehicles, and from the fifth step on nothing is lost any more.
     pub const SETTLED: Self = Self { settles: Some(5), until: 20, ..Self::CLOCKS };
