@@ -2,14 +2,15 @@
 
 cantools reads each file strictly. canmatrix turns it into a DBC, a KCD, a SYM and an ARXML file, and each of these, read back, has
 the same identifiers, lengths and signals, and is of CAN FD or not, as far as canmatrix keeps these in that format. Every message and
-signal has a comment, every attribute of a message stands in the file, and in a file of CAN FD every frame is of CAN FD. A warning of
-either tool is a failure.
+signal has a comment, every attribute of a message stands in the file, and in a file of CAN FD every frame is of CAN FD. A FIBEX file has
+every frame, and every signal that selects no part; canmatrix writes it, and does not read back what has no receiver. A warning of either tool is a failure.
 Exit code: 0 all is the same, 1 something is not.
 """
 
 import logging
 import sys
 import tempfile
+import xml.etree.ElementTree
 from pathlib import Path
 
 import canmatrix.convert
@@ -62,6 +63,14 @@ FORMATS = {"dbc": True, "kcd": True, "sym": True, "arxml": False}
 KINDS = {"dbc", "arxml"}
 
 
+def fibex(path):
+    """The identifiers and the number of signals of a FIBEX file."""
+    places = {"fx": "http://www.asam.net/xml/fbx"}
+    root = xml.etree.ElementTree.parse(path).getroot()
+    identifiers = root.findall(".//fx:FRAME-TRIGGERING/fx:IDENTIFIER/fx:IDENTIFIER-VALUE", places)
+    return sorted(int(value.text) for value in identifiers), len(root.findall(".//fx:SIGNAL-INSTANCE", places))
+
+
 def check(path):
     """What is wrong with a file."""
     database = cantools.database.load_file(path, strict=True)
@@ -82,7 +91,15 @@ def check(path):
             wrong += [f"only in {suffix}: {signal}" for signal in sorted(theirs - ours)]
             if suffix in KINDS:
                 wrong += [f"not so in {suffix}: {kind}" for kind in sorted(kinds(path) ^ kinds(other))]
-    print(f"{path}: {len(database.messages)} messages, {len(named)} signals, the same in {', '.join(FORMATS)}")
+        other = Path(folder) / "other.xml"
+        with open(other, "wb") as file:
+            canmatrix.formats.dump(next(iter(canmatrix.formats.loadp(str(path)).values())), file, "fibex")
+        identifiers = sorted(frame.arbitration_id.id for frame in frames(path))
+        # What selects the part is no signal there.
+        expected = identifiers, sum(not signal.is_multiplexer for signal in named)
+        if fibex(other) != expected:
+            wrong.append(f"in FIBEX {fibex(other)}, and not {expected}")
+    print(f"{path}: {len(database.messages)} messages, {len(named)} signals, the same in {', '.join(FORMATS)}; all in FIBEX")
     return wrong
 
 
