@@ -3,7 +3,8 @@
 cantools reads each file strictly. canmatrix turns it into a DBC, a KCD, a SYM and an ARXML file, and each of these, read back, has
 the same identifiers, lengths and signals, and is of CAN FD or not, as far as canmatrix keeps these in that format. Every message and
 signal has a comment, every attribute of a message stands in the file, and in a file of CAN FD every frame is of CAN FD. A FIBEX file has
-every frame, and every signal that selects no part; canmatrix writes it, and does not read back what has no receiver. A warning of either tool is a failure.
+every frame, and every signal that selects no part; canmatrix writes it, and does not read back what has no receiver. A warning of either
+tool is a failure.
 Exit code: 0 all is the same, 1 something is not.
 """
 
