@@ -54,32 +54,6 @@ fn who_hardly_moved_when_it_was_heard_last_is_not_taken_to_have_moved_on() {
 }
 
 #[test]
-fn who_is_estimated_to_have_slowed_down_in_a_silence_is_not_taken_to_have_moved_on() {
-    for spoke_at in [3.02, 3.06, 3.1] {
-        let mut junction =
-            Junction::new(vec![Driver::new(1, 0, 40.0, 6.0, false), Driver::new(2, 0, 62.0, 6.0, false)]);
-        junction.drivers[0].target_speed = 13.0;
-        junction.drivers[1].target_speed = 13.0;
-        let (mut gap, mut braking) = (f64::MAX, None::<Plant>);
-        junction.run(14.0, |junction| {
-            let [ego, ahead] = &mut junction.drivers[..] else { panic!("two") };
-            if junction.now > 3_000_000 {
-                // It brakes to a stand for somebody whom the ego has not heard of. When it spoke last it still drove, and its horizon said
-                // that it would drive on.
-                let before = braking.unwrap_or(ahead.body);
-                let speed = (before.speed - 0.02).max(0.0);
-                let acceleration = if speed > 0.0 { -2.0 } else { 0.0 };
-                ahead.body = Plant { position: before.position + speed * 0.01, speed, acceleration, ..before };
-                braking = Some(ahead.body);
-                ahead.speaks = speed > spoke_at;
-            }
-            gap = gap.min(ahead.body.position - LENGTH - ego.body.position);
-        });
-        assert!(gap > 0.5, "{spoke_at} m/s: {gap}");
-    }
-}
-
-#[test]
 fn nobody_enters_a_conflict_area_that_it_could_not_leave_and_who_waits_for_that_lets_the_others_go() {
     let blocked = CROSSING + HALF + LENGTH + 3.0;
     let mut drivers = vec![Driver::new(1, 0, 100.0, 8.0, false), Driver::new(2, 0, 140.0, 8.0, false)];

@@ -41,8 +41,6 @@ pub struct Track<const SAMPLES: usize> {
     link: Link,
     sender_clock: SenderClock,
     is_disputed: bool,
-    /// Where it was estimated to have slowed down since the newest sample.
-    slowed: Held<Position>,
 }
 
 impl<const SAMPLES: usize> Track<SAMPLES> {
@@ -59,7 +57,6 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             link: Link::new(period),
             sender_clock: SenderClock::NEW,
             is_disputed: false,
-            slowed: Held::Nothing,
         }
     }
 
@@ -123,14 +120,12 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     pub fn shift(&mut self, way: Distance) {
         self.samples.iter_mut().for_each(|sample| sample.position = sample.position.ahead(way));
         self.certainty.shift(way);
-        self.slowed = self.slowed.get().map(|position| position.ahead(way)).into();
     }
 
     /// Forgets everything that is held of its place. What it said of how it drives still holds.
     pub fn restart(&mut self) {
         self.samples.clear();
         self.certainty = Certainty::NONE;
-        self.slowed.clear();
     }
 
     /// Takes over what the same station said of how it drives in the slot that it was in before.
@@ -280,25 +275,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             self.samples.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
             let _ = self.samples.push(moved); // it is not full
         }
-        if is_news {
-            self.slowed.clear();
-            Admission::News
-        } else {
-            Admission::History
-        }
-    }
-
-    /// Where the vehicle was estimated to have slowed down, the first time since the newest sample.
-    #[must_use]
-    pub const fn slowed(&self) -> Option<Position> {
-        self.slowed.get()
-    }
-
-    /// Notes that it is estimated to be slow here.
-    pub fn note_slowed(&mut self, position: Position) {
-        if self.slowed.as_ref().is_none() {
-            self.slowed.set(position);
-        }
+        if is_news { Admission::News } else { Admission::History }
     }
 
     /// Takes in the driving parameters of the station, received at `at`. Returns whether they are new. No message older than `stale`

@@ -10,8 +10,6 @@
 use heapless::Vec;
 
 use super::lane;
-use super::room;
-
 use super::scene::Scene;
 use super::vantage::Vantage;
 use crate::coordination::{Arrival, Present, Side, Slots};
@@ -59,8 +57,6 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     }
     scene.coordination.note_lost(lost(scene, now, front));
     choose(scene, now, front, speed, nearest);
-    room::note_slowed(scene, now, nearest);
-
     lane::note(scene, now, front);
 }
 

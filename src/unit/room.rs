@@ -111,8 +111,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     }
 
     /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that
-    /// hardly moved when it was heard last, or is estimated to have hardly moved at some time since, is not believed to have moved on from
-    /// there, for as long as a holdover lasts: the vehicle that it waits for may have changed.
+    /// hardly moved when it was heard last is not believed to have moved on since, for as long as a holdover lasts: the vehicle that it
+    /// waits for may have changed.
     fn stops_at(&self, index: usize) -> Option<Position> {
         let (scene, now) = (self.scene, self.at);
         let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
@@ -124,25 +124,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
             return Some(certain.ahead(track.length().negated()).ahead(LINE.negated()));
         }
         let (reading, rear) = scene.rear(index, now)?;
-        let stops = rear.ahead(way(reading.speed));
-        let slowed = track.slowed().filter(|_| is_silent).map(|front| front.ahead(track.length().negated()));
-        Some(slowed.map_or(stops, |rear| rear.min(stops)).ahead(LINE.negated()))
-    }
-}
-
-/// Notes whether the vehicle ahead on the ego's leg is silent, and is estimated to hardly move now.
-pub(super) fn note_slowed<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
-    scene: &mut Scene<PEERS, SAMPLES, STEPS>,
-    now: Instant,
-    ahead: Option<usize>,
-) {
-    let Some((index, reading)) = ahead.and_then(|index| Some((index, scene.estimated(index, now)?))) else { return };
-    let link = &scene.config.link;
-    if let Some(track) = scene.peers.get_index_mut(index)
-        && !track.link().is_on(now, link)
-        && reading.speed <= SLOW
-    {
-        track.note_slowed(reading.position);
+        Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
     }
 }
 
