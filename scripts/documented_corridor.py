@@ -5,6 +5,7 @@ the run's to within half of its last digit. Exit code: 0 all are; 1 some are not
 """
 
 import json
+import re
 import sys
 
 SIDES = ["holdover", "perfect_link", "alone", "envelope"]
@@ -22,8 +23,8 @@ ROWS = {
 
 
 def table(text):
-    """The cells of each row of the table below the heading, by the row's name."""
-    section = text.split("\n## Four intersections without signals\n", 1)[1].split("\n## ", 1)[0]
+    """The cells of each row of the table below the heading and before the next one, by the row's name."""
+    section = re.split(r"\n###? ", text.split("\n## Four intersections without signals\n", 1)[1], maxsplit=1)[0]
     rows = [line.strip().strip("|").split("|") for line in section.splitlines() if line.startswith("|")]
     return {cells[0].strip(): [cell.strip() for cell in cells[1:]] for cells in rows}
 

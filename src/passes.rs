@@ -1,10 +1,10 @@
-//! Passes: who may be in a conflict area, and when. Windows that were claimed and what was heard enter; what may be claimed, who gives
-//! way, and what may be used leave.
+//! Passes: who may be in a conflict area, and when. From claimed windows and what was heard, these functions decide which window may be
+//! claimed, who gives way, and which window may be used.
 //!
-//! A *pass* is a window of GNSS time in which a vehicle may be in one conflict area. Its vehicle keeps to it by itself: it is out of the
-//! area by the end of the window, or it does not go in. So nothing has to be heard at that moment. Each vehicle *claims* windows and
-//! publishes its claims with every message. Here are the rules that decide, as functions of values alone. The unit and the model checker
-//! in `tests/passes` run the same functions. The rules and their proof are in `docs/COORDINATION.md`.
+//! A *pass* is a window of GNSS time. Its vehicle may be in one conflict area only during that window: it goes in only if it is certain
+//! to be out by the end. So the vehicle need not hear anything while it is in the area. Each vehicle *claims* windows and publishes its
+//! claims with every message. The model checker in `tests/passes` runs these functions. The unit does not use them yet. The rules and
+//! their proof are in `docs/COORDINATION.md`.
 //!
 //! | rule | what | here |
 //! |---|---|---|
@@ -97,8 +97,8 @@ impl Rules {
     /// From when on a claim that is made now may count (F2): its station has been on air since `on_air`, and has stamped its last
     /// message with `said`.
     ///
-    /// A station that was on air for long enough is known by everybody who is on air, or knows them. No message that was sent already
-    /// may lack a claim that counts at its stamp.
+    /// Two stations that have both been on air for [`silence`](Self::silence) have heard one another. No message that was sent already may
+    /// lack a claim that counts at its stamp.
     #[must_use]
     pub fn claims_from(&self, now: GnssTime, on_air: GnssTime, said: Option<GnssTime>) -> GnssTime {
         let heard_by_all = on_air.plus(self.silence).plus(self.clocks);

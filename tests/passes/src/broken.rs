@@ -14,11 +14,11 @@ pub enum Broken {
     SaidBefore,
     /// F2, F3: windows are kept apart without the difference of clocks.
     PadsNoClocks,
-    /// F3: a claim is firm though another one has priority.
+    /// F3, F4: a claim neither gives way nor is kept from being firm by another one with priority.
     KeepsAll,
     /// F4: a claim is firm before the known vehicles have been heard.
     HearsNobody,
-    /// F4: who has been silent is not known any more, as where its slot is given to another station.
+    /// F4: a vehicle that has been silent for a step is forgotten with its windows, as where its slot is given to another station.
     ForgetsTheSilent,
     /// F5: a vehicle goes in when the beginning of its stay is covered.
     CoversLess,

@@ -1,5 +1,5 @@
-//! A model checker for the rules of passes ([`holdover::passes`]): vehicles come to one conflict area, and every order of claims,
-//! messages, losses and delays is tried, up to an end of time.
+//! A model checker for the rules of passes ([`holdover::passes`]): vehicles come to one conflict area, and every combination of claims,
+//! lost and late messages, and entries is tried, in whole steps, up to an end of time.
 //!
 //! - [`world`] has the state: the vehicles, what they said last, and what each has heard.
 //! - [`act`] has what a vehicle may do in its turn, and [`hear`] what a message does to it.
