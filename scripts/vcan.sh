@@ -6,7 +6,8 @@
 #
 #   1. directly, where `vcan0` is up already, or where this user may make it (it is removed again afterwards);
 #   2. otherwise in user-mode Linux: a kernel that is an ordinary process. It boots in two seconds on the machine's own
-#      file system, needs no root, no module of the host's kernel and no virtualisation, and has CAN, vcan and slcan.
+#      file system, needs no root, no module of the host's kernel and no virtualisation, and has CAN, vcan and slcan. On a
+#      processor with AMX it needs a C compiler besides.
 #
 # The command finds the same files, working directory and environment, its stdout and stderr arrive apart from one
 # another, and its exit status is that of this script. Its stdin is empty. In user-mode Linux it is root, has one
@@ -198,6 +199,38 @@ carry='
     exec @ARGV, map { "ssl$_=fd:" . fileno $serve[$_][0] } 0 .. $#serve;
 '
 
+# On a processor with AMX the state of a thread is larger than user-mode Linux of before 6.13 has room for, and the kernel of the
+# machine refuses to take a part of it back. This takes the rest from the thread itself.
+whole_state='
+    #define _GNU_SOURCE
+    #include <elf.h>
+    #include <stdarg.h>
+    #include <string.h>
+    #include <sys/ptrace.h>
+    #include <sys/syscall.h>
+    #include <sys/uio.h>
+    #include <unistd.h>
+
+    long ptrace(enum __ptrace_request request, ...) {
+        va_list more;
+        va_start(more, request);
+        long process = va_arg(more, int);
+        void *address = va_arg(more, void *), *data = va_arg(more, void *);
+        va_end(more);
+        if (request == PTRACE_PEEKTEXT || request == PTRACE_PEEKDATA || request == PTRACE_PEEKUSER) {
+            long word = 0;
+            return syscall(SYS_ptrace, request, process, address, &word) < 0 ? -1 : word;
+        }
+        long result = syscall(SYS_ptrace, request, process, address, data);
+        if (result >= 0 || request != PTRACE_SETREGSET || (long)address != NT_X86_XSTATE) return result;
+        static char state[1 << 16];
+        struct iovec whole = {state, sizeof state}, *part = data;
+        if (syscall(SYS_ptrace, PTRACE_GETREGSET, process, address, &whole) < 0) return -1;
+        memcpy(state, part->iov_base, part->iov_len < whole.iov_len ? part->iov_len : whole.iov_len);
+        return syscall(SYS_ptrace, PTRACE_SETREGSET, process, address, &whole);
+    }
+'
+
 # Everything that the guest's first process needs lies in $job. File descriptors 3 and 4 are the consoles 1 and 2.
 run_in_uml() {
     local job number status kernel memory_in=/dev/shm
@@ -224,6 +257,11 @@ run_in_uml() {
     [ $real_time = false ] || first=(taskset -c "$(taskset -cp $$ | sed 's/.*: *//; s/[-,].*//')")
     come_first
     [ ${#serial[@]} = 0 ] || first+=(perl -e "$carry" "${serial[@]}" --)
+    if grep -q '^flags.* amx_tile' /proc/cpuinfo; then
+        command -v cc >/dev/null || cannot "user-mode Linux needs a part that is compiled here, and there is no C compiler" "apt-get install gcc libc6-dev"
+        cc -O2 -shared -fPIC -o "$job/state.so" -x c - <<<"$whole_state"
+        first+=(env "LD_PRELOAD=$job/state.so")
+    fi
     # Through a pipe, because the kernel would put the user's terminal into raw mode.
     local out err
     exec 3> >(exec cat) && out=$!
