@@ -14,9 +14,9 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-built=${CARGO_TARGET_DIR:-target}
-work=$PWD/$built/hil
-sim=$PWD/$built/checked/holdover-sim
+built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+work=$built/hil
+sim=$built/checked/holdover-sim
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
 
 source scripts/need.sh
