@@ -79,11 +79,8 @@ pub fn best(state: &State, index: usize, plan: &Plan) -> Act {
         if let Some(piece) = vehicle.claims.iter().position(|claim| claim.is_some_and(|claim| is_over(&claim))) {
             return Act::Drop(piece);
         }
-        if vehicle.claims.iter().all(Option::is_none)
-            && is_speaking(vehicle, state.now, plan)
-            && let Some(claim) = earliest(state, index, plan, claims_from(vehicle, now, plan).plus(steps(1)))
-        {
-            return Act::Claim(claim);
+        if vehicle.claims.iter().all(Option::is_none) && is_speaking(vehicle, state.now, plan) {
+            return Act::Claim(earliest(state, index, plan, claims_from(vehicle, now, plan).plus(steps(1))));
         }
     }
     Act::Wait
@@ -155,24 +152,22 @@ fn claims(state: &State, index: usize, plan: &Plan) -> Vec<Claim> {
         return Vec::new();
     }
     let from = claims_from(vehicle, vehicle.clock(state.now), plan);
-    let mut found: Vec<Claim> = Vec::new();
-    for later in 0..plan.entries {
-        found.extend(earliest(state, index, plan, from.plus(steps(later))));
-    }
+    let mut found: Vec<Claim> =
+        (0..plan.entries).map(|later| earliest(state, index, plan, from.plus(steps(later)))).collect();
     found.dedup();
     found.retain(|claim| !vehicle.claims.iter().flatten().any(|own| own.window == claim.window));
     found
 }
 
 /// The claim of the earliest free window from this time on.
-fn earliest(state: &State, index: usize, plan: &Plan, entry: GnssTime) -> Option<Claim> {
+fn earliest(state: &State, index: usize, plan: &Plan, entry: GnssTime) -> Claim {
     let vehicle = &state.vehicles[index];
     let known = state.known(index, plan);
     let taken: Vec<Window> = known.iter().flat_map(|(_, claims)| claims).map(|claim| claim.window).collect();
     let wanted = Window { entry, exit: entry.plus(steps(plan.window)) };
     let window = plan.rules().earliest_free(&wanted, taken.iter().copied());
     let at = claims_from(vehicle, vehicle.clock(state.now), plan);
-    Some(Claim { at, window, station: station(index) })
+    Claim { at, window, station: station(index) }
 }
 
 /// Whether it may go in: its whole stay is in firm windows.

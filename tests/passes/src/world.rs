@@ -61,8 +61,7 @@ impl Plan {
     pub const LONG: Self = Self { until: 7, last_comes: 0, clocks: 0, ..Self::CLOCKS };
 
     /// Two vehicles that add a window to the one that they have, so that one stay is in two windows.
-    pub const PIECES: Self =
-        Self { pieces: PIECES, stay: 1, window: 1, entries: 3, delays: false, until: 5, ..Self::LONG };
+    pub const PIECES: Self = Self { pieces: PIECES, window: 1, entries: 3, delays: false, until: 5, ..Self::LONG };
 
     /// Three vehicles.
     pub const THREE: Self = Self {
