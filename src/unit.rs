@@ -65,6 +65,8 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     outbox: Outbox,
     health: Health,
     last_tick: Option<Instant>,
+    /// The demand of the tick before the last one.
+    demand_before: Acceleration,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
@@ -83,6 +85,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             outbox: Outbox::new(Identifiers::NONE),
             health: Health::new(),
             last_tick: None,
+            demand_before: Acceleration::ZERO,
         }
     }
 
@@ -110,6 +113,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.outbox.set_transport(config.transport);
         self.health = Health::new();
         self.last_tick = None;
+        self.demand_before = Acceleration::ZERO;
         Ok(())
     }
 
@@ -188,9 +192,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
             let is_due = self.outbox.is_due(now, self.scene.config.link.period);
-            let own = is_due.then(|| self.foresee(now, last.demand, target));
+            let own = is_due.then(|| self.foresee(now, last, target));
             self.send(now, own.as_ref().map(Option::as_ref), answer);
         }
+        self.demand_before = last.demand;
     }
 
     /// The time of this tick, and the demand of the last one with its age.
@@ -296,10 +301,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The ego's motion as it is to be told, with its own horizon computed from it; `None` if the motion is too old. Its demand is
-    /// the one in force up to its stamp: from that one a receiver's model repeats the demand of this tick.
-    fn foresee(&mut self, now: Instant, last: Acceleration, target: Option<usize>) -> Option<Sample> {
+    /// the one in force up to its stamp: from that one a receiver's model repeats the demand that came into force then.
+    fn foresee(&mut self, now: Instant, last: Last, target: Option<usize>) -> Option<Sample> {
         let ego = self.scene.fresh_ego(now)?;
-        let own = if self.mode == Mode::Standby { *ego } else { Sample { demand: last, ..*ego } };
+        let demand = if ego.at > now.minus(last.age) { last.demand } else { self.demand_before };
+        let own = if self.mode == Mode::Standby { *ego } else { Sample { demand, ..*ego } };
         if self.mode.is_by_law() {
             ego_horizon::foresee(&mut self.scene, now, &own, target, self.association.gains());
         }

@@ -128,13 +128,15 @@ fn an_age_that_was_rounded_up_by_almost_a_millisecond_leaves_the_truth_inside() 
     let at = now + 5_000;
     // Taken 50 µs before, by which the ego had come nearer.
     let taken = (at - 50) as f64 * 1e-6;
+    let before = rig.unit.bound(2, instant(at)).unwrap();
     let _ = rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)); // not trusted yet
     rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)).unwrap();
     let bound = rig.unit.bound(2, instant(at)).unwrap();
     let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
     let truth = 260.0 + rig::LENGTH;
     assert!((low..=high).contains(&truth), "{truth} in {low}..{high}");
-    assert!(high - low < 0.3, "it narrows: {low}..{high}");
+    let width = m_of(before.highest_position()) - m_of(before.lowest_position());
+    assert!(high - low < 0.7 * width, "it narrows: {low}..{high} of {width}");
 }
 
 #[test]

@@ -30,8 +30,9 @@ fn who_comes_fast_stops_behind_one_that_stands() {
 }
 
 #[test]
-fn who_hardly_moved_when_it_was_heard_last_is_not_taken_to_have_moved_on() {
+fn who_falls_silent_in_a_queue_and_stops_after_all_is_seen_by_the_range_sensor() {
     let mut junction = Junction::new(vec![Driver::new(1, 0, 53.0, 8.0, false), Driver::new(2, 0, 60.0, 8.0, false)]);
+    junction.drivers[0].sees = true;
     let mut gap = f64::MAX;
     let mut stands = None;
     junction.run(12.0, |junction| {

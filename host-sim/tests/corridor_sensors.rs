@@ -25,14 +25,13 @@ fn corridor(text: &str) -> Corridor {
     read::corridor(Path::new("c.toml"), text, &Overrides::default()).unwrap()
 }
 
-/// The figures of a run with arrivals of two minutes, with a share of range sensors and with the envelope or without.
-fn run(share: &str, engaged: bool) -> Outcome {
-    let experiment = Experiment::new(corridor(&text(&[("duration_s = 600.0", "duration_s = 120.0"), (NONE, share)])));
+/// The figures of a run with arrivals of this time, with a share of range sensors and with the envelope or without.
+fn run(duration: &str, share: &str, engaged: bool) -> Outcome {
+    let experiment = Experiment::new(corridor(&text(&[("duration_s = 600.0", duration), (ALL, share)])));
     let scenario = Conditions::of(&experiment.corridor);
     let conditions = Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario };
     let outcome = experiment.run(1, conditions, None).unwrap();
     assert_eq!((outcome.collisions, outcome.violations, outcome.remains.unserved), ([0, 0], 0, 0), "{share} {engaged}");
-    assert_eq!(outcome.travel_times_s.len(), 60);
     outcome
 }
 
@@ -42,19 +41,19 @@ fn mean_s(outcome: &Outcome) -> f64 {
 
 #[test]
 fn with_the_envelope_sensors_save_stops_and_time_and_nobody_is_hurt() {
-    let [without, with] = [NONE, ALL].map(|share| run(share, true));
-    // 13 stops and 35.55 s without sensors, 9 stops and 35.00 s with them.
-    assert!(with.full_stops + 2 <= without.full_stops, "{} {}", with.full_stops, without.full_stops);
-    assert!(mean_s(&with) < mean_s(&without) - 0.3, "{} {}", mean_s(&with), mean_s(&without));
+    let [without, with] = [NONE, ALL].map(|share| run("duration_s = 300.0", share, true));
+    assert_eq!((with.travel_times_s.len(), without.travel_times_s.len()), (152, 152));
+    assert!(with.full_stops + 10 <= without.full_stops, "{} {}", with.full_stops, without.full_stops);
+    assert!(mean_s(&with) < mean_s(&without) - 1.0, "{} {}", mean_s(&with), mean_s(&without));
 }
 
 #[test]
 fn without_the_envelope_sensors_hold_nobody_up() {
-    let [without, with] = [NONE, ALL].map(|share| run(share, false));
+    let [without, with] = [NONE, ALL].map(|share| run("duration_s = 120.0", share, false));
     assert_eq!(with.full_stops, 0);
     assert!((mean_s(&with) - mean_s(&without)).abs() < 0.05, "{} {}", mean_s(&with), mean_s(&without));
-    // In a silence the estimate follows the sensor, which is off by 0.25 m at most.
-    assert!(with.errors[0].max_m().unwrap() < 0.25, "{:?}", with.errors[0].worst);
+    // In a silence the sensor is off by up to 0.25 m, and moves the estimate a little.
+    assert!(with.errors[0].max_m().unwrap() < 0.11, "{:?}", with.errors[0].worst);
 }
 
 /// The JSON of a run with arrivals of 20 s, without its timing, and the log of the bus of a vehicle that comes up behind another.
@@ -70,18 +69,19 @@ fn json(folder: &Path, text: &str) -> (serde_json::Value, String) {
 #[test]
 fn a_table_with_a_share_of_0_changes_nothing_and_with_sensors_their_views_are_on_the_bus() {
     let folder = tempfile::tempdir().unwrap();
-    let with_table = text(&[]);
+    let with_table = text(&[(ALL, NONE)]);
     let (before, after) = with_table.split_once("[sensors]").unwrap();
     let without_table = format!("{before}{}", &after[after.find("[limits]").unwrap()..]);
     let (none, log) = json(folder.path(), &with_table);
     assert_eq!((none.clone(), log.clone()), json(folder.path(), &without_table));
-    let other = text(&[("misses = 0.02", "misses = 0.5"), ("ghosts_per_min = 0.0", "ghosts_per_min = 60")]);
+    let other =
+        text(&[(ALL, NONE), ("misses = 0.02", "misses = 0.5"), ("ghosts_per_min = 0.0", "ghosts_per_min = 60")]);
     let (mut blind, its_log) = json(folder.path(), &other);
     assert_eq!((blind["sensors"]["misses"].as_f64(), its_log == log), (Some(0.5), true));
     blind["sensors"] = none["sensors"].clone();
     assert_eq!(blind, none);
 
-    let (all, its_log) = json(folder.path(), &text(&[(NONE, ALL), ("\nrange_m = 100.0", "\nrange_m = 200")]));
+    let (all, its_log) = json(folder.path(), &text(&[("\nrange_m = 100.0", "\nrange_m = 200")]));
     let vehicles = all["holdover"]["served"].as_u64().unwrap();
     assert_eq!([&none, &all].map(|results| results["sensors"]["vehicles"].as_u64()), [Some(0), Some(vehicles)]);
     // The identifier of `RangeSensor`.
@@ -92,9 +92,9 @@ fn a_table_with_a_share_of_0_changes_nothing_and_with_sensors_their_views_are_on
 fn the_table_that_comes_with_the_program_is_what_it_is_when_left_out() {
     let minimal = "kind = \"corridor\"\n[[road]]\nname = \"n\"\npoints = [[0.0, 0.0], [0.002, 0.0]]\n\
                    [[intersection]]\nname = \"A\"\nat = [0.001, 0.0]\n";
-    let sensors = corridor(minimal).sensors;
-    assert_eq!(sensors, corridor(&text(&[])).sensors);
-    assert_eq!((sensors.share, sensors.sensor.sees_up_to_m), (0.0, 100.0));
+    let (sensors, shipped) = (corridor(minimal).sensors, corridor(&text(&[])).sensors);
+    assert_eq!((sensors.share, shipped.share), (0.0, 1.0));
+    assert_eq!((sensors.sensor, sensors.sensor.sees_up_to_m), (shipped.sensor, 100.0));
     // A12 and P9: the sensor shows nothing that is not there, and is not blind for longer than a unit remembers.
     let Faults { ghosts_per_min, dropout_s, .. } = sensors.sensor.faults;
     assert!(ghosts_per_min == 0.0 && dropout_s < 1.0);

@@ -1,15 +1,15 @@
 //! Runs whose buses are CAN FD: what the vehicles do is what they do over classic CAN, and a log of such a bus replays the same.
 
+mod own_frames;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
 use holdover::time::{Duration, Instant};
 use holdover_sim::bus::candump::{Content, Entry, LogReader};
 use holdover_sim::bus::wire::length;
+use own_frames::{count, repeats};
 use serde_json::Value;
-
-/// Identifiers of what a unit sends over CAN FD, of the catalogue at 0x480.
-const OWN: [&str; 6] = ["482", "48A", "490", "494", "495", "498"];
 
 fn holdover_sim(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(arguments).output().unwrap()
@@ -34,17 +34,15 @@ fn corridor() -> String {
 }
 
 /// What a replay of the log with these arguments says, and what the unit said in it.
-fn replayed(folder: &Path, scenario: &str, vehicle: &str) -> [Vec<String>; 2] {
+fn replayed(folder: &Path, scenario: &str, vehicle: &str) -> [String; 2] {
     let log = folder.join("bus.log").display().to_string();
     let run = holdover_sim(&["run", scenario, "--no-report", "--candump", &log, "--candump-vehicle", vehicle]);
     assert!(run.status.code().is_some_and(|code| code <= 1), "{}", String::from_utf8_lossy(&run.stderr));
     let replay = holdover_sim(&["replay", &log, "--scenario", scenario, "--vehicle", vehicle]);
     assert_eq!(replay.status.code(), Some(0), "{}", String::from_utf8_lossy(&replay.stderr));
-    let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
-    let log = lines(&std::fs::read_to_string(&log).unwrap());
-    assert!(log.iter().all(|line| line.contains("##5")), "every frame is one of CAN FD with a bit rate switch");
-    let sent = log.into_iter().filter(|line| OWN.contains(&&line.split(' ').nth(2).unwrap()[..3])).collect();
-    [lines(&String::from_utf8(replay.stdout).unwrap()), sent]
+    let log = std::fs::read_to_string(&log).unwrap();
+    assert!(log.lines().all(|line| line.contains("##5")), "every frame is one of CAN FD with a bit rate switch");
+    [String::from_utf8(replay.stdout).unwrap(), log]
 }
 
 #[test]
@@ -56,7 +54,7 @@ fn a_string_drives_as_over_classic_can_but_for_the_first_messages_which_classic_
             results(&["run", &scenario(folder.path(), &format!("{limits}[bus]\nkind = \"fd\"\n")), "--seed", seed]);
         let close = |key: &str, within: f64| {
             let [a, b] = [&classic, &over_fd].map(|results| results[key].as_f64().unwrap());
-            assert!((a - b).abs() <= within, "{key}: {a} over classic CAN, {b} over CAN FD");
+            assert!((a - b).abs() <= within + 1e-3 * a.abs(), "{key}: {a} over classic CAN, {b} over CAN FD");
         };
         // A receiver trusts an identifier from its second frame on. Over classic CAN that takes the first driving parameters and the
         // first horizon; over CAN FD the motion before them has made the identifier known.
@@ -68,32 +66,30 @@ fn a_string_drives_as_over_classic_can_but_for_the_first_messages_which_classic_
     }
 }
 
-/// Without the counts of refusals, of which a message of several frames has more, and without times of this machine.
-fn of_drives(mut results: Value) -> Value {
-    fn drop_refusals(value: &mut Value) {
-        match value {
-            Value::Object(keys) => {
-                keys.remove("refusals");
-                keys.values_mut().for_each(drop_refusals);
-            }
-            Value::Array(values) => values.iter_mut().for_each(drop_refusals),
-            _ => {}
-        }
-    }
-    drop_refusals(&mut results);
-    results["timing"].take();
-    results
-}
-
 #[test]
-fn a_corridor_drives_as_over_classic_can_in_every_figure() {
+fn a_corridor_drives_as_over_classic_can() {
     let folder = tempfile::tempdir().unwrap();
     let classic = results(&["run", &scenario(folder.path(), &corridor()), "--seeds", "1"]);
     let over_fd =
         results(&["run", &scenario(folder.path(), &format!("{}\n[bus]\nkind = \"fd\"\n", corridor())), "--seeds", "1"]);
     let refusals = |results: &Value| results["holdover"]["refusals"].as_f64().unwrap();
     assert!(refusals(&over_fd) < refusals(&classic));
-    assert_eq!(of_drives(classic), of_drives(over_fd));
+    for side in ["holdover", "perfect_link", "alone", "envelope"] {
+        let [a, b] = [&classic[side], &over_fd[side]];
+        for key in
+            ["served", "unserved", "full_stops", "collisions_on_roads", "association_changes", "bound_violations"]
+        {
+            assert_eq!(a[key], b[key], "{side}: {key}");
+        }
+        // A message that is whole some milliseconds earlier may be of use a tick earlier.
+        let close = |key: &str, within: f64| {
+            let [a, b] = [a, b].map(|side| side.pointer(key).and_then(Value::as_f64).unwrap());
+            assert!((a - b).abs() <= within, "{side}{key}: {a} over classic CAN, {b} over CAN FD");
+        };
+        close("/mean_travel_time_s", 0.02);
+        close("/lowest_speed_mps", 0.02);
+        close("/position_error/max_m", 0.003);
+    }
 }
 
 #[test]
@@ -101,19 +97,18 @@ fn the_unit_of_a_run_sends_the_same_once_more() {
     let folder = tempfile::tempdir().unwrap();
     let string = scenario(folder.path(), "[bus]\nkind = \"fd\"\n");
     for vehicle in ["0", "2", "4"] {
-        let [replayed, sent] = replayed(folder.path(), &string, vehicle);
-        assert!(sent.len() > 2500 && replayed == sent, "vehicle {vehicle}");
+        let [replayed, log] = replayed(folder.path(), &string, vehicle);
+        assert!(count(&log) > 2500 && repeats(&replayed, &log), "vehicle {vehicle}");
     }
     let corridor = scenario(folder.path(), &format!("{}\n[bus]\nkind = \"fd\"\n", corridor()));
-    let [replayed, sent] = replayed(folder.path(), &corridor, "3");
-    assert!(sent.len() > 1000 && replayed == sent);
+    let [replayed, log] = replayed(folder.path(), &corridor, "3");
+    assert!(count(&log) > 1000 && repeats(&replayed, &log));
 }
 
 /// Share of the time in which the bus of the ego is busy, in the whole log of the paper's string: four peers.
 fn load(folder: &Path, kind: &str) -> f64 {
     let (scenario, log) = (scenario(folder, &format!("[bus]\nkind = \"{kind}\"\n")), folder.join("bus.log"));
-    let run =
-        holdover_sim(&["run", &scenario, "--no-report", "--candump", log.to_str().unwrap(), "--candump-times", "wire"]);
+    let run = holdover_sim(&["run", &scenario, "--no-report", "--candump", log.to_str().unwrap()]);
     assert!(run.status.success());
     let frames: Vec<(Instant, Duration)> = LogReader::open(&log)
         .unwrap()

@@ -3,7 +3,7 @@
 use clap::{CommandFactory, Parser};
 use holdover_sim::commands::cli::Cli;
 use holdover_sim::commands::options::Options;
-use holdover_sim::commands::run::candump::{Candump, Times};
+use holdover_sim::commands::run::candump::Candump;
 use holdover_sim::commands::run::options::RunOptions;
 use holdover_sim::input::impairment::Impairment;
 use std::path::Path;
@@ -57,12 +57,10 @@ fn the_report_can_be_put_elsewhere_or_left_out() {
 #[test]
 fn the_bus_recorded_is_the_egos_unless_said_otherwise() {
     let candump = |arguments| options(arguments).unwrap().candump;
-    let of = |vehicle, times| Some(Candump { file: "bus.log".into(), vehicle, times });
-    assert_eq!(candump("--candump bus.log"), of(2, Times::Sent));
-    assert_eq!(candump("--candump bus.log --candump-vehicle 0"), of(0, Times::Sent));
-    assert_eq!(candump("--candump bus.log --candump-times wire"), of(2, Times::Wire));
+    let of = |vehicle| Some(Candump { file: "bus.log".into(), vehicle });
+    assert_eq!(candump("--candump bus.log"), of(2));
+    assert_eq!(candump("--candump bus.log --candump-vehicle 0"), of(0));
     assert!(options("--candump-vehicle 1").is_err());
-    assert!(options("--candump-times wire").is_err());
 }
 
 #[test]

@@ -110,21 +110,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         Duration::from_micros(micros)
     }
 
-    /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin. A peer that
-    /// hardly moved when it was heard last is not believed to have moved on since, for as long as a holdover lasts: the vehicle that it
-    /// waits for may have changed.
+    /// Where the rear bumper of a peer is estimated to come to a stand if it brakes now as the ego does, less the margin.
     fn stops_at(&self, index: usize) -> Option<Position> {
-        let (scene, now) = (self.scene, self.at);
-        let braking = i64::from(scene.config.limits.braking.to_mm_per_s2()).max(1);
-        let way = |speed: Speed| Distance::from_mm(saturate_i32(braked(i64::from(speed.to_mm_per_s()), braking)));
-        let track = scene.peers.get(index)?;
-        let is_silent = !track.link().is_on(now, &scene.config.link) && scene.is_in_reach(index, now);
-        if is_silent && track.newest().is_some_and(|newest| newest.speed <= SLOW) {
-            let certain = scene.bound(index, now)?.lowest_position();
-            return Some(certain.ahead(track.length().negated()).ahead(LINE.negated()));
-        }
-        let (reading, rear) = scene.rear(index, now)?;
-        Some(rear.ahead(way(reading.speed)).ahead(LINE.negated()))
+        let braking = i64::from(self.scene.config.limits.braking.to_mm_per_s2()).max(1);
+        let (reading, rear) = self.scene.rear(index, self.at)?;
+        let way = braked(i64::from(reading.speed.to_mm_per_s()), braking);
+        Some(rear.ahead(Distance::from_mm(saturate_i32(way))).ahead(LINE.negated()))
     }
 }
 

@@ -1,11 +1,12 @@
 //! A CAN bus in memory: frames that one node sends leave at every other node in the order of their times.
 //!
-//! The bus has no transmission time and no arbitration: frames of the same instant arrive in the order of sending. A
-//! node may send ahead of time; no node receives the frame before its time. A log of the bus gets the times of a wire
-//! from [`wire`](super::wire).
+//! On a bus with a wire, frames take their time and are on the bus one after the other, and a node receives a frame at its
+//! end. Without one, a frame takes no time, and frames of the same instant arrive in the order of sending: the side of a
+//! real bus that is in this process. A node may send ahead of time; no node receives the frame before its time.
 
+use super::wire::{Wanted, Wire, length};
 use super::{Bus, Frame};
-use holdover::time::Instant;
+use holdover::time::{Duration, Instant};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::io;
@@ -14,7 +15,15 @@ use std::rc::Rc;
 /// The bus. It lives as long as its nodes. All nodes belong to one thread, because one thread runs a world.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryBus {
-    inboxes: Rc<RefCell<Vec<Inbox>>>,
+    shared: Rc<RefCell<Shared>>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    wire: Option<Wire>,
+    inboxes: Vec<Inbox>,
+    /// For each node, the last frame that it has sent, and when it was on the bus.
+    confirmed: Vec<Option<(Instant, Frame)>>,
 }
 
 type Inbox = VecDeque<(Instant, Frame)>;
@@ -27,33 +36,79 @@ pub struct MemoryNode {
 }
 
 impl MemoryBus {
-    /// A bus without nodes.
+    /// A bus without nodes, on which a frame takes no time.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
+    /// A bus without nodes, with a wire.
+    #[must_use]
+    pub fn with_wire() -> Self {
+        let bus = Self::new();
+        bus.shared.borrow_mut().wire = Some(Wire::new());
+        bus
+    }
+
+    /// For how long a frame is on the bus.
+    #[must_use]
+    pub fn length(&self, frame: &Frame) -> Duration {
+        if self.shared.borrow().wire.is_some() { length(frame) } else { Duration::ZERO }
+    }
+
+    /// From now on a frame takes no time. Nothing has been sent yet.
+    pub fn cut_wire(&self) {
+        self.shared.borrow_mut().wire = None;
+    }
+
     /// Attaches one more node. It receives the frames that are sent from now on.
     #[must_use]
     pub fn node(&self) -> MemoryNode {
-        let mut inboxes = self.inboxes.borrow_mut();
-        inboxes.push(Inbox::new());
-        MemoryNode { bus: self.clone(), index: inboxes.len() - 1 }
+        let shared = &mut *self.shared.borrow_mut();
+        shared.inboxes.push(Inbox::new());
+        shared.confirmed.push(None);
+        MemoryNode { bus: self.clone(), index: shared.inboxes.len() - 1 }
+    }
+}
+
+impl MemoryNode {
+    /// The last frame of this node that has been on the bus, and when: a controller's confirmation of transmission. As far as
+    /// any node has received.
+    #[must_use]
+    pub fn confirmed(&self) -> Option<(Instant, Frame)> {
+        self.bus.shared.borrow().confirmed[self.index]
+    }
+}
+
+impl Shared {
+    /// A frame is on the bus at `at`.
+    fn deliver(&mut self, at: Instant, sent: Wanted) {
+        self.confirmed[sent.from] = Some((at, sent.frame));
+        for (index, inbox) in self.inboxes.iter_mut().enumerate() {
+            if index != sent.from {
+                insert(inbox, at, sent.frame);
+            }
+        }
     }
 }
 
 impl Bus for MemoryNode {
     fn send(&mut self, at: Instant, frame: Frame) -> io::Result<()> {
-        for (index, inbox) in self.bus.inboxes.borrow_mut().iter_mut().enumerate() {
-            if index != self.index {
-                insert(inbox, at, frame);
-            }
+        let shared = &mut *self.bus.shared.borrow_mut();
+        let wanted = Wanted { from: self.index, frame };
+        match &mut shared.wire {
+            Some(wire) => wire.want(at, wanted),
+            None => shared.deliver(at, wanted),
         }
         Ok(())
     }
 
     fn receive(&mut self, upto: Instant) -> io::Result<Option<(Instant, Frame)>> {
-        Ok(take(&mut self.bus.inboxes.borrow_mut()[self.index], upto))
+        let shared = &mut *self.bus.shared.borrow_mut();
+        while let Some((end, sent)) = shared.wire.as_mut().and_then(|wire| wire.next_before(upto)) {
+            shared.deliver(end, sent);
+        }
+        Ok(take(&mut shared.inboxes[self.index], upto))
     }
 }
 
@@ -102,6 +157,27 @@ mod tests {
         let order: Vec<_> = std::iter::from_fn(|| b.receive(at(99)).unwrap()).collect();
         let expected = [(10, 2), (10, 5), (15, 4), (20, 1), (20, 3)];
         assert_eq!(order, expected.map(|(time, id)| (at(time), frame(id))));
+    }
+
+    #[test]
+    fn on_a_wire_a_frame_is_received_at_its_end_and_after_the_one_that_wins() {
+        let bus = MemoryBus::with_wire();
+        let [mut a, mut b, mut c] = [bus.node(), bus.node(), bus.node()];
+        a.send(at(10), frame(9)).unwrap();
+        b.send(at(10), frame(4)).unwrap();
+        assert_eq!(c.receive(at(10)).unwrap(), None);
+        let mut ends = Vec::new();
+        for id in [4, 9] {
+            let (end, sent) = c.receive(at(10_000)).unwrap().unwrap();
+            assert_eq!(sent, frame(id));
+            ends.push(end.as_micros());
+        }
+        // A frame without data has 44 bits and its stuff bits, of 2 us each; three bits of intermission come before the second.
+        assert!((10 + 88..10 + 108).contains(&ends[0]), "{ends:?}");
+        assert!((94..114).contains(&(ends[1] - ends[0])), "{ends:?}");
+        assert_eq!((a.confirmed(), c.confirmed()), (Some((at(ends[1]), frame(9))), None));
+        assert_eq!(a.receive(at(10_000)).unwrap(), Some((at(ends[0]), frame(4))));
+        assert_eq!(a.receive(at(10_000)).unwrap(), None);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! [`memory`] is a bus inside the process; `socketcan` is an interface of Linux; [`fault`] and [`record`] are
 //! middleware that wraps a node of any bus. [`port`] is a node that follows the bus's own time. [`wire`] says when the
-//! frames of a bus in memory would have been on a wire.
+//! frames of a bus in memory are on the bus.
 
 pub mod candump;
 pub mod fault;

@@ -1,13 +1,12 @@
-//! Times on a wire: frames enter with the instants at which their senders wanted to send them; the same frames leave with
-//! the instants at which they would have been whole on a bus of 500 kbit/s, classic CAN or CAN FD; the data phase of CAN FD has
-//! 2 Mbit/s.
+//! A wire: frames enter with the instants at which their senders want to send them; they leave one after the other, each with
+//! the instant of its end on a bus of 500 kbit/s, classic CAN or CAN FD; the data phase of CAN FD has 2 Mbit/s.
 //!
 //! One frame is on the bus at a time. Of the frames that wait, the one with the dominant identifier is next; frames of one
 //! identifier stay in order. Every frame takes its own bits, with the stuff bits that its content and its CRC need, and
-//! three bits of intermission follow. In CAN FD the stuff bits around the CRC are fixed, so that its value does not matter. Neither errors nor full mailboxes are modelled.
+//! three bits of intermission follow. In CAN FD the stuff bits around the CRC are fixed, so that its value does not matter.
+//! Neither errors nor full mailboxes are modelled.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, VecDeque};
 
 use embedded_can::{Frame as _, Id};
 use holdover::time::{Duration, Instant};
@@ -27,27 +26,64 @@ const CRC_POLYNOMIAL: u16 = 0x4599;
 /// After so many equal bits the opposite bit is stuffed.
 const EQUAL_BITS: u32 = 5;
 
-/// The frames in the order in which they are on the bus, each with the instant of its end. They may enter in any order.
-#[must_use]
-pub fn on_wire(mut wanted: Vec<(Instant, Frame)>) -> Vec<(Instant, Frame)> {
-    wanted.sort_by_key(|(at, _)| *at);
-    let mut sent = Vec::with_capacity(wanted.len());
-    let mut waiting = BinaryHeap::new();
-    let mut coming = wanted.iter().enumerate().peekable();
-    let mut free = Instant::from_micros(0);
-    loop {
-        if waiting.is_empty() {
-            let Some((_, (at, _))) = coming.peek() else { return sent };
-            free = free.max(*at);
+/// A frame that is to be sent, and the number of the node that sends it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The node.
+    pub from: usize,
+    /// The frame.
+    pub frame: Frame,
+}
+
+/// A wire.
+#[derive(Clone, Debug)]
+pub struct Wire {
+    /// Frames whose time has not come, in the order of their times.
+    coming: VecDeque<(Instant, Wanted)>,
+    /// Frames that wait for the wire, by arbitration and then in the order in which they came.
+    waiting: BTreeMap<(u32, u64), Wanted>,
+    came: u64,
+    /// When the last frame and its intermission are over.
+    free: Instant,
+}
+
+impl Wire {
+    /// A wire that is at rest.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { coming: VecDeque::new(), waiting: BTreeMap::new(), came: 0, free: Instant::from_micros(0) }
+    }
+
+    /// A node wants to send a frame from `at` on.
+    pub fn want(&mut self, at: Instant, wanted: Wanted) {
+        // That is nearly always the end, so the search starts there.
+        let later = self.coming.iter().rev().take_while(|(other, _)| *other > at).count();
+        self.coming.insert(self.coming.len() - later, (at, wanted));
+    }
+
+    /// The next frame that starts before `upto`, and the instant of its end. All that is sent before `upto` has to be known.
+    pub fn next_before(&mut self, upto: Instant) -> Option<(Instant, Wanted)> {
+        if self.waiting.is_empty() {
+            let (at, _) = self.coming.front()?;
+            self.free = self.free.max(*at);
         }
-        while let Some((number, (_, frame))) = coming.next_if(|(_, (at, _))| *at <= free) {
-            waiting.push(Reverse((arbitration(frame), number)));
+        if self.free >= upto {
+            return None;
         }
-        let Some(Reverse((_, number))) = waiting.pop() else { continue };
-        let frame = wanted[number].1;
-        let end = free.plus(length(&frame));
-        sent.push((end, frame));
-        free = end.plus(micros(INTERMISSION_BITS));
+        while let Some((_, wanted)) = self.coming.pop_front_if(|(at, _)| *at <= self.free) {
+            self.waiting.insert((arbitration(&wanted.frame), self.came), wanted);
+            self.came += 1;
+        }
+        let (_, wanted) = self.waiting.pop_first()?;
+        let end = self.free.plus(length(&wanted.frame));
+        self.free = end.plus(micros(INTERMISSION_BITS));
+        Some((end, wanted))
+    }
+}
+
+impl Default for Wire {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
@@ -210,6 +246,15 @@ mod tests {
         }
     }
 
+    /// The frames in the order in which they are on the wire, each with the instant of its end.
+    fn on_wire(wanted: Vec<(Instant, Frame)>) -> Vec<(Instant, Frame)> {
+        let mut wire = Wire::new();
+        wanted.into_iter().for_each(|(at, frame)| wire.want(at, Wanted { from: 0, frame }));
+        std::iter::from_fn(|| wire.next_before(Instant::from_micros(u64::MAX)))
+            .map(|(end, wanted)| (end, wanted.frame))
+            .collect()
+    }
+
     #[test]
     fn of_the_frames_that_wait_the_dominant_identifier_is_next_and_equals_stay_in_order() {
         let (first, second) = (Frame::standard(5, &[1]).unwrap(), Frame::standard(5, &[2]).unwrap());
@@ -236,7 +281,20 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_bus_stays_empty() {
-        assert_eq!(on_wire(Vec::new()), []);
+    fn a_frame_that_starts_later_is_not_decided_upon_yet() {
+        let mut wire = Wire::new();
+        assert_eq!(wire.next_before(at(1_000)), None);
+        wire.want(at(10), Wanted { from: 1, frame: frame(7) });
+        wire.want(at(10), Wanted { from: 2, frame: frame(9) });
+        assert_eq!(wire.next_before(at(10)), None);
+        let (end, first) = wire.next_before(at(11)).unwrap();
+        assert_eq!((end, first.from), (at(10).plus(length(&frame(7))), 1));
+        // The second one would start after the first one and its intermission. Until then another one may come.
+        let start = end.plus(micros(INTERMISSION_BITS));
+        assert_eq!(wire.next_before(start), None);
+        wire.want(start, Wanted { from: 3, frame: frame(8) });
+        let later = Instant::from_micros(start.as_micros() + 1);
+        assert_eq!(wire.next_before(later).unwrap().1.from, 3);
+        assert_eq!(wire.next_before(later), None);
     }
 }

@@ -237,21 +237,21 @@ impl<'a> Traffic<'a> {
         }
     }
 
-    /// Sends the messages to all vehicles within radio range.
-    fn broadcast(&mut self, at_s: f64, messages: Vec<(usize, V2xMessage)>) {
+    /// Sends the messages to all vehicles within radio range. They were sent since `at_s`.
+    fn broadcast(&mut self, at_s: f64, messages: Vec<(f64, usize, V2xMessage)>) {
         if messages.is_empty() {
             return;
         }
         let place = |traveller: &Traveller| traveller.ground.road.at(traveller.way_m()).0;
         let places: BTreeMap<usize, Point> = self.travellers.iter().map(|(index, one)| (*index, place(one))).collect();
         let range_m = self.conditions.radio.range_m;
-        for (from, message) in messages {
+        for (sent_s, from, message) in messages {
             let Some(here) = places.get(&from) else { continue };
             let reaches =
                 |(to, there): &(&usize, &Point)| **to != from && Shift::between(*here, **there).length_m() <= range_m;
             let message = Rc::new(message);
-            self.air.broadcast(at_s, from, places.iter().filter(reaches).map(|(to, _)| *to), &message);
-            self.aired.push_back((at_s, from, *here, message));
+            self.air.broadcast(sent_s, from, places.iter().filter(reaches).map(|(to, _)| *to), &message);
+            self.aired.push_back((sent_s, from, *here, message));
         }
         while self.aired.front().is_some_and(|(aired_s, ..)| aired_s + LISTENING_S < at_s) {
             self.aired.pop_front();
@@ -320,23 +320,22 @@ impl Stages for Traffic<'_> {
     }
 
     fn act(&mut self, at_s: f64) -> io::Result<()> {
-        let mut broadcasts = Vec::new();
-        for (index, traveller) in &mut self.travellers {
-            let message = traveller.vehicle.tick(at_s)?;
-            broadcasts.extend(message.filter(|_| !traveller.is_dark(at_s)).map(|message| (*index, message)));
-        }
+        self.travellers.values_mut().try_for_each(|traveller| traveller.vehicle.tick(at_s))?;
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone(at_s);
         }
         self.run_out();
-        self.broadcast(at_s, broadcasts);
         Ok(())
     }
 
-    fn drive(&mut self, _: f64) -> io::Result<()> {
-        for traveller in self.travellers.values_mut() {
-            traveller.vehicle.plant.drive(traveller.vehicle.effort, self.corridor.period_s);
+    fn drive(&mut self, at_s: f64) -> io::Result<()> {
+        let mut broadcasts = Vec::new();
+        for (index, traveller) in &mut self.travellers {
+            traveller.vehicle.drive(at_s, self.corridor.period_s)?;
+            let sent = traveller.vehicle.broadcasts().into_iter().filter(|(sent_s, _)| !traveller.is_dark(*sent_s));
+            broadcasts.extend(sent.map(|(sent_s, message)| (sent_s, *index, message)));
         }
+        self.broadcast(at_s, broadcasts);
         Ok(())
     }
 }

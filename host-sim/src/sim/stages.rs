@@ -1,11 +1,12 @@
 //! The stages of a tick, in an order that is the same in every world.
 //!
 //! At time t, the messages that arrived over the air up to t are put on the buses with their time of arrival. Sensors
-//! and time base send. Then every unit receives and ticks, and the broadcasts of the units go into the air. The
-//! observers see the state of the tick. The vehicles move on to the next tick under the commands.
+//! and time base send. Then every unit receives what is whole on its bus by t, and ticks. The observers see the state of the
+//! tick. Then the buses carry what was sent, one frame after the other: commands are in force from their arrival on, and
+//! modems broadcast. So the vehicles move on to the next tick.
 //!
-//! So a message that is sent without delay at t is used in the next tick, as on real buses. It is on the bus a
-//! microsecond later.
+//! So what a sensor sends at t, and what another unit sends at t over a radio without delay, is used in the next tick, as on
+//! real buses.
 
 use std::io;
 
@@ -17,13 +18,13 @@ pub trait Stages {
     /// Errors of the buses.
     fn speak(&mut self, at_s: f64) -> io::Result<()>;
 
-    /// The units tick, and their modems broadcast.
+    /// The units tick.
     ///
     /// # Errors
     /// Errors of the buses.
     fn act(&mut self, at_s: f64) -> io::Result<()>;
 
-    /// The vehicles move on to the next tick.
+    /// The buses carry what was sent, the modems broadcast, and the vehicles move on to the next tick.
     ///
     /// # Errors
     /// Errors of the buses.

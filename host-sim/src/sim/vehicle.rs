@@ -1,13 +1,14 @@
 //! One vehicle: its body, its unit, its modem, and its own bus between them. What sensors and modem put on the bus
-//! enters the unit; what the unit commands moves the body.
+//! enters the unit; what the unit commands moves the body. Each gets a frame when it is whole on the bus.
 //!
-//! A unit outside of the simulation can take the unit's place on the bus ([`Vehicle::give_seat`]).
+//! A unit outside of the simulation can take the unit's place on the bus ([`Vehicle::give_seat`]). The wire is then outside
+//! too.
 
 use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
-use holdover::time::Instant;
-use holdover::wire::command::{Effort, ModeCode};
+use holdover::time::{Duration, Instant};
+use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
@@ -15,8 +16,8 @@ use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
 use holdover::{Config, ConfigError};
 
-use crate::bus::Bus;
 use crate::bus::memory::{MemoryBus, MemoryNode};
+use crate::bus::{Bus, Frame};
 use crate::sim::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, UNSERVED_EVERY_S, V2xMessage};
 use crate::sim::plant::Plant;
 use crate::sim::quantities::{acceleration, metres, speed};
@@ -62,8 +63,6 @@ pub struct Vehicle {
     pub engaged: bool,
     /// Acceleration that its unit commanded last.
     pub command_mps2: f64,
-    /// Engine force or brake torque that its unit commanded for that acceleration.
-    pub effort: Effort,
     /// Whether the unit's envelope changed that command.
     pub limited: bool,
     /// Mode of the unit at that command.
@@ -77,18 +76,30 @@ pub struct Vehicle {
     sender: Sender<0>,
     relay: Relay,
     listener: Receiver<PEERS>,
+    /// What the unit inside sends is seen at its tick, for the trace.
+    witness: Receiver<0>,
     transmitter: Transmitter,
+    /// Messages that the modem has broadcast, and when.
+    broadcasts: Vec<(f64, V2xMessage)>,
     bus: MemoryBus,
-    /// The unit's place on the bus. `None`: a unit outside has that place and commands through `actuators`.
+    /// The unit's place on the bus. `None`: a unit outside has that place.
     ecu: Option<MemoryNode>,
     actuators: Actuators,
+    /// The effort until the next tick that is not the unit's.
+    overriding: Option<Effort>,
     /// Time of the unit's last target estimate.
     estimate_s: f64,
     /// Names of the stations on its bus.
     alias: Alias,
     harness: MemoryNode,
+    /// The time master. It says in a `FollowUp` when its `Sync` was on the bus.
+    master: MemoryNode,
+    /// The `Sync` whose `FollowUp` is still to be sent, and its frame.
+    pending: Option<(Sync, Frame)>,
     tag: u8,
     synced: u8,
+    /// Whether anything has been sent on the bus yet.
+    is_awake: bool,
 }
 
 impl Vehicle {
@@ -105,7 +116,7 @@ impl Vehicle {
         clock_offset_us: u64,
         sensors: Sensors,
     ) -> Result<Self, ConfigError> {
-        let bus = MemoryBus::new();
+        let bus = MemoryBus::with_wire();
         let mut relay = Relay::new(config.identifiers).over(config.transport);
         if let Predecessor::Station(ahead) = request.predecessor {
             relay.set_out(Course::behind(ahead));
@@ -117,7 +128,6 @@ impl Vehicle {
             unit: Unit::new(config)?,
             engaged: request.engaged,
             command_mps2: 0.0,
-            effort: Effort::Force(0),
             limited: false,
             mode: ModeCode::Standby,
             estimate: None,
@@ -128,15 +138,21 @@ impl Vehicle {
             sender: Sender::new(config.identifiers).over(config.transport),
             relay,
             listener: Receiver::new(config.identifiers, Role::Modem).over(config.transport),
+            witness: Receiver::new(config.identifiers, Role::Modem).over(config.transport),
             transmitter: Transmitter::default(),
+            broadcasts: Vec::new(),
             ecu: Some(bus.node()),
-            actuators: Actuators::default(),
+            actuators: Actuators::new(f64::INFINITY),
+            overriding: None,
             estimate_s: f64::NEG_INFINITY,
             alias: Alias::default(),
             harness: bus.node(),
+            master: bus.node(),
+            pending: None,
             bus,
             tag: 0,
             synced: 0,
+            is_awake: false,
         })
     }
 
@@ -171,6 +187,8 @@ impl Vehicle {
     /// `alias`.
     pub fn give_seat(&mut self, alias: Alias) -> MemoryNode {
         self.alias = alias;
+        self.bus.cut_wire();
+        self.actuators = Actuators::new(actuators::COMMAND_TIMEOUT_S);
         self.relay.limit(ECU_PEERS);
         self.ecu.take().unwrap_or_else(|| self.bus.node())
     }
@@ -222,6 +240,9 @@ impl Vehicle {
     /// # Errors
     /// Errors of the bus.
     pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
+        if is_due(at_s, SYNC_EVERY_S, period_s) || !self.is_awake {
+            self.synchronise(at_s)?;
+        }
         self.sense(at_s)?;
         if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
             let way_m = self.plant.position_m - ground.odometer_m;
@@ -241,20 +262,34 @@ impl Vehicle {
         if is_due(at_s, REQUEST_EVERY_S, period_s) {
             self.request(at_s)?;
         }
-        if is_due(at_s, SYNC_EVERY_S, period_s) {
-            self.synchronise(at_s)?;
+        self.follow_up() // at once, if a frame takes no time
+    }
+
+    /// Sends the first of the two messages of the time base. The very first one wakes the bus: it ends when the unit's first tick
+    /// begins, so a log's first frame tells when that was.
+    fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
+        self.synced = (self.synced + 1) % 16;
+        let sync = Sync { sequence: self.synced, seconds: (gnss(at_s).as_micros() / 1_000_000) as u32 };
+        let at = self.instant(at_s);
+        let frames = frames(&mut self.sender, &Message::Sync(sync))?;
+        for frame in &frames {
+            let before = if self.is_awake { Duration::ZERO } else { self.bus.length(frame) };
+            self.master.send(at.minus(before), *frame)?;
         }
+        self.is_awake = true;
+        self.pending = frames.last().map(|frame| (sync, *frame));
         Ok(())
     }
 
-    /// Sends the two messages of the time base.
-    fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
-        self.synced = (self.synced + 1) % 16;
-        let time = gnss(at_s).as_micros();
-        let sync = Sync { sequence: self.synced, seconds: (time / 1_000_000) as u32 };
-        let follow_up = FollowUp { sequence: self.synced, micros: (time % 1_000_000) as u32 };
-        self.put(at_s, &Message::Sync(sync))?;
-        self.put(at_s, &Message::FollowUp(follow_up))
+    /// Sends the second one, when the first one has been on the bus.
+    fn follow_up(&mut self) -> io::Result<()> {
+        let Some((sync, frame)) = self.pending else { return Ok(()) };
+        let Some((at, _)) = self.master.confirmed().filter(|(_, sent)| *sent == frame) else { return Ok(()) };
+        self.pending = None;
+        let since = gnss(self.time_of(at)).as_micros().saturating_sub(u64::from(sync.seconds) * 1_000_000);
+        let follow_up = FollowUp { sequence: sync.sequence, micros: since as u32 };
+        let frames = frames(&mut self.sender, &Message::FollowUp(follow_up))?;
+        frames.iter().try_for_each(|frame| self.master.send(at, *frame))
     }
 
     /// Sends the vehicle's own motion, as its sensors measure it now.
@@ -292,77 +327,102 @@ impl Vehicle {
         frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
     }
 
-    /// One period of the unit: receive, tick, transmit. Returns what its modem broadcasts then, if anything.
+    /// One period of the unit: receive, tick, transmit.
     ///
     /// # Errors
     /// Errors of the bus.
-    pub fn tick(&mut self, at_s: f64) -> io::Result<Option<V2xMessage>> {
+    pub fn tick(&mut self, at_s: f64) -> io::Result<()> {
         let now = self.instant(at_s);
-        if let Some(ecu) = &mut self.ecu {
-            while let Some((at, frame)) = ecu.receive(now)? {
-                let _ = self.unit.receive(at, &frame); // the unit counts refusals
-            }
-            for frame in self.unit.tick(now).frames {
-                ecu.send(now, (&frame).into())?;
-            }
-            self.estimate = None;
-        } else if self.estimate_s + ESTIMATE_TIMEOUT_S < at_s {
-            self.estimate = None;
-        }
         self.take_in(at_s)?;
-        Ok(self.transmitter.broadcast().map(|message| self.alias.of_message(&message)))
-    }
-
-    /// Takes in what the unit has sent up to now.
-    fn take_in(&mut self, at_s: f64) -> io::Result<()> {
-        let now = self.instant(at_s);
-        while let Some((at, frame)) = self.harness.receive(now)? {
-            let at_s = self.time_of(at);
-            match self.listener.receive(at, &frame) {
-                Ok(Received::Whole(Message::Own(said))) => {
-                    self.transmitter.take(&said);
-                    self.relay.take(&said);
-                }
+        let Some(ecu) = &mut self.ecu else {
+            self.estimate = self.estimate.filter(|_| self.estimate_s + ESTIMATE_TIMEOUT_S >= at_s);
+            return Ok(());
+        };
+        while let Some((at, frame)) = ecu.receive(now)? {
+            let _ = self.unit.receive(at, &frame); // the unit counts refusals
+        }
+        let frames = self.unit.tick(now).frames;
+        frames.iter().try_for_each(|frame| ecu.send(now, frame.into()))?;
+        self.estimate = None;
+        for frame in &frames {
+            match self.witness.receive(now, frame) {
                 Ok(Received::Whole(Message::Estimate(estimate))) => {
                     (self.estimate, self.estimate_s) = (Some(estimate), at_s);
                 }
-                Ok(Received::Whole(Message::Command(command))) => {
-                    self.command_mps2 = command.acceleration.get().to_num();
-                    self.effort = command.effort;
-                    self.limited = command.limited;
-                    self.mode = command.mode;
-                    if self.ecu.is_none() && command.mode != ModeCode::Standby {
-                        self.actuators.take(at_s, self.effort);
-                    }
-                }
+                Ok(Received::Whole(Message::Command(command))) => self.see(&command),
                 _ => {}
             }
         }
         Ok(())
     }
 
-    /// Moves the vehicle on from the time of a tick to the next one. A command from outside is in force from its
-    /// arrival on.
+    /// Modem and actuators take in what the unit has sent, as far as it is whole on the bus by now. The modem broadcasts.
+    fn take_in(&mut self, at_s: f64) -> io::Result<()> {
+        let (now, is_outside) = (self.instant(at_s), self.ecu.is_none());
+        let mut said_s = at_s;
+        while let Some((at, frame)) = self.harness.receive(now)? {
+            let at_s = self.time_of(at);
+            match self.listener.receive(at, &frame) {
+                Ok(Received::Whole(Message::Own(said))) => {
+                    self.transmitter.take(&said);
+                    self.relay.take(&said);
+                    said_s = at_s;
+                }
+                Ok(Received::Whole(Message::Estimate(estimate))) if is_outside => {
+                    (self.estimate, self.estimate_s) = (Some(estimate), at_s);
+                }
+                Ok(Received::Whole(Message::Command(command))) => {
+                    if is_outside {
+                        self.see(&command);
+                    }
+                    if !is_outside || command.mode != ModeCode::Standby {
+                        self.actuators.take(at_s, command.effort);
+                    }
+                }
+                _ => {}
+            }
+        }
+        let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));
+        self.broadcasts.extend(message.map(|message| (said_s, message)));
+        self.follow_up()
+    }
+
+    fn see(&mut self, command: &Command) {
+        self.command_mps2 = command.acceleration.get().to_num();
+        self.limited = command.limited;
+        self.mode = command.mode;
+    }
+
+    /// What the modem has broadcast, and when, since this was asked for the last time.
+    pub fn broadcasts(&mut self) -> Vec<(f64, V2xMessage)> {
+        std::mem::take(&mut self.broadcasts)
+    }
+
+    /// The time from a tick to the next one: the bus carries what the unit has sent, and the vehicle moves. A command is in
+    /// force from its arrival on. A vehicle whose driver has not engaged the unit is moved by others.
     ///
     /// # Errors
     /// Errors of the bus.
     pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
-        if self.ecu.is_some() {
-            self.plant.drive(self.effort, period_s);
-            return Ok(());
-        }
+        let overriding = self.overriding.take();
         self.take_in(at_s + period_s)?;
         for (effort, length_s) in self.actuators.pieces(at_s, at_s + period_s) {
-            let without = || self.effort_for(actuators::WITHOUT_COMMAND_MPS2);
-            self.plant.drive(effort.unwrap_or_else(without), length_s);
+            if self.engaged {
+                let without = || match self.ecu {
+                    Some(_) => Effort::Force(0),
+                    None => self.effort_for(actuators::WITHOUT_COMMAND_MPS2),
+                };
+                let effort = overriding.or(effort).unwrap_or_else(without);
+                self.plant.drive(effort, length_s);
+            }
         }
         Ok(())
     }
 
-    /// Commands another acceleration than the unit does, as far as the vehicle is capable of it.
+    /// Commands another acceleration than the unit does until the next tick, as far as the vehicle is capable of it.
     pub fn override_with(&mut self, wanted_mps2: f64) {
         self.command_mps2 = wanted_mps2;
-        self.effort = self.effort_for(wanted_mps2);
+        self.overriding = Some(self.effort_for(wanted_mps2));
     }
 
     fn effort_for(&self, wanted_mps2: f64) -> Effort {
@@ -371,16 +431,17 @@ impl Vehicle {
 
     fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
         let at = self.instant(at_s);
-        let mut result = Ok(());
-        let harness = &mut self.harness;
-        let sent = self.sender.send(message, &mut |frame| {
-            if result.is_ok() {
-                result = harness.send(at, (&frame).into());
-            }
-        });
-        sent.map_err(|unsent| io::Error::other(format!("the catalogue has no line for it ({unsent:?})")))?;
-        result
+        let frames = frames(&mut self.sender, message)?;
+        frames.iter().try_for_each(|frame| self.harness.send(at, *frame))
     }
+}
+
+/// The frames of a message.
+fn frames(sender: &mut Sender<0>, message: &Message) -> io::Result<Vec<Frame>> {
+    let mut frames = Vec::new();
+    let sent = sender.send(message, &mut |frame| frames.push(Frame::from(&frame)));
+    sent.map_err(|unsent| io::Error::other(format!("the catalogue has no line for it ({unsent:?})")))?;
+    Ok(frames)
 }
 
 /// Whether a message with this cycle is due in the tick at `at_s`.

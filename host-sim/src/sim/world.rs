@@ -237,7 +237,7 @@ impl<'a> World<'a> {
     /// # Errors
     /// Errors of the buses.
     pub fn answer(&mut self, at_s: f64) -> io::Result<()> {
-        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s).map(|_| ()))
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s))
     }
 
     /// The drivers engage their units; the run begins.
@@ -245,6 +245,7 @@ impl<'a> World<'a> {
         for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
             vehicle.plant.position_m = *start_m;
             vehicle.engage(true);
+            vehicle.broadcasts(); // no other vehicle was within radio range
         }
     }
 
@@ -312,20 +313,19 @@ impl Stages for World<'_> {
     }
 
     fn act(&mut self, at_s: f64) -> io::Result<()> {
-        let mut broadcasts = Vec::new();
-        for vehicle in &mut self.vehicles {
-            broadcasts.extend(vehicle.tick(at_s)?.map(|message| (vehicle.index, message)));
-        }
-        for (from, message) in broadcasts {
-            let others = (0..self.vehicles.len()).filter(|to| *to != from);
-            self.air.broadcast(at_s, from, others, &Rc::new(message));
-        }
-        Ok(())
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s))
     }
 
     fn drive(&mut self, at_s: f64) -> io::Result<()> {
-        let period_s = self.scenario.period_s;
-        self.vehicles.iter_mut().filter(|vehicle| vehicle.engaged).try_for_each(|vehicle| vehicle.drive(at_s, period_s))
+        let vehicles = self.vehicles.len();
+        for vehicle in &mut self.vehicles {
+            vehicle.drive(at_s, self.scenario.period_s)?;
+            for (sent_s, message) in vehicle.broadcasts() {
+                let others = (0..vehicles).filter(|to| *to != vehicle.index);
+                self.air.broadcast(sent_s, vehicle.index, others, &Rc::new(message));
+            }
+        }
+        Ok(())
     }
 }
 

@@ -5,12 +5,14 @@
 //! vehicles are raised to it. A view from before the driver named the target is not of the target. While view and messages contradict one
 //! another, neither changes the other, and the unit drives by what it sees.
 //!
-//! The sensor's position and the estimated position are weighed by the squares of their uncertainties: the sensor's accuracy against half
-//! the width of the target's bound, which grows with the age of what was heard over V2X. So fresh messages are hardly corrected, and in a
-//! long silence the sensor decides.
+//! Where the estimated speed may be right, a view moves the horizon by a part of the way: the target goes on as it said. Where that
+//! speed is certainly wrong, the horizon starts anew. The sensor's position and the estimated position are weighed by the squares of their
+//! uncertainties: the sensor's accuracy against half the width of the target's bound, which grows with the age of what was heard over V2X.
+//! So fresh messages are hardly corrected.
 
 use super::Scene;
 use super::sight::{Sight, Verdict};
+use crate::fixed::quotient;
 use crate::health::{Cause, Health};
 use crate::model::bound::{Bound, Uncertainty};
 use crate::parameters::{LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING};
@@ -19,6 +21,13 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
+
+/// From when the sensor sends a view to when the view has been on the bus, at most: it waits for a frame that is on the bus, and
+/// for those of a tick that win over it.
+const ON_BUS: Duration = Duration::from_millis(3);
+
+/// A view that the estimate may be right about corrects it by at most this fraction: a view errs by more than an estimate.
+const MOST_SHARE: i64 = 10;
 
 /// For a correction by less than this fraction, the horizon is not computed anew.
 const LEAST_SHARE: i64 = 16;
@@ -81,7 +90,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let faster = swing.over(apart.fine_seconds());
         let (own, own_speed) = (ego.position_error(), ego.speed_error());
         let clock_error = self.config.link.clock_error;
-        let late = ego.speed.plus(own_speed).over(clock_error.plus(unsaid).seconds());
+        let late = ego.speed.plus(own_speed).over(clock_error.plus(ON_BUS).plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
         Uncertainty {
@@ -91,7 +100,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 .plus(faster)
                 .plus(SPEED_ROUNDING)
                 .plus(SPEED_ROUNDING),
-            earlier: clock_error,
+            earlier: clock_error.plus(ON_BUS),
             later: unsaid,
         }
     }
@@ -139,10 +148,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         } else {
             self.raise(index, sight);
         }
-        if let Some(newest) = newest
-            && let Some(sample) = self.corrected(index, sight, front, &bound, &newest)
-        {
-            self.estimator.note_correction(index, sample);
+        if let Some(newest) = newest {
+            self.correct(index, sight, front, &bound, &newest);
         }
         is_certain.then_some(station)
     }
@@ -162,34 +169,35 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some((track.station()?, track.newest().map(|newest| newest.received)))
     }
 
-    /// The weighed mean of the estimate and the view, as a sample of the target.
-    fn corrected(
-        &self,
-        index: usize,
-        sight: &Sight,
-        front: Position,
-        bound: &Bound,
-        newest: &Sample,
-    ) -> Option<Sample> {
-        let estimate = self.estimator.read(index, sight.at)?;
+    /// Corrects the estimate by the view: moves the horizon where the estimated speed may be right, and starts it anew where not.
+    fn correct(&mut self, index: usize, sight: &Sight, front: Position, bound: &Bound, newest: &Sample) {
+        let Some(estimate) = self.estimator.read(index, sight.at) else { return };
         let half = |high: Position, low: Position| Distance::from_bits(high.ahead_of(low).to_bits() / 2);
         let width = half(bound.highest_position(), bound.lowest_position());
         let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.uncertainty.position.to_bits()));
+        let faster = sight.speed.minus(estimate.speed);
+        if faster.magnitude() <= sight.uncertainty.speed {
+            let share = share.min(quotient(whole, MOST_SHARE));
+            if share.saturating_mul(LEAST_SHARE) >= whole {
+                let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
+                self.estimator.shift(index, Distance::from_bits(off));
+            }
+            return;
+        }
         let spread = bound.highest_speed().minus(bound.lowest_speed()).to_bits() / 2;
         let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.uncertainty.speed.to_bits()));
-        if share.saturating_mul(LEAST_SHARE) < whole && speed_share.saturating_mul(LEAST_SHARE) < speed_whole {
-            return None;
-        }
         let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
-        let off_speed = mixed(sight.speed.minus(estimate.speed).to_bits(), speed_share, speed_whole);
-        Some(Sample {
+        let off_speed = mixed(faster.to_bits(), speed_share, speed_whole);
+        let slope = self.slope(index, sight.at);
+        let sample = Sample {
             at: sight.at,
             position: estimate.position.ahead(Distance::from_bits(off)),
             speed: estimate.speed.plus(Speed::from_bits(off_speed)).max(Speed::ZERO),
-            acceleration: self.slope(index, sight.at),
-            demand: self.slope(index, sight.at),
+            acceleration: slope,
+            demand: slope,
             ..*newest
-        })
+        };
+        self.estimator.note_correction(index, sample);
     }
 
     /// The acceleration on the target's horizon.

@@ -140,7 +140,7 @@ fn candump(corridor: &Corridor, settings: &RunSettings) -> Result<Option<Candump
         return Err(error.in_option("--candump"));
     };
     exists("--candump-vehicle", vehicle, trips.len())?;
-    Ok(Some(Candump { file, vehicle, times: settings.candump_times.unwrap_or_default() }))
+    Ok(Some(Candump { file, vehicle }))
 }
 
 /// Whether there is a vehicle of that index among so many.

@@ -83,13 +83,11 @@ Logs:
   refused by name; python-can converts them:
   python -m can.logconvert IN.blf OUT.log
   By a log that `run --candump` writes a unit sends the same bits as in the run.
-  With --candump-times wire its frames end one after the other, as on a wire,
-  so that some are a tick later than in the run.
 
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first
   frame, every further one a period later, and before each it receives the
-  frames up to and including that time. The last tick is the first one at or
+  frames up to and including that time. What it sends has the time of its tick. The last tick is the first one at or
   after the last frame. A line may lie up to 1 s before an earlier one, as in
   logs merged of several; it is received late, at its own time. Beyond that,
   after a gap of more than an hour, and without times the log is refused, by

@@ -1,6 +1,5 @@
 //! The arguments of `run`, as they are typed.
 
-use super::candump::Times;
 use crate::commands::ending::OutputArguments;
 use clap::Args;
 use std::path::PathBuf;
@@ -83,11 +82,6 @@ pub struct RunSettings {
     /// The vehicle of that bus; by default the ego. In a corridor vehicles are counted from 0 by their arrival
     #[arg(long, value_name = "INDEX", requires = "candump")]
     pub candump_vehicle: Option<usize>,
-
-    /// The times in that log [default: sent]. In the run frames take no time, and the units are given them when they are
-    /// sent
-    #[arg(long, value_name = "WHICH", requires = "candump")]
-    pub candump_times: Option<Times>,
 }
 
 /// Examples and further notes.

@@ -1,28 +1,15 @@
-//! The log of one vehicle's bus: frames with the times of their sending enter, a candump log leaves, by default with the
-//! times that they would have on a wire.
+//! The log of one vehicle's bus: frames with the times of their ends enter, a candump log leaves.
 
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use holdover::time::Instant;
 
 use crate::bus::Frame;
 use crate::bus::candump::LogWriter;
-use crate::bus::wire::on_wire;
 use crate::error::Error;
 use crate::sim::time::{EPOCH_US, micros};
-
-/// The times in a log.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Times {
-    /// The end of each frame on a bus of 500 kbit/s, one frame after the other
-    Wire,
-    /// The instant of sending: a simulated node receives a frame in the same instant
-    #[default]
-    Sent,
-}
 
 /// A bus to log.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,8 +18,6 @@ pub struct Candump {
     pub file: PathBuf,
     /// Index of the vehicle whose bus it is.
     pub vehicle: usize,
-    /// Its times.
-    pub times: Times,
 }
 
 impl Candump {
@@ -48,13 +33,8 @@ impl Candump {
             return Err(Error::new("the interface has no name", "report this").in_file(file));
         };
         let instant = |at_s: f64| Instant::from_micros(EPOCH_US.saturating_add_signed(micros(at_s)));
-        let sent = frames.iter().map(|(at_s, frame)| (instant(*at_s), *frame)).collect();
-        let timed = match self.times {
-            Times::Wire => on_wire(sent),
-            Times::Sent => sent,
-        };
-        for (at, frame) in &timed {
-            log.write(*at, frame).map_err(|error| unwritable(&error))?;
+        for (at_s, frame) in frames {
+            log.write(instant(*at_s), frame).map_err(|error| unwritable(&error))?;
         }
         log.finish().map(|_| ()).map_err(|error| unwritable(&error))
     }

@@ -68,8 +68,7 @@ impl RunOptions {
                 taken.push(file);
             }
         }
-        let times = settings.candump_times.unwrap_or_default();
-        let candump = settings.candump.map(|file| Candump { file, vehicle, times });
+        let candump = settings.candump.map(|file| Candump { file, vehicle });
         Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
     }
 }

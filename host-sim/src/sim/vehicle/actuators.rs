@@ -1,9 +1,8 @@
-//! The actuators of a vehicle whose unit is outside of the simulation: commands with their times of arrival enter, the
-//! commands in force during a span of time leave.
+//! The actuators of a vehicle: commands with their times of arrival enter, the commands in force during a span of time
+//! leave.
 //!
-//! *Watchdog:* without a command for [`COMMAND_TIMEOUT_S`] they brake, as an actuator has to when it has lost its
-//! master. A command in mode standby is not to be used, so it counts as no command.
-//! master. A command in mode standby is not to be used, so it counts as none.
+//! *Watchdog:* if the unit is outside of the simulation, they brake without a command for [`COMMAND_TIMEOUT_S`], as an
+//! actuator has to when it has lost its master. A command in mode standby is not to be used, so it counts as none.
 
 use std::collections::VecDeque;
 
@@ -15,8 +14,10 @@ pub const COMMAND_TIMEOUT_S: f64 = 0.05;
 pub const WITHOUT_COMMAND_MPS2: f64 = -2.0;
 
 /// The actuators.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Actuators {
+    /// How long a command holds.
+    timeout_s: f64,
     /// The effort in force, and the time from which it is in force.
     current: Option<(f64, Effort)>,
     /// Commands that have arrived and are not in force yet.
@@ -24,6 +25,12 @@ pub struct Actuators {
 }
 
 impl Actuators {
+    /// Actuators without a command. A command holds for `timeout_s`.
+    #[must_use]
+    pub fn new(timeout_s: f64) -> Self {
+        Self { timeout_s, current: None, coming: VecDeque::new() }
+    }
+
     /// A command arrives.
     pub fn take(&mut self, at_s: f64, effort: Effort) {
         self.coming.push_back((at_s, effort));
@@ -48,7 +55,7 @@ impl Actuators {
     /// Adds one span without a new command.
     fn hold(&self, pieces: &mut Vec<(Option<Effort>, f64)>, from_s: f64, to_s: f64) {
         let since_s = self.current.map_or(f64::NEG_INFINITY, |(since_s, _)| since_s);
-        let until_s = (since_s + COMMAND_TIMEOUT_S).clamp(from_s, to_s);
+        let until_s = (since_s + self.timeout_s).clamp(from_s, to_s);
         let effort = self.current.map(|(_, effort)| effort);
         let spans = [(effort, until_s - from_s), (None, to_s - until_s)];
         pieces.extend(spans.into_iter().filter(|(_, length_s)| *length_s > 0.0));
@@ -71,7 +78,7 @@ mod tests {
 
     #[test]
     fn a_command_is_in_force_from_its_arrival_on() {
-        let mut actuators = Actuators::default();
+        let mut actuators = Actuators::new(COMMAND_TIMEOUT_S);
         actuators.take(1.000, Effort::Force(5));
         actuators.take(1.012, Effort::Force(7));
         assert_eq!(rounded(&actuators.pieces(1.00, 1.01)), [(5, 10_000)]);
@@ -81,7 +88,7 @@ mod tests {
 
     #[test]
     fn without_a_command_for_fifty_milliseconds_they_brake_until_one_comes() {
-        let mut actuators = Actuators::default();
+        let mut actuators = Actuators::new(COMMAND_TIMEOUT_S);
         assert_eq!(rounded(&actuators.pieces(0.0, 0.01)), [(0, 10_000)]);
         actuators.take(0.02, Effort::Force(10));
         assert_eq!(rounded(&actuators.pieces(0.01, 0.10)), [(0, 10_000), (10, 50_000), (0, 30_000)]);
@@ -91,7 +98,7 @@ mod tests {
 
     #[test]
     fn commands_that_came_before_the_span_are_in_force_at_once_the_last_one_stays() {
-        let mut actuators = Actuators::default();
+        let mut actuators = Actuators::new(COMMAND_TIMEOUT_S);
         actuators.take(0.0, Effort::Force(10));
         actuators.take(0.005, Effort::Force(20));
         assert_eq!(rounded(&actuators.pieces(0.01, 0.02)), [(20, 10_000)]);

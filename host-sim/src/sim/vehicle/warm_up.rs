@@ -46,6 +46,7 @@ impl Vehicle {
         }
         self.plant.position_m = start_m;
         self.engaged = engages;
+        self.broadcasts.clear(); // nobody has heard it yet
         Ok(())
     }
 }
