@@ -145,6 +145,18 @@ fn a_horizon_of_the_tags_last_round_belongs_to_no_sample() {
 }
 
 #[test]
+fn a_horizon_is_not_joined_to_a_later_sample_that_has_its_tag_however_soon_that_comes() {
+    // Messages that were held up on the air come one right after the other.
+    let mut track = track([]);
+    let knots = Knots { tag: 2, knots: [Knot::default(); KNOTS] };
+    assert!(admit(&mut track, Sample { tag: 2, ..sample(100, 900) }).is_ok());
+    assert!(track.foresee(at(901), knots));
+    assert!(admit(&mut track, Sample { tag: 2, ..sample(500, 905) }).is_ok());
+    assert_eq!(track.knots(), None, "its own has not come yet");
+    assert!(track.foresee(at(906), knots));
+}
+
+#[test]
 fn a_slot_beyond_the_capacity_is_refused_and_a_station_is_found_by_its_name() {
     let mut peers = {
         let mut peers = Peers::<2, 4>::idle();

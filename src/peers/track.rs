@@ -37,7 +37,7 @@ pub struct Track<const SAMPLES: usize> {
     /// When its driving parameters were received last.
     published_at: Instant,
     limits: Held<Limits>,
-    knots: Option<(Instant, Knots)>,
+    horizon: Option<Foresight>,
     link: Link,
     sender_clock: SenderClock,
     is_disputed: bool,
@@ -53,7 +53,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             parameters: Held::Nothing,
             published_at: Instant::ZERO,
             limits: Held::Nothing,
-            knots: None,
+            horizon: None,
             link: Link::new(period),
             sender_clock: SenderClock::NEW,
             is_disputed: false,
@@ -171,12 +171,19 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// The horizon that the vehicle computed from its newest sample, if it has come.
     #[must_use]
     pub fn knots(&self) -> Option<&Knots> {
-        let (received, knots) = self.knots.as_ref()?;
+        let Foresight { received, of, knots } = self.horizon.as_ref()?;
         let newest = self.newest()?;
-        // Tags repeat after four messages. A horizon that is older or newer by half of that belongs to another sample.
-        let (apart, half_a_round) = (newest.received.since(*received), self.link.period().times(2));
-        let is_of_this_round = apart < half_a_round && apart > Duration::ZERO.minus(half_a_round);
-        (knots.tag == newest.tag && is_of_this_round).then_some(knots)
+        let is_of_newest = match of {
+            Some(at) => newest.at == *at,
+            None => newest.tag == knots.tag && self.is_of_one_round(*received, newest.received),
+        };
+        is_of_newest.then_some(knots)
+    }
+
+    /// Whether the second of two parts of a message came so soon after the first that their tags, which repeat after four messages, tell
+    /// which message each is of.
+    fn is_of_one_round(&self, first: Instant, second: Instant) -> bool {
+        (Duration::ZERO..self.link.period().times(2)).contains(&second.since(first))
     }
 
     /// The link.
@@ -294,16 +301,32 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         is_new
     }
 
-    /// Takes in the horizon that the station computed. Returns whether it belongs to the newest sample. A horizon that was overtaken
-    /// together with its sample does not displace the newest sample's. A horizon that has overtaken its sample waits for it.
+    /// Takes in the horizon that the station computed. Returns whether it belongs to the newest sample. It belongs to the sample with its
+    /// tag that was received last before it. Where there is none, it has overtaken its sample, and waits for it. A horizon that was
+    /// overtaken together with its sample does not displace the newest sample's.
     pub fn foresee(&mut self, received: Instant, knots: Knots) -> bool {
+        let is_its = |held: &&Sample| held.tag == knots.tag && self.is_of_one_round(held.received, received);
+        let of = self.samples.iter().filter(is_its).max_by_key(|held| held.received).map(|held| held.at);
         let behind = self.newest().map_or(0, |newest| newest.tag.wrapping_sub(knots.tag) % 4);
-        if matches!(behind, 1 | 2) && self.knots().is_some() {
+        let is_overtaken = match of {
+            Some(at) => self.newest().is_some_and(|newest| newest.at != at),
+            None => matches!(behind, 1 | 2),
+        };
+        if is_overtaken && self.knots().is_some() {
             return false;
         }
-        self.knots = Some((received, knots));
+        self.horizon = Some(Foresight { received, of, knots });
         self.knots().is_some()
     }
+}
+
+/// A horizon that the station sent.
+#[derive(Clone, Debug)]
+struct Foresight {
+    received: Instant,
+    /// The time of the sample that it was computed from, if that came before it.
+    of: Option<Instant>,
+    knots: Knots,
 }
 
 /// Whether two samples with the same stamp are of the same turn of the stamp, which repeats every 13.1 s.

@@ -78,9 +78,24 @@ impl MemoryNode {
     pub fn confirmed(&self) -> Option<(Instant, Frame)> {
         self.bus.shared.borrow().confirmed[self.index]
     }
+
+    /// Whether a frame that this node sent still waits for the bus at `now`.
+    #[must_use]
+    pub fn waits(&self, now: Instant, frame: &Frame) -> bool {
+        let shared = &mut *self.bus.shared.borrow_mut();
+        shared.advance(now);
+        shared.wire.as_ref().is_some_and(|wire| wire.waits(&Wanted { from: self.index, frame: *frame }))
+    }
 }
 
 impl Shared {
+    /// Carries the frames that start before `upto`.
+    fn advance(&mut self, upto: Instant) {
+        while let Some((end, sent)) = self.wire.as_mut().and_then(|wire| wire.next_before(upto)) {
+            self.deliver(end, sent);
+        }
+    }
+
     /// A frame is on the bus at `at`.
     fn deliver(&mut self, at: Instant, sent: Wanted) {
         self.confirmed[sent.from] = Some((at, sent.frame));
@@ -105,9 +120,7 @@ impl Bus for MemoryNode {
 
     fn receive(&mut self, upto: Instant) -> io::Result<Option<(Instant, Frame)>> {
         let shared = &mut *self.bus.shared.borrow_mut();
-        while let Some((end, sent)) = shared.wire.as_mut().and_then(|wire| wire.next_before(upto)) {
-            shared.deliver(end, sent);
-        }
+        shared.advance(upto);
         Ok(take(&mut shared.inboxes[self.index], upto))
     }
 }

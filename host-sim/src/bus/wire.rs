@@ -61,6 +61,12 @@ impl Wire {
         self.coming.insert(self.coming.len() - later, (at, wanted));
     }
 
+    /// Whether this frame still waits for the wire.
+    #[must_use]
+    pub fn waits(&self, wanted: &Wanted) -> bool {
+        self.waiting.values().any(|other| other == wanted) || self.coming.iter().any(|(_, other)| other == wanted)
+    }
+
     /// The next frame that starts before `upto`, and the instant of its end. All that is sent before `upto` has to be known.
     pub fn next_before(&mut self, upto: Instant) -> Option<(Instant, Wanted)> {
         if self.waiting.is_empty() {

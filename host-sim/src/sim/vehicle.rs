@@ -26,9 +26,11 @@ use crate::sim::sensors::{Ahead, RANGE_EVERY_S, Sensors};
 use crate::sim::station::station;
 use crate::sim::time::{gnss, micros};
 use actuators::Actuators;
+use backlog::Backlog;
 
 pub mod actuators;
 pub mod alias;
+mod backlog;
 mod unit;
 mod warm_up;
 
@@ -79,6 +81,7 @@ pub struct Vehicle {
     /// What the unit inside sends is seen at its tick, for the trace.
     witness: Receiver<0>,
     transmitter: Transmitter,
+    backlog: Backlog,
     /// Messages that the modem has broadcast, and when.
     broadcasts: Vec<(f64, V2xMessage)>,
     bus: MemoryBus,
@@ -140,6 +143,7 @@ impl Vehicle {
             listener: Receiver::new(config.identifiers, Role::Modem).over(config.transport),
             witness: Receiver::new(config.identifiers, Role::Modem).over(config.transport),
             transmitter: Transmitter::default(),
+            backlog: Backlog::default(),
             broadcasts: Vec::new(),
             ecu: Some(bus.node()),
             actuators: Actuators::new(f64::INFINITY),
@@ -321,9 +325,30 @@ impl Vehicle {
     /// # Errors
     /// Errors of the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
-        let mut frames = Vec::new();
-        self.relay.hear(at_s, &self.alias.of_message(message), &mut frames);
-        let at = self.instant(at_s);
+        self.forward_held(at_s)?;
+        let (at, message) = (self.instant(at_s), self.alias.of_message(message));
+        let harness = &self.harness;
+        if self.backlog.has_room(message.motion.station, |frame| harness.waits(at, frame)) {
+            return self.forward(at_s, &message);
+        }
+        self.backlog.hold(message);
+        Ok(())
+    }
+
+    /// Forwards the messages that were held back, if there is room on the bus now.
+    fn forward_held(&mut self, at_s: f64) -> io::Result<()> {
+        let (at, harness) = (self.instant(at_s), &self.harness);
+        let released = self.backlog.released(|frame| harness.waits(at, frame));
+        released.iter().try_for_each(|message| self.forward(at_s, message))
+    }
+
+    /// Puts a message on the unit's bus.
+    fn forward(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
+        let (at, mut frames) = (self.instant(at_s), Vec::new());
+        self.relay.hear(at_s, message, &mut frames);
+        if let Some(last) = frames.last() {
+            self.backlog.send(message.motion.station, last.into());
+        }
         frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
     }
 
@@ -384,6 +409,7 @@ impl Vehicle {
         }
         let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));
         self.broadcasts.extend(message.map(|message| (said_s, message)));
+        self.forward_held(at_s)?;
         self.follow_up()
     }
 
