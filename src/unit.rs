@@ -304,7 +304,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// the one in force up to its stamp: from that one a receiver's model repeats the demand that came into force then.
     fn foresee(&mut self, now: Instant, last: Last, target: Option<usize>) -> Option<Sample> {
         let ego = self.scene.fresh_ego(now)?;
-        let demand = if ego.at > now.minus(last.age) { last.demand } else { self.demand_before };
+        // The last demand came into force at the last tick, as well as the two clocks can tell.
+        let in_force = now.minus(last.age).plus(self.scene.config.link.clock_error);
+        let demand = if ego.at > in_force { last.demand } else { self.demand_before };
         let own = if self.mode == Mode::Standby { *ego } else { Sample { demand, ..*ego } };
         if self.mode.is_by_law() {
             ego_horizon::foresee(&mut self.scene, now, &own, target, self.association.gains());

@@ -136,11 +136,16 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }));
     }
 
-    /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
-    pub fn shift(&mut self, index: usize, way: Distance) {
+    /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there.
+    pub fn move_horizon(&mut self, index: usize, way: Distance) {
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.shift(way);
         }
+    }
+
+    /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
+    pub fn shift(&mut self, index: usize, way: Distance) {
+        self.move_horizon(index, way);
         if let Held::Value((corrected, sample)) = &mut self.correction
             && *corrected == index
         {

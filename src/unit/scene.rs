@@ -35,8 +35,8 @@ use sight::Ranging;
 use unknown::Unknown;
 
 /// What a vehicle on a way through intersections keeps in addition to the law's standstill distance. Where a queue has formed, a vehicle
-/// brakes for what it alone knows, because a vehicle ahead has no slot or is silent. The vehicles behind that do not hear it cannot
-/// foresee that, and need room for the error of their estimates.
+/// brakes for what it alone knows, because a vehicle ahead has no slot. The vehicles behind that do not hear it cannot foresee that, and
+/// need room for the error of their estimates.
 const QUEUE: Distance = Distance::from_mm(8_000);
 
 /// Everything that the unit knows.

@@ -21,7 +21,8 @@ pub struct MemoryBus {
 #[derive(Debug, Default)]
 struct Shared {
     wire: Option<Wire>,
-    inboxes: Vec<Inbox>,
+    /// `None`: a node that only sends.
+    inboxes: Vec<Option<Inbox>>,
     /// For each node, the last frame that it has sent, and when it was on the bus.
     confirmed: Vec<Option<(Instant, Frame)>>,
 }
@@ -64,8 +65,18 @@ impl MemoryBus {
     /// Attaches one more node. It receives the frames that are sent from now on.
     #[must_use]
     pub fn node(&self) -> MemoryNode {
+        self.attach(Some(Inbox::new()))
+    }
+
+    /// Attaches a node that only sends.
+    #[must_use]
+    pub fn sender(&self) -> MemoryNode {
+        self.attach(None)
+    }
+
+    fn attach(&self, inbox: Option<Inbox>) -> MemoryNode {
         let shared = &mut *self.shared.borrow_mut();
-        shared.inboxes.push(Inbox::new());
+        shared.inboxes.push(inbox);
         shared.confirmed.push(None);
         MemoryNode { bus: self.clone(), index: shared.inboxes.len() - 1 }
     }
@@ -83,24 +94,23 @@ impl MemoryNode {
     #[must_use]
     pub fn waits(&self, now: Instant, frame: &Frame) -> bool {
         let shared = &mut *self.bus.shared.borrow_mut();
-        shared.advance(now);
+        while shared.advance(now) {}
         shared.wire.as_ref().is_some_and(|wire| wire.waits(&Wanted { from: self.index, frame: *frame }))
     }
 }
 
 impl Shared {
-    /// Carries the frames that start before `upto`.
-    fn advance(&mut self, upto: Instant) {
-        while let Some((end, sent)) = self.wire.as_mut().and_then(|wire| wire.next_before(upto)) {
-            self.deliver(end, sent);
-        }
+    /// Carries the next frame if it starts before `upto`.
+    fn advance(&mut self, upto: Instant) -> bool {
+        let next = self.wire.as_mut().and_then(|wire| wire.next_before(upto));
+        next.map(|(end, sent)| self.deliver(end, sent)).is_some()
     }
 
     /// A frame is on the bus at `at`.
     fn deliver(&mut self, at: Instant, sent: Wanted) {
         self.confirmed[sent.from] = Some((at, sent.frame));
         for (index, inbox) in self.inboxes.iter_mut().enumerate() {
-            if index != sent.from {
+            if let Some(inbox) = inbox.as_mut().filter(|_| index != sent.from) {
                 insert(inbox, at, sent.frame);
             }
         }
@@ -120,8 +130,13 @@ impl Bus for MemoryNode {
 
     fn receive(&mut self, upto: Instant) -> io::Result<Option<(Instant, Frame)>> {
         let shared = &mut *self.bus.shared.borrow_mut();
-        shared.advance(upto);
-        Ok(take(&mut shared.inboxes[self.index], upto))
+        // Frame by frame, so that what this node answers to one is on the bus among the next ones.
+        loop {
+            let received = shared.inboxes[self.index].as_mut().and_then(|inbox| take(inbox, upto));
+            if received.is_some() || !shared.advance(upto) {
+                return Ok(received);
+            }
+        }
     }
 }
 
@@ -175,7 +190,7 @@ mod tests {
     #[test]
     fn on_a_wire_a_frame_is_received_at_its_end_and_after_the_one_that_wins() {
         let bus = MemoryBus::with_wire();
-        let [mut a, mut b, mut c] = [bus.node(), bus.node(), bus.node()];
+        let [mut a, mut b, mut c] = [bus.node(), bus.sender(), bus.node()];
         a.send(at(10), frame(9)).unwrap();
         b.send(at(10), frame(4)).unwrap();
         assert_eq!(c.receive(at(10)).unwrap(), None);

@@ -67,21 +67,20 @@ impl Wire {
         self.waiting.values().any(|other| other == wanted) || self.coming.iter().any(|(_, other)| other == wanted)
     }
 
-    /// The next frame that starts before `upto`, and the instant of its end. All that is sent before `upto` has to be known.
+    /// The next frame that starts before `upto`, and the instant of its end. What is wanted later on, but from an earlier time, comes
+    /// after it.
     pub fn next_before(&mut self, upto: Instant) -> Option<(Instant, Wanted)> {
-        if self.waiting.is_empty() {
-            let (at, _) = self.coming.front()?;
-            self.free = self.free.max(*at);
-        }
-        if self.free >= upto {
+        let next = if self.waiting.is_empty() { self.coming.front()?.0 } else { self.free };
+        let starts = self.free.max(next);
+        if starts >= upto {
             return None;
         }
-        while let Some((_, wanted)) = self.coming.pop_front_if(|(at, _)| *at <= self.free) {
+        while let Some((_, wanted)) = self.coming.pop_front_if(|(at, _)| *at <= starts) {
             self.waiting.insert((arbitration(&wanted.frame), self.came), wanted);
             self.came += 1;
         }
         let (_, wanted) = self.waiting.pop_first()?;
-        let end = self.free.plus(length(&wanted.frame));
+        let end = starts.plus(length(&wanted.frame));
         self.free = end.plus(micros(INTERMISSION_BITS));
         Some((end, wanted))
     }

@@ -151,7 +151,7 @@ impl Vehicle {
             estimate_s: f64::NEG_INFINITY,
             alias: Alias::default(),
             harness: bus.node(),
-            master: bus.node(),
+            master: bus.sender(),
             pending: None,
             bus,
             tag: 0,
@@ -384,14 +384,17 @@ impl Vehicle {
     /// Modem and actuators take in what the unit has sent, as far as it is whole on the bus by now. The modem broadcasts.
     fn take_in(&mut self, at_s: f64) -> io::Result<()> {
         let (now, is_outside) = (self.instant(at_s), self.ecu.is_none());
-        let mut said_s = at_s;
         while let Some((at, frame)) = self.harness.receive(now)? {
             let at_s = self.time_of(at);
             match self.listener.receive(at, &frame) {
                 Ok(Received::Whole(Message::Own(said))) => {
                     self.transmitter.take(&said);
                     self.relay.take(&said);
-                    said_s = at_s;
+                }
+                // The last of what the unit sends at a time.
+                Ok(Received::Whole(Message::Status(_))) => {
+                    let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));
+                    self.broadcasts.extend(message.map(|message| (at_s, message)));
                 }
                 Ok(Received::Whole(Message::Estimate(estimate))) if is_outside => {
                     (self.estimate, self.estimate_s) = (Some(estimate), at_s);
@@ -404,19 +407,26 @@ impl Vehicle {
                         self.actuators.take(at_s, command.effort);
                     }
                 }
-                _ => {}
+                _ => self.follow_up()?, // perhaps it was the `Sync`
             }
         }
-        let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));
-        self.broadcasts.extend(message.map(|message| (said_s, message)));
-        self.forward_held(at_s)?;
-        self.follow_up()
+        self.forward_held(at_s)
     }
 
     fn see(&mut self, command: &Command) {
         self.command_mps2 = command.acceleration.get().to_num();
         self.limited = command.limited;
         self.mode = command.mode;
+    }
+
+    /// Forgets what the modem has broadcast up to now, because no other vehicle was within radio range.
+    ///
+    /// # Errors
+    /// Errors of the bus.
+    pub fn appear(&mut self, at_s: f64) -> io::Result<()> {
+        self.take_in(at_s)?;
+        self.broadcasts.clear();
+        Ok(())
     }
 
     /// What the modem has broadcast, and when, since this was asked for the last time.

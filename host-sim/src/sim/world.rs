@@ -213,8 +213,7 @@ impl<'a> World<'a> {
             self.approach(at_s)?;
             self.answer(at_s)?;
         }
-        self.begin();
-        Ok(())
+        self.begin()
     }
 
     /// A tick before the run. As in every real vehicle, the unit is powered and ticks, and its time base and sensors
@@ -241,12 +240,16 @@ impl<'a> World<'a> {
     }
 
     /// The drivers engage their units; the run begins.
-    pub fn begin(&mut self) {
+    ///
+    /// # Errors
+    /// Errors of the buses.
+    pub fn begin(&mut self) -> io::Result<()> {
         for (vehicle, start_m) in self.vehicles.iter_mut().zip(&self.starts_m) {
             vehicle.plant.position_m = *start_m;
             vehicle.engage(true);
-            vehicle.broadcasts(); // no other vehicle was within radio range
+            vehicle.appear(0.0)?;
         }
+        Ok(())
     }
 
     /// Adds a tick to the trace; called after [`act`](Stages::act).

@@ -26,8 +26,10 @@ pub fn count(log: &str) -> usize {
 /// in addition: at most one message of each kind more.
 pub fn repeats(replayed: &str, log: &str) -> bool {
     let (again, first) = (sent(replayed), sent(log));
-    first.iter().all(|(id, frames)| {
-        let again = again.get(id).map_or(&[][..], Vec::as_slice);
-        again.starts_with(frames) && again.len() <= frames.len() + 5
-    })
+    assert!(!first.is_empty(), "the log is of no unit");
+    again.keys().eq(first.keys())
+        && first.iter().all(|(id, frames)| {
+            let again = again.get(id).map_or(&[][..], Vec::as_slice);
+            again.starts_with(frames) && again.len() <= frames.len() + 5
+        })
 }

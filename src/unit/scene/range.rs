@@ -29,7 +29,7 @@ const ON_BUS: Duration = Duration::from_millis(3);
 /// A view that the estimate may be right about corrects it by at most this fraction: a view errs by more than an estimate.
 const MOST_SHARE: i64 = 10;
 
-/// For a correction by less than this fraction, the horizon is not computed anew.
+/// A correction by less than this fraction is not made.
 const LEAST_SHARE: i64 = 16;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
@@ -63,7 +63,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if self.is_of_one_that_crosses(at, front, rear) {
             return Ok(());
         }
-        if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at)) {
+        if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {
             sight.station = self.compare(received, index, &sight, health);
         }
         self.ranging.see(sight);
@@ -85,11 +85,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     fn uncertainty_of_sight(&self, ego: &Sample, since: Duration, seen: &RangeSample) -> Uncertainty {
         // The age of the view is rounded up to a whole millisecond, in which the ego moved on.
         let unsaid = Duration::from_millis(1).min(seen.age);
-        let apart = Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid);
+        let clock_error = self.config.link.clock_error;
+        let apart =
+            Duration::from_micros(since.as_micros().saturating_abs()).plus(unsaid).plus(ON_BUS).plus(clock_error);
         let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
         let faster = swing.over(apart.fine_seconds());
         let (own, own_speed) = (ego.position_error(), ego.speed_error());
-        let clock_error = self.config.link.clock_error;
         let late = ego.speed.plus(own_speed).over(clock_error.plus(ON_BUS).plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
@@ -180,12 +181,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             let share = share.min(quotient(whole, MOST_SHARE));
             if share.saturating_mul(LEAST_SHARE) >= whole {
                 let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
-                self.estimator.shift(index, Distance::from_bits(off));
+                self.estimator.move_horizon(index, Distance::from_bits(off));
             }
             return;
         }
         let spread = bound.highest_speed().minus(bound.lowest_speed()).to_bits() / 2;
         let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.uncertainty.speed.to_bits()));
+        if share.saturating_mul(LEAST_SHARE) < whole && speed_share.saturating_mul(LEAST_SHARE) < speed_whole {
+            return;
+        }
         let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
         let off_speed = mixed(faster.to_bits(), speed_share, speed_whole);
         let slope = self.slope(index, sight.at);

@@ -91,7 +91,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         }
         let at_s = time(tick);
         if tick == 0 {
-            world.begin();
+            world.begin()?;
         }
         if tick < 0 {
             world.approach(at_s)?

@@ -211,7 +211,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         if tick > 0 {
             world.drive(time(tick - 1))?;
         } else if tick == 0 {
-            world.begin();
+            world.begin()?;
         }
         if tick == ticks {
             break;

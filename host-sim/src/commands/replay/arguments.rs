@@ -82,7 +82,8 @@ Logs:
   -t z by the first 100 lines. Logs of other tools (.asc, .blf, .trc, .mf4) are
   refused by name; python-can converts them:
   python -m can.logconvert IN.blf OUT.log
-  By a log that `run --candump` writes a unit sends the same bits as in the run.
+  By a log that `run --candump` writes a unit sends the same bits as in the run,
+  identifier by identifier, and those of one tick more.
 
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first

@@ -76,9 +76,10 @@ impl Traffic<'_> {
         gap_m >= traffic.standstill_m + v * traffic.time_gap_s + braking_m
     }
 
-    /// Puts into the air the messages that a vehicle heard before it appeared at `here`.
-    fn overhear(&mut self, index: usize, here: Point) {
-        for (aired_s, from, there, message) in &self.aired {
+    /// Puts into the air the messages that a vehicle heard before it appears at `here`.
+    fn overhear(&mut self, at_s: f64, index: usize, here: Point) {
+        for (aired_s, from, there, message) in self.aired.iter().filter(|(aired_s, ..)| *aired_s + LISTENING_S >= at_s)
+        {
             if Shift::between(here, *there).length_m() <= self.conditions.radio.range_m {
                 self.air.broadcast(*aired_s, *from, [index], message);
             }
@@ -130,7 +131,7 @@ impl Traffic<'_> {
         )?;
         let period_s = self.corridor.period_s;
         let log = (self.logged == Some(index)).then(|| vehicle.listen());
-        self.overhear(index, ground.road.at(lane.entry_m).0);
+        self.overhear(at_s, index, ground.road.at(lane.entry_m).0);
         let ticks = warm_up_ticks(WARM_UP_S + LISTENING_S, self.corridor.message_rate_hz, period_s);
         vehicle.warm_up(at_s, period_s, ticks, |at_s| self.air.arrived(at_s))?;
         while let Some(Arrived { at_s, message, .. }) = self.air.arrived(at_s) {

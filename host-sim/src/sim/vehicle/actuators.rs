@@ -2,7 +2,7 @@
 //! leave.
 //!
 //! *Watchdog:* if the unit is outside of the simulation, they brake without a command for [`COMMAND_TIMEOUT_S`], as an
-//! actuator has to when it has lost its master. A command in mode standby is not to be used, so it counts as none.
+//! actuator has to when it has lost its master. Of such a unit a command in mode standby counts as none.
 
 use std::collections::VecDeque;
 
@@ -54,8 +54,8 @@ impl Actuators {
 
     /// Adds one span without a new command.
     fn hold(&self, pieces: &mut Vec<(Option<Effort>, f64)>, from_s: f64, to_s: f64) {
-        let since_s = self.current.map_or(f64::NEG_INFINITY, |(since_s, _)| since_s);
-        let until_s = (since_s + self.timeout_s).clamp(from_s, to_s);
+        let until = |(since_s, _): (f64, Effort)| (since_s + self.timeout_s).clamp(from_s, to_s);
+        let until_s = self.current.map_or(from_s, until);
         let effort = self.current.map(|(_, effort)| effort);
         let spans = [(effort, until_s - from_s), (None, to_s - until_s)];
         pieces.extend(spans.into_iter().filter(|(_, length_s)| *length_s > 0.0));
@@ -94,6 +94,14 @@ mod tests {
         assert_eq!(rounded(&actuators.pieces(0.01, 0.10)), [(0, 10_000), (10, 50_000), (0, 30_000)]);
         actuators.take(0.105, Effort::Force(4));
         assert_eq!(rounded(&actuators.pieces(0.10, 0.11)), [(0, 5_000), (4, 5_000)]);
+    }
+
+    #[test]
+    fn without_a_timeout_a_command_holds_until_the_next_one() {
+        let mut actuators = Actuators::new(f64::INFINITY);
+        assert_eq!(rounded(&actuators.pieces(0.0, 0.01)), [(0, 10_000)]);
+        actuators.take(0.01, Effort::Force(10));
+        assert_eq!(rounded(&actuators.pieces(0.01, 0.41)), [(10, 400_000)]);
     }
 
     #[test]

@@ -46,7 +46,6 @@ impl Vehicle {
         }
         self.plant.position_m = start_m;
         self.engaged = engages;
-        self.broadcasts.clear(); // nobody has heard it yet
-        Ok(())
+        self.appear(until_s)
     }
 }
