@@ -73,7 +73,7 @@ fn whatever_else_of_every_vehicle_is_wrong_costs_no_more_than_documented() {
         ("plant_lag_s = 0.45", [0.067, 0.032]),
         ("plant.mass_scale = 1.3", [0.116, 0.037]),
         ("plant.grade = 0.04", [0.013, 0.0058]),
-        ("plant.headwind_mps = 10", [0.011, 0.0054]),
+        ("plant.headwind_mps = 10", [0.011, 0.0055]),
         (all, [0.149, 0.102]),
         ("kind = \"van\"", [0.015, 0.0070]),
         ("kind = \"bus\"", [0.020, 0.0078]),
