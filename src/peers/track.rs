@@ -37,7 +37,7 @@ pub struct Track<const SAMPLES: usize> {
     /// When its driving parameters were received last.
     published_at: Instant,
     limits: Held<Limits>,
-    horizon: Option<Foresight>,
+    horizon: Held<Foresight>,
     link: Link,
     sender_clock: SenderClock,
     is_disputed: bool,
@@ -53,7 +53,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             parameters: Held::Nothing,
             published_at: Instant::ZERO,
             limits: Held::Nothing,
-            horizon: None,
+            horizon: Held::Nothing,
             link: Link::new(period),
             sender_clock: SenderClock::NEW,
             is_disputed: false,
@@ -315,7 +315,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if is_overtaken && self.knots().is_some() {
             return false;
         }
-        self.horizon = Some(Foresight { received, of, knots });
+        self.horizon.set(Foresight { received, of, knots });
         self.knots().is_some()
     }
 }
