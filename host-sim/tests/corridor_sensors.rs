@@ -42,7 +42,7 @@ fn mean_s(outcome: &Outcome) -> f64 {
 #[test]
 fn with_the_envelope_sensors_save_stops_and_time_and_nobody_is_hurt() {
     let [without, with] = [NONE, ALL].map(|share| run("duration_s = 300.0", share, true));
-    assert_eq!((with.travel_times_s.len(), without.travel_times_s.len()), (152, 152));
+    assert_eq!((with.travel_times_s.len(), without.travel_times_s.len()), (153, 153));
     assert!(with.full_stops + 10 <= without.full_stops, "{} {}", with.full_stops, without.full_stops);
     assert!(mean_s(&with) < mean_s(&without) - 1.0, "{} {}", mean_s(&with), mean_s(&without));
 }
