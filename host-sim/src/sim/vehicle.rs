@@ -7,12 +7,11 @@
 use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
-use holdover::time::{Duration, Instant};
+use holdover::time::Instant;
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::estimate::TargetEstimate;
 use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
 use holdover::{Config, ConfigError};
 
@@ -27,10 +26,14 @@ use crate::sim::station::station;
 use crate::sim::time::{gnss, micros};
 use actuators::Actuators;
 use backlog::Backlog;
+use time_master::TimeMaster;
 
 pub mod actuators;
+mod air;
 pub mod alias;
 mod backlog;
+mod drive;
+mod time_master;
 mod unit;
 mod warm_up;
 
@@ -95,14 +98,8 @@ pub struct Vehicle {
     /// Names of the stations on its bus.
     alias: Alias,
     harness: MemoryNode,
-    /// The time master. It says in a `FollowUp` when its `Sync` was on the bus.
-    master: MemoryNode,
-    /// The `Sync` whose `FollowUp` is still to be sent, and its frame.
-    pending: Option<(Sync, Frame)>,
+    master: TimeMaster,
     tag: u8,
-    synced: u8,
-    /// Whether anything has been sent on the bus yet.
-    is_awake: bool,
 }
 
 impl Vehicle {
@@ -151,12 +148,9 @@ impl Vehicle {
             estimate_s: f64::NEG_INFINITY,
             alias: Alias::default(),
             harness: bus.node(),
-            master: bus.sender(),
-            pending: None,
+            master: TimeMaster::on(&bus),
             bus,
             tag: 0,
-            synced: 0,
-            is_awake: false,
         })
     }
 
@@ -244,8 +238,9 @@ impl Vehicle {
     /// # Errors
     /// Errors of the bus.
     pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
-        if is_due(at_s, SYNC_EVERY_S, period_s) || !self.is_awake {
-            self.synchronise(at_s)?;
+        let now = self.instant(at_s);
+        if is_due(at_s, SYNC_EVERY_S, period_s) || !self.master.is_awake() {
+            self.master.synchronise(&mut self.sender, now, gnss(at_s))?;
         }
         self.sense(at_s)?;
         if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
@@ -269,31 +264,10 @@ impl Vehicle {
         self.follow_up() // at once, if a frame takes no time
     }
 
-    /// Sends the first of the two messages of the time base. The very first one wakes the bus: it ends when the unit's first tick
-    /// begins, so a log's first frame tells when that was.
-    fn synchronise(&mut self, at_s: f64) -> io::Result<()> {
-        self.synced = (self.synced + 1) % 16;
-        let sync = Sync { sequence: self.synced, seconds: (gnss(at_s).as_micros() / 1_000_000) as u32 };
-        let at = self.instant(at_s);
-        let frames = frames(&mut self.sender, &Message::Sync(sync))?;
-        for frame in &frames {
-            let before = if self.is_awake { Duration::ZERO } else { self.bus.length(frame) };
-            self.master.send(at.minus(before), *frame)?;
-        }
-        self.is_awake = true;
-        self.pending = frames.last().map(|frame| (sync, *frame));
-        Ok(())
-    }
-
-    /// Sends the second one, when the first one has been on the bus.
+    /// Sends the second message of the time base, once the first one has been on the bus.
     fn follow_up(&mut self) -> io::Result<()> {
-        let Some((sync, frame)) = self.pending else { return Ok(()) };
-        let Some((at, _)) = self.master.confirmed().filter(|(_, sent)| *sent == frame) else { return Ok(()) };
-        self.pending = None;
-        let since = gnss(self.time_of(at)).as_micros().saturating_sub(u64::from(sync.seconds) * 1_000_000);
-        let follow_up = FollowUp { sequence: sync.sequence, micros: since as u32 };
-        let frames = frames(&mut self.sender, &Message::FollowUp(follow_up))?;
-        frames.iter().try_for_each(|frame| self.master.send(at, *frame))
+        let began = Instant::from_micros(self.clock_offset_us);
+        self.master.follow_up(&mut self.sender, |at| gnss(at.since(began).as_micros() as f64 * 1e-6))
     }
 
     /// Sends the vehicle's own motion, as its sensors measure it now.
@@ -318,38 +292,6 @@ impl Vehicle {
         let predecessor = self.alias.of_predecessor(self.request.predecessor);
         let request = DriverRequest { engaged: self.engaged, predecessor, ..self.request };
         self.put(at_s, &Message::DriverRequest(request))
-    }
-
-    /// Receives a message from the channel.
-    ///
-    /// # Errors
-    /// Errors of the bus.
-    pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
-        self.forward_held(at_s)?;
-        let (at, message) = (self.instant(at_s), self.alias.of_message(message));
-        let harness = &self.harness;
-        if self.backlog.has_room(message.motion.station, |frame| harness.waits(at, frame)) {
-            return self.forward(at_s, &message);
-        }
-        self.backlog.hold(message);
-        Ok(())
-    }
-
-    /// Forwards the messages that were held back, if there is room on the bus now.
-    fn forward_held(&mut self, at_s: f64) -> io::Result<()> {
-        let (at, harness) = (self.instant(at_s), &self.harness);
-        let released = self.backlog.released(|frame| harness.waits(at, frame));
-        released.iter().try_for_each(|message| self.forward(at_s, message))
-    }
-
-    /// Puts a message on the unit's bus.
-    fn forward(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
-        let (at, mut frames) = (self.instant(at_s), Vec::new());
-        self.relay.hear(at_s, message, &mut frames);
-        if let Some(last) = frames.last() {
-            self.backlog.send(message.motion.station, last.into());
-        }
-        frames.iter().try_for_each(|frame| self.harness.send(at, frame.into()))
     }
 
     /// One period of the unit: receive, tick, transmit.
@@ -417,52 +359,6 @@ impl Vehicle {
         self.command_mps2 = command.acceleration.get().to_num();
         self.limited = command.limited;
         self.mode = command.mode;
-    }
-
-    /// Forgets what the modem has broadcast up to now, because no other vehicle was within radio range.
-    ///
-    /// # Errors
-    /// Errors of the bus.
-    pub fn appear(&mut self, at_s: f64) -> io::Result<()> {
-        self.take_in(at_s)?;
-        self.broadcasts.clear();
-        Ok(())
-    }
-
-    /// What the modem has broadcast, and when, since this was asked for the last time.
-    pub fn broadcasts(&mut self) -> Vec<(f64, V2xMessage)> {
-        std::mem::take(&mut self.broadcasts)
-    }
-
-    /// The time from a tick to the next one: the bus carries what the unit has sent, and the vehicle moves. A command is in
-    /// force from its arrival on. A vehicle whose driver has not engaged the unit is moved by others.
-    ///
-    /// # Errors
-    /// Errors of the bus.
-    pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
-        let overriding = self.overriding.take();
-        self.take_in(at_s + period_s)?;
-        for (effort, length_s) in self.actuators.pieces(at_s, at_s + period_s) {
-            if self.engaged {
-                let without = || match self.ecu {
-                    Some(_) => Effort::Force(0),
-                    None => self.effort_for(actuators::WITHOUT_COMMAND_MPS2),
-                };
-                let effort = overriding.or(effort).unwrap_or_else(without);
-                self.plant.drive(effort, length_s);
-            }
-        }
-        Ok(())
-    }
-
-    /// Commands another acceleration than the unit does until the next tick, as far as the vehicle is capable of it.
-    pub fn override_with(&mut self, wanted_mps2: f64) {
-        self.command_mps2 = wanted_mps2;
-        self.overriding = Some(self.effort_for(wanted_mps2));
-    }
-
-    fn effort_for(&self, wanted_mps2: f64) -> Effort {
-        self.unit.config().body.effort(acceleration(wanted_mps2), speed(self.plant.speed_mps))
     }
 
     fn put(&mut self, at_s: f64, message: &Message) -> io::Result<()> {
