@@ -36,7 +36,7 @@ fn a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_not_at_a_ten
     // Of the first forty seeds 6 is the one whose losses are the worst at a tenth of a second less. The figures are documented to
     // the digit of which half is allowed here.
     let shipped = worst_place("--seed 5 --seeds 2");
-    assert!(ratio(&shipped) <= 1.0037 + 0.00005, "{shipped:?}");
+    assert!(ratio(&shipped) <= 1.0039 + 0.00005, "{shipped:?}");
     assert!(rows::failures(std::slice::from_ref(&shipped)).is_empty(), "{shipped:?}");
     let less = worst_place(&format!("--seed 6 --seeds 1 --time-gaps {:.1}", shipped_time_gap_s() - 0.1));
     assert!(ratio(&less) > LIMIT && ratio(&less) <= 1.0228 + 0.0001, "{less:?}");
