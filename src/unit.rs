@@ -28,7 +28,8 @@ use crate::model::{Reading, State};
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Speed};
-use crate::wire::command::Command;
+use crate::wire::command::{ACCELERATION_STEPS, Command};
+use crate::wire::quantity::Quantity;
 use crate::wire::{Frame, Identifiers, Received, Receiver, Role};
 use association::Association;
 use gate::{Gate, Last};
@@ -280,9 +281,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The command with the force or the torque that brings it about.
     fn actuate(&mut self, now: Instant, acceleration: Acceleration, limited: bool, ego: Option<&State>) -> Command {
         let is_driving = self.mode != Mode::Standby;
-        let effort = self.dynamics.effort(&self.scene.config, ego, is_driving, acceleration);
-        let stands = ego.is_some_and(|ego| ego.speed <= Speed::ZERO);
-        let hold = is_driving && stands && acceleration <= Acceleration::ZERO;
+        // A vehicle moves off when its sensors say so, and not when it is commanded to: its brakes may be held.
+        let stands = self.scene.ego.as_ref().is_some_and(|ego| ego.speed <= Speed::ZERO);
+        let ego = ego.map(|ego| if stands { State { speed: Speed::ZERO, ..*ego } } else { *ego });
+        let effort = self.dynamics.effort(&self.scene.config, ego.as_ref(), is_driving, acceleration);
+        let hold = is_driving && stands && acceleration.to_steps(ACCELERATION_STEPS) <= 0;
         let (mode, tick) = (self.mode.code(), self.outbox.next_tick());
         self.scene.actuators.note_command(tick);
         // Since the first tick, so that it does not matter where the clock began.

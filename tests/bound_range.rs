@@ -153,3 +153,41 @@ fn a_view_from_before_somebody_was_named_says_nothing_of_who_was() {
         assert_eq!(rig.unit.bound(2, instant(at)).unwrap() != before, is_of_it, "{age}");
     }
 }
+
+/// The place of the target is told wrongly, by up to three times its accuracy, and a short vehicle drives between: the sensor sees that
+/// one's rear.
+#[test]
+fn a_vehicle_between_that_the_targets_accuracy_leaves_room_for_is_not_taken_for_the_target() {
+    for (accuracy, bias, length, between) in [
+        (1.0, -2.5, 1.5, 1.0),
+        (2.0, -3.4, 2.2, 0.3),
+        (3.0, -6.0, 2.0, 1.5),
+        (5.0, -10.0, 4.5, 1.0),
+        (5.0, -14.5, 4.5, 5.0),
+    ] {
+        let mut rig = Rig::new(&rig::config());
+        rig.power_up(true, 0);
+        let v = 10.0;
+        for tick in 0..1_000 {
+            let now = tick * 10_000;
+            let (ego, target) = (v * now as f64 * 1e-6, 60.0 + rig::LENGTH + v * now as f64 * 1e-6);
+            if tick % 50 == 0 {
+                rig.synchronise(now, 0);
+                let _ = rig.target(now, Said::DrivingParameters(rig::parameters(2.5, 5.0)));
+            }
+            let _ = rig.ego(now, ego, v, 0.0, 0.0);
+            if tick % 10 == 0 {
+                let _ = rig.request(now, false, Predecessor::Station(TARGET));
+                let motion = rig.motion(TARGET, now, target + bias, v, 0.0, 0.0, Some((accuracy, 0.2)));
+                let _ = rig.target(now, Said::Motion(motion));
+            }
+            if tick % 2 == 0 && tick > 200 {
+                let _ = rig.range(now, target - rig::LENGTH - between - length - ego, 0.0, 0);
+            }
+            rig.tick(now);
+            let Some(bound) = rig.unit.bound(2, instant(now)) else { continue };
+            let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
+            assert!((low..=high).contains(&target), "{accuracy} m, tick {tick}: {target} in {low}..{high}");
+        }
+    }
+}

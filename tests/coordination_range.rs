@@ -4,8 +4,11 @@
 mod rig;
 
 use holdover::controller::{FallbackCause, Mode};
+use holdover::wire::route::Route;
+use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::junction::{CROSSING, Driver, Junction};
-use rig::{LENGTH, m_of};
+use rig::plant::Body;
+use rig::{LENGTH, m_of, metres};
 
 /// The vehicle behind did not hear the ego, and drives on by its own horizon; then it is silent, and stops in time.
 #[test]
@@ -107,4 +110,51 @@ fn the_ego_stops_for_one_that_stands_across_its_way_and_was_never_heard() {
         assert!(junction.drivers[0].body.position < SIDE, "at {:.2} s", junction.now as f64 * 1e-6);
     });
     assert!(junction.drivers[0].body.speed < 0.1, "it stands");
+}
+
+/// Two vehicles ahead on the ego's street fall silent, and the nearer one leaves it. The sensor sees the other one, past all that is
+/// certain of the first; then it is blind, and the other one brakes. Returns the least gap to it.
+fn least_gap_behind_the_second(stations: [u8; 2]) -> f64 {
+    let mut junction = Junction::new(vec![Driver::new(1, 0, 20.0, 13.0, true)]);
+    let at = |gap: f64| Body { position: 20.0 + gap + LENGTH, speed: 13.0 };
+    let mut bodies = [at(27.0), at(27.0 + LENGTH + 9.0)];
+    let (silent, blind) = (3_000_000, 4_000_000);
+    let mut least = f64::MAX;
+    while junction.now < 20_000_000 {
+        let now = junction.now;
+        bodies = [bodies[0].after(0.0, 0.01), bodies[1].after(if now >= blind { -8.0 } else { 0.0 }, 0.01)];
+        for (slot, (body, station)) in
+            (2..).zip(bodies.iter().zip(stations)).filter(|_| now % 100_000 == 0 && now < silent)
+        {
+            let rig = &mut junction.drivers[0].rig;
+            let motion = rig.motion(StationHash(station), now, body.position, body.speed, 0.0, 0.0, Some((0.05, 0.02)));
+            let route = Route {
+                tag: motion.tag,
+                intersection: 5,
+                leg: 0,
+                distance: metres(CROSSING - body.position),
+                stamp: motion.stamp,
+                arrival: 1,
+                predecessor: Predecessor::None,
+            };
+            let parameters = Said::DrivingParameters(rig::parameters(2.5, 8.0));
+            for said in [parameters, Said::Route(route), Said::Motion(motion)] {
+                let _ = rig.put(now, &Message::Peer(Slot(slot), said));
+            }
+        }
+        let (own, seen) = (junction.drivers[0].body, bodies[usize::from(now >= silent)]);
+        if now % 20_000 == 0 && now < blind {
+            let gap = seen.position - LENGTH - own.position;
+            let _ = junction.drivers[0].rig.range(now, gap, seen.speed - own.speed, 0);
+        }
+        junction.run(0.01, |_| ());
+        least = least.min(bodies[1].position - LENGTH - junction.drivers[0].body.position);
+    }
+    least
+}
+
+#[test]
+fn one_that_the_sensor_sees_past_takes_no_namesake_off_the_gates_mind() {
+    let (others, namesakes) = (least_gap_behind_the_second([42, 43]), least_gap_behind_the_second([42, 42]));
+    assert!(others > 0.0 && namesakes > 0.0, "{others} {namesakes}");
 }

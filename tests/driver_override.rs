@@ -5,9 +5,12 @@
 mod rig;
 
 use holdover::health::Cause;
-use holdover::wire::Message;
+use holdover::model::Body;
+use holdover::units::Speed;
 use holdover::wire::actuators::{ActuatorState, Control};
-use holdover::wire::command::ModeCode;
+use holdover::wire::command::{Command, ModeCode};
+use holdover::wire::{Message, Predecessor};
+use rig::Rig;
 use rig::road::Road;
 
 const DRIVES: ActuatorState =
@@ -140,6 +143,38 @@ fn the_command_asks_to_hold_a_vehicle_that_stands_and_is_to_go_on_standing() {
     assert!(road.run(1.0).command.hold, "behind a vehicle that stands");
     road.engaged = false;
     assert!(!road.run(0.3).command.hold, "not in Standby");
+}
+
+#[test]
+fn who_wants_to_stand_behind_one_that_stands_asks_to_hold_at_any_distance() {
+    for gap in [2.0, 2.01, 3.0, 10.0, 60.0] {
+        let mut road = Road::new(&rig::config(), 0.0, gap);
+        road.rig.wanted = 0.0;
+        road.power_up();
+        let heard = road.run(2.0);
+        assert!(heard.command.hold && rig::mps2_of(heard.command.acceleration) <= 0.0, "{gap} m: {:?}", heard.command);
+    }
+}
+
+/// Its brakes are held by another than the unit, which is not told of it, and the vehicle wants to move off.
+#[test]
+fn a_vehicle_that_is_held_while_it_is_to_move_off_is_not_pushed_harder_and_harder() {
+    let mut rig = Rig::new(&rig::config());
+    rig.power_up(true, 0);
+    for tick in 0..500 {
+        let now = tick * 10_000;
+        if tick % 10 == 0 {
+            let _ = rig.request(now, true, Predecessor::None);
+        }
+        let _ = rig.ego(now, 1_000.0, 0.0, 0.0, 0.0);
+        if tick % 50 == 0 {
+            rig.synchronise(now, 0);
+        }
+        // The tick comes 8 ms after the measurement.
+        let Command { acceleration, effort, .. } = rig.tick(now + 8_000).answer.command;
+        assert_eq!(effort, Body::CAR.effort(acceleration, Speed::ZERO), "tick {tick}, for {acceleration:?}");
+        assert!(tick < 100 || acceleration > rig::mps2(0.3), "it wants to move off: {acceleration:?}");
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod rig;
 use holdover::config::Envelope;
 use holdover::health::Cause;
 use holdover::units::Distance;
+use holdover::wire::command::ModeCode;
 use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::road::Road;
@@ -135,5 +136,51 @@ fn a_view_as_old_as_the_sensor_can_say_is_taken() {
         let (now, gap) = (road.now, road.gap());
         let _ = road.rig.range(now, gap, 0.0, age_ms);
         assert_eq!(road.rig.range(now, gap, 0.0, age_ms), Ok(()), "{age_ms} ms");
+    }
+}
+
+/// The commands of 4 s, in which the vehicle ahead speaks by this name. The driver names it so only after 2 s.
+fn commands_behind(name: StationHash) -> Vec<f64> {
+    let mut road = road();
+    road.senses.v2x = false;
+    for tick in 0..400 {
+        if tick == 200 {
+            road.predecessor = Predecessor::Station(name);
+        }
+        if tick % 10 == 0 {
+            say(&mut road, name, rig::SLOT, 0.0, 0.05).unwrap();
+        }
+        let heard = road.step();
+        assert_eq!((heard.command.mode, heard.estimate.is_some()), (ModeCode::Cooperative, true), "tick {tick}");
+        for message in heard.all {
+            if let Message::Own(Said::DrivingParameters(own)) = message {
+                assert_eq!(own.predecessor, Predecessor::Station(name), "others know it by that name only");
+            }
+        }
+    }
+    road.commands
+}
+
+#[test]
+fn a_vehicle_that_has_taken_a_new_name_is_followed_before_the_driver_names_it_anew() {
+    // The horizon starts anew at the change, 100 ms before it would have.
+    let both = commands_behind(NEW_NAME).into_iter().zip(commands_behind(TARGET));
+    let apart = both.map(|(new, old)| (new - old).abs()).fold(0.0, f64::max);
+    assert!(apart < 0.03, "{apart} m/s²");
+}
+
+#[test]
+fn a_vehicle_with_a_new_name_is_not_followed_when_the_driver_names_another_one() {
+    let mut road = road();
+    road.senses.v2x = false;
+    for tick in 0..200 {
+        if tick == 100 {
+            road.predecessor = Predecessor::Station(OTHER);
+        }
+        if tick % 10 == 0 {
+            say(&mut road, NEW_NAME, rig::SLOT, 0.0, 0.05).unwrap();
+        }
+        let mode = road.step().command.mode;
+        assert_eq!(mode == ModeCode::Fallback, tick >= 100, "tick {tick}: {mode:?}");
     }
 }

@@ -53,7 +53,7 @@ impl Gate {
         let moved = state.position.ahead_of(sample.position.ring());
         let off = sample.position_error().plus(POSITION_ROUNDING);
         let faster = sample.speed_error().plus(SPEED_ROUNDING);
-        let late = sample.speed.plus(faster).over(scene.config.link.clock_error.seconds());
+        let late = sample.speed.plus(faster).over(scene.own_clock_error(&sample).seconds());
         let start = envelope::Start {
             at: sample.at,
             position: sample.position.ahead(off).ahead(late),
@@ -132,8 +132,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// passed by more than a vehicle's length is not on its path.
     fn obstacles_seen(&self) -> impl Iterator<Item = Obstacle> {
         let (scene, now, rearmost) = (self.scene, self.now, self.rearmost);
-        let target = scene.visible().and_then(|index| scene.peers.get(index)?.station());
-        let is_passed = move |rear: &Bound| rearmost.ahead_of(rear.lowest_position()) > DEFAULT_LENGTH;
+        let target = scene.visible().and_then(|index| Some((index, scene.peers.get(index)?.station()?)));
+        let is_passed = move |rear: &Bound| rearmost.ahead_of(rear.highest_position()) > DEFAULT_LENGTH;
         let ahead = scene.ranging.strangers(now, target).filter(move |rear| !is_passed(rear));
         ahead.map(move |rear| {
             Obstacle::rear(&rear.after(now, &AccelerationRange::WORST), Distance::ZERO, &AccelerationRange::WORST)

@@ -298,7 +298,7 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         length: config.length,
         standstill: scene.standstill(),
         predecessor: match scene.request.as_ref() {
-            Some(_) if report.mode.is_by_law() => scene.predecessor(),
+            Some(_) if report.mode.is_by_law() => scene.followed(),
             _ => Predecessor::Unknown,
         },
         target_speed: scene.target_speed(),

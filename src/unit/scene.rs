@@ -39,6 +39,9 @@ use unknown::Unknown;
 /// need room for the error of their estimates.
 const QUEUE: Distance = Distance::from_mm(8_000);
 
+/// An `EgoMotion` is whole this long after it was measured (assumption A10).
+const EGO_WITHIN: Duration = Duration::from_millis(20);
+
 /// Everything that the unit knows.
 #[derive(Clone, Debug)]
 pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
@@ -112,6 +115,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// The ego's newest motion, unless it is too old.
     pub fn fresh_ego(&self, now: Instant) -> Option<&Sample> {
         self.ego.as_ref().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout)
+    }
+
+    /// How much later than its stamp says the ego's sample may have been taken, or earlier. Without GNSS time its stamp says nothing, and it
+    /// counts from its reception, which is within [`EGO_WITHIN`] of the measurement.
+    pub fn own_clock_error(&self, ego: &Sample) -> Duration {
+        if ego.is_timed { self.config.link.clock_error } else { self.config.link.clock_error.max(EGO_WITHIN) }
     }
 
     /// The ego's state at now: its newest sample, moved on under the last demand if it is older than now.
@@ -211,6 +220,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         station.map_or(Predecessor::None, Predecessor::Station)
     }
 
+    /// The vehicle that the ego is to follow, by the name that it has now.
+    pub fn followed(&self) -> Predecessor {
+        let target = self.target().and_then(|index| self.peers.get(index)?.station());
+        match (self.predecessor(), target) {
+            (Predecessor::Station(_), Some(name)) => Predecessor::Station(name),
+            (requested, _) => requested,
+        }
+    }
+
     /// The slot of the vehicle that the ego is to follow. Of several with the name that the driver says, it is the nearest ahead when it
     /// is named. After that another one takes its place only where it is certain to be between: the last place of a silent vehicle is
     /// soon behind the ego, and says nothing of which one is nearer.
@@ -220,7 +238,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return self.coordination.choice().target.map(usize::from);
         }
         let ego = self.ego.as_ref();
-        let nearest = self.peers.predecessor(station, ego.map(|ego| ego.position))?;
+        let Some(nearest) = self.peers.predecessor(station, ego.map(|ego| ego.position)) else {
+            // The vehicle that the driver named has another name since. It is that vehicle until the driver names another one.
+            return self.named.slot().filter(|_| self.named.is_called(station));
+        };
         if self.named.is_not_in(nearest, station) {
             return None;
         }

@@ -49,10 +49,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     fn take_ego(&mut self, at: Instant, motion: &Motion) -> Result<(), Cause> {
-        let instant = self.instant_of(motion.stamp, at).unwrap_or(at);
+        let stamped = self.instant_of(motion.stamp, at);
+        let instant = stamped.unwrap_or(at);
         timely(instant, at, self.config.link.ego_timeout, self.config.link.future)?;
         let near = self.ego.as_ref().map(|ego| ego.position);
-        let sample = Sample::of(motion, instant, at, near);
+        let sample = Sample { is_timed: stamped.is_some(), ..Sample::of(motion, instant, at, near) };
         if let Some(held) = self.ego.as_ref() {
             // This also refuses a stamp that has come round: a clock that stands still brings no news.
             if held.stamp == sample.stamp {

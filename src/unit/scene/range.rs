@@ -11,7 +11,7 @@
 //! So fresh messages are hardly corrected.
 
 use super::Scene;
-use super::sight::{Sight, Verdict};
+use super::sight::{Sight, Verdict, Whose};
 use crate::fixed::quotient;
 use crate::health::{Cause, Health};
 use crate::model::bound::{Bound, Uncertainty};
@@ -19,7 +19,6 @@ use crate::parameters::{LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUN
 use crate::peers::{Sample, excess, largest_error, largest_speed_error};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
-use crate::wire::StationHash;
 use crate::wire::range_sensor::RangeSample;
 
 /// From when the sensor sends a view to when the view has been on the bus, at most: it waits for a frame that is on the bus, and
@@ -55,7 +54,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
         let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
         let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
-        let mut sight = Sight { at, rear, speed, uncertainty, excess, station: None };
+        let mut sight = Sight { at, rear, speed, uncertainty, excess, whose: None };
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
@@ -64,7 +63,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return Ok(());
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {
-            sight.station = self.compare(received, index, &sight, health);
+            sight.whose = self.compare(received, index, &sight, health);
         }
         self.ranging.see(sight);
         Ok(())
@@ -91,7 +90,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let swing = self.config.limits.emergency_braking.plus(ego.acceleration.magnitude());
         let faster = swing.over(apart.fine_seconds());
         let (own, own_speed) = (ego.position_error(), ego.speed_error());
-        let late = ego.speed.plus(own_speed).over(clock_error.plus(ON_BUS).plus(unsaid).seconds());
+        let late = ego.speed.plus(own_speed).over(self.own_clock_error(ego).plus(ON_BUS).plus(unsaid).seconds());
         let roundings = POSITION_ROUNDING.plus(LENGTH_ROUNDING);
         let moved = own_speed.plus(faster).over(apart.seconds());
         Uncertainty {
@@ -109,7 +108,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Returns the station of the peer if the view is certainly of that peer; then the view narrows what is certain of the peer. It is
     /// certain if the view agrees with what is certain of the peer, and if this leaves no room for another vehicle. A view that may be of
     /// the peer or of another vehicle only corrects the estimate.
-    fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<StationHash> {
+    fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<Whose> {
         let is_disputed = self.is_contradicted(index, now);
         let track = self.peers.get_index_mut(index)?;
         let (station, heard) = (track.station()?, track.newest().map(|newest| newest.received));
@@ -128,7 +127,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         } else {
             Verdict::Contradicts
         };
-        if self.ranging.judge(station, now, verdict, heard) {
+        if self.ranging.judge((index, station), now, verdict, heard) {
             health.count(Cause::RangeDisagrees);
         }
         if is_disputed {
@@ -139,10 +138,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return None;
         }
         let bound = before?;
-        // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear.
+        // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear. What the peer's
+        // own accuracy leaves open is room: one vehicle told its place that wrongly is enough.
         let newest = track.newest().copied();
-        let beyond = sight.excess.plus(excess(newest.and_then(|newest| newest.position_accuracy)));
-        let is_certain = bound.highest_position().ahead_of(seen.lowest_position()).minus(beyond) < SHORTEST;
+        let room = bound.highest_position().ahead_of(seen.lowest_position()).minus(sight.excess);
+        let is_certain = room < SHORTEST;
         let track = self.peers.get_index_mut(index)?;
         if is_certain {
             track.narrow(&seen);
@@ -152,7 +152,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if let Some(newest) = newest {
             self.correct(index, sight, front, &bound, &newest);
         }
-        is_certain.then_some(station)
+        is_certain.then_some((index, station))
     }
 
     /// Whether what is seen and what is heard of a peer contradict one another.
@@ -165,9 +165,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.heard_of(index).is_some_and(|(station, heard)| self.ranging.sees_past(station, now, heard))
     }
 
-    fn heard_of(&self, index: usize) -> Option<(StationHash, Option<Instant>)> {
+    fn heard_of(&self, index: usize) -> Option<(Whose, Option<Instant>)> {
         let track = self.peers.get(index)?;
-        Some((track.station()?, track.newest().map(|newest| newest.received)))
+        Some(((index, track.station()?), track.newest().map(|newest| newest.received)))
     }
 
     /// Corrects the estimate by the view: moves the horizon where the estimated speed may be right, and starts it anew where not.

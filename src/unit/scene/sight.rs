@@ -54,7 +54,7 @@ pub(in crate::unit) struct Sight {
     /// How much of the uncertainty of the place is beyond the accuracies that were told.
     pub excess: Distance,
     /// Whose it is, if it went into what is certain of that station.
-    pub station: Option<StationHash>,
+    pub whose: Option<Whose>,
 }
 
 impl Sight {
@@ -75,10 +75,13 @@ impl Sight {
     }
 }
 
+/// Whose place is compared with a view: the slot, because two vehicles may have one name, and the name, because a slot changes hands.
+pub(in crate::unit) type Whose = (usize, StationHash);
+
 /// Views that what is certain of a station excludes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Contradiction {
-    station: StationHash,
+    whose: Whose,
     /// The instant of the last of them.
     at: Instant,
     /// Whether the last view saw past all that is certain of the station.
@@ -91,9 +94,11 @@ pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
     /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
     hidden: [Held<Sight>; HIDDEN],
-    /// Views in a row that contradict what is certain of the target.
+    /// The vehicle that the views are compared with.
+    judged: Held<Whose>,
+    /// Views in a row that contradict what is certain of it.
     contradictions: u8,
-    /// Views in a row that saw past all that is certain of the target.
+    /// Views in a row that saw past all that is certain of it.
     past: u8,
     contradiction: Held<Contradiction>,
     /// Since when the driver has named the present target.
@@ -105,6 +110,7 @@ impl Ranging {
         Self {
             newest: Held::Nothing,
             hidden: [Held::Nothing; HIDDEN],
+            judged: Held::Nothing,
             contradictions: 0,
             past: 0,
             contradiction: Held::Nothing,
@@ -130,8 +136,13 @@ impl Ranging {
             return;
         }
         let seen = sight.bound();
-        // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be.
+        // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be. One that certainly drives is not
+        // one that stood, and may leave the path close before it.
+        let drives = seen.lowest_speed() > CRAWL;
         let is_beyond = |held: &Sight| {
+            if drives && held.stands() && held.is_remembered(sight.at) {
+                return seen.lowest_position() > held.bound().highest_position();
+            }
             seen.highest_position() >= held.bound().after(seen.at(), &AccelerationRange::WORST).lowest_position()
         };
         for held in self.hidden.iter_mut().filter(|held| held.as_ref().is_some_and(is_beyond)) {
@@ -151,14 +162,14 @@ impl Ranging {
         Some(Reading { position: sight.rear.ahead(sight.speed.over(age)), speed: sight.speed })
     }
 
-    /// What is certain of the rears of the remembered vehicles that are not `station`, each at the time of its view.
+    /// What is certain of the rears of the remembered vehicles that are not this one, each at the time of its view.
     pub(in crate::unit) fn strangers(
         &self,
         now: Instant,
-        station: Option<StationHash>,
+        whose: Option<Whose>,
     ) -> impl Iterator<Item = Bound> + use<'_> {
         let remembered = self.remembered(now);
-        remembered.filter(move |sight| station.is_none() || sight.station != station).map(|sight| sight.bound())
+        remembered.filter(move |sight| whose.is_none() || sight.whose != whose).map(|sight| sight.bound())
     }
 
     /// The vehicles that were seen standing.
@@ -187,49 +198,47 @@ impl Ranging {
     /// begins.
     pub(in crate::unit) fn judge(
         &mut self,
-        station: StationHash,
+        whose: Whose,
         at: Instant,
         verdict: Verdict,
         heard: Option<Instant>,
     ) -> bool {
+        if self.judged != Held::Value(whose) {
+            self.judged.set(whose);
+            (self.contradictions, self.past) = (0, 0);
+        }
         self.past = if verdict == Verdict::SeesPast { self.past.saturating_add(1) } else { 0 };
         if verdict == Verdict::Agrees {
             self.contradictions = 0;
             return false;
         }
         self.contradictions = self.contradictions.saturating_add(1);
-        let held = self.holds(station, at, heard, SETTLED);
+        let held = self.holds(whose, at, heard, SETTLED);
         let begins = held.is_none();
         if begins && self.contradictions < DISAGREEMENT {
             return false;
         }
         // If a nearer vehicle has contradicted the target, a single view past the target is one that missed that vehicle.
         let was_past = held.is_some_and(|held| held.is_past) && self.past > 0;
-        self.contradiction.set(Contradiction { station, at, is_past: was_past || self.past >= DISAGREEMENT });
+        self.contradiction.set(Contradiction { whose, at, is_past: was_past || self.past >= DISAGREEMENT });
         begins
     }
 
     /// Whether what is seen and what is heard of a station contradict one another. `heard` is when the station was heard last.
-    pub(in crate::unit) fn disagrees(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
-        self.holds(station, now, heard, SETTLED).is_some()
+    pub(in crate::unit) fn disagrees(&self, whose: Whose, now: Instant, heard: Option<Instant>) -> bool {
+        self.holds(whose, now, heard, SETTLED).is_some()
     }
 
     /// Whether the sensor sees that a station is not where it is held to be: by a view that is not too old, or by any view since which
     /// the station has not been heard.
-    pub(in crate::unit) fn sees_past(&self, station: StationHash, now: Instant, heard: Option<Instant>) -> bool {
-        self.holds(station, now, heard, RANGE_TIMEOUT).is_some_and(|contradiction| contradiction.is_past)
+    pub(in crate::unit) fn sees_past(&self, whose: Whose, now: Instant, heard: Option<Instant>) -> bool {
+        self.holds(whose, now, heard, RANGE_TIMEOUT).is_some_and(|contradiction| contradiction.is_past)
     }
 
-    fn holds(
-        &self,
-        station: StationHash,
-        now: Instant,
-        heard: Option<Instant>,
-        lasts: Duration,
-    ) -> Option<Contradiction> {
+    fn holds(&self, whose: Whose, now: Instant, heard: Option<Instant>, lasts: Duration) -> Option<Contradiction> {
         self.contradiction.get().filter(|held| {
             let is_unheard = held.is_past && heard.is_none_or(|heard| heard <= held.at);
-            held.station == station && (is_unheard || now.since(held.at) <= lasts)
+            held.whose == whose && (is_unheard || now.since(held.at) <= lasts)
         })
     }
 }
@@ -256,7 +265,7 @@ mod tests {
     fn sight(millis: i64, metres: i64, mm_per_s: i32) -> Sight {
         let (rear, speed) = (Position::from_mm(metres * 1_000), Speed::from_mm_per_s(mm_per_s));
         let uncertainty = Uncertainty::default();
-        Sight { at: at(millis), rear, speed, uncertainty, excess: Distance::ZERO, station: None }
+        Sight { at: at(millis), rear, speed, uncertainty, excess: Distance::ZERO, whose: None }
     }
 
     /// The rears, in metres, of what is remembered.
