@@ -28,6 +28,8 @@ pub enum Purpose {
     RangeFaults(u32),
     /// Arrivals by the road with that index, and what is drawn of those who arrive.
     Arrivals(u32),
+    /// Whether the vehicle with that index makes an emergency stop, and where.
+    Emergency(u32),
 }
 
 /// The generator for that purpose under that seed.
@@ -41,6 +43,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::RangeSensor(vehicle) => (5, vehicle),
         Purpose::Arrivals(road) => (6, road),
         Purpose::RangeFaults(vehicle) => (7, vehicle),
+        Purpose::Emergency(vehicle) => (8, vehicle),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

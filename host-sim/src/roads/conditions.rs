@@ -3,7 +3,7 @@
 
 use holdover::Config;
 
-use super::description::{Corridor, Radio, Wrong};
+use super::description::{Corridor, Emergencies, Radio, Wrong};
 use crate::input::kind::Kind;
 use crate::input::scenario::Envelope;
 use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed};
@@ -34,10 +34,12 @@ pub struct Conditions {
     pub step_s: f64,
     /// Number of peer slots of a unit.
     pub slots: usize,
+    /// Emergency stops.
+    pub emergencies: Emergencies,
 }
 
 impl Conditions {
-    /// The conditions of the scenario.
+    /// The conditions of the scenario, without emergency stops.
     #[must_use]
     pub fn of(corridor: &Corridor) -> Self {
         Self {
@@ -47,6 +49,7 @@ impl Conditions {
             when_lost: WhenLost::Holdover,
             step_s: corridor.step_s,
             slots: corridor.slots,
+            emergencies: Emergencies::NONE,
         }
     }
 }

@@ -39,6 +39,8 @@ pub struct Sides {
     pub alone: Side,
     /// The scenario, with the envelope.
     pub envelope: Side,
+    /// The same with vehicles that make emergency stops.
+    pub emergencies: Side,
 }
 
 /// A corridor with its map.
@@ -103,12 +105,13 @@ impl Experiment {
     /// # Errors
     /// As for [`run`](Self::run).
     pub fn sides(&self, seeds: &[u64], done: impl Fn() + Sync) -> Result<Sides, Error> {
-        let conditions = four(&self.corridor);
+        let conditions = five(&self.corridor);
         let jobs: Vec<(u64, Conditions)> =
             seeds.iter().flat_map(|seed| conditions.map(|conditions| (*seed, conditions))).collect();
         let outcomes = self.all(&jobs, done)?;
         let side = |which: usize| Side::of(&outcomes.iter().skip(which).step_by(conditions.len()).collect::<Vec<_>>());
-        Ok(Sides { holdover: side(0), perfect_link: side(1), alone: side(2), envelope: side(3) })
+        let [holdover, perfect_link, alone, envelope, emergencies] = [0, 1, 2, 3, 4].map(side);
+        Ok(Sides { holdover, perfect_link, alone, envelope, emergencies })
     }
 
     /// The errors under each difference between a vehicle and what its unit assumes.
@@ -198,13 +201,14 @@ fn with_ego(corridor: &Corridor, network: &Network, seed: u64) -> (Vec<Trip>, Op
     (trips, ego)
 }
 
-/// The conditions of the four sides, in the order of [`Sides`].
-fn four(corridor: &Corridor) -> [Conditions; 4] {
+/// The conditions of the sides, in the order of [`Sides`].
+fn five(corridor: &Corridor) -> [Conditions; 5] {
     let scenario = Conditions::of(corridor);
     let [without, with] =
         [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
     let perfect_link = Conditions { radio: without.radio.perfect(), ..without };
-    [without, perfect_link, Conditions { when_lost: WhenLost::Alone, ..without }, with]
+    let alone = Conditions { when_lost: WhenLost::Alone, ..without };
+    [without, perfect_link, alone, with, Conditions { emergencies: corridor.emergencies, ..with }]
 }
 
 /// The error for a configuration that the units refuse. It does not occur as long as the units accept every value that
@@ -228,10 +232,12 @@ mod tests {
         let asked = Overrides { envelope: true, ..Overrides::default() };
         for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
             let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
-            let four = four(&corridor);
-            assert_eq!(four.map(|conditions| conditions.envelope.engaged), [false, false, false, true]);
-            assert_eq!(four[1].radio, corridor.radio.perfect());
-            assert_eq!(four.map(|conditions| conditions.when_lost == WhenLost::Alone), [false, false, true, false]);
+            let five = five(&corridor);
+            assert_eq!(five.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true]);
+            assert_eq!(five[1].radio, corridor.radio.perfect());
+            let is_alone = five.map(|conditions| conditions.when_lost == WhenLost::Alone);
+            assert_eq!(is_alone, [false, false, true, false, false]);
+            assert_eq!(five.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.05]);
         }
     }
 }

@@ -89,8 +89,10 @@ pub struct Side {
     pub collisions_on_roads: usize,
     /// Two vehicles in one conflict area, on crossing ways.
     pub collisions_at_intersections: usize,
-    /// Full stops.
+    /// Full stops, emergency stops among them.
     pub full_stops: usize,
+    /// Emergency stops.
+    pub emergency_stops: u64,
     /// Mean travel time, from the arrival on.
     pub mean_travel_time_s: Option<f64>,
     /// Longest travel time.
@@ -139,6 +141,7 @@ impl Side {
             collisions_on_roads: all().map(|outcome| outcome.collisions[0]).sum(),
             collisions_at_intersections: all().map(|outcome| outcome.collisions[1]).sum(),
             full_stops: all().map(|outcome| outcome.full_stops).sum(),
+            emergency_stops: all().map(|outcome| outcome.remains.emergencies).sum(),
             mean_travel_time_s: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
             longest_travel_time_s: times.iter().copied().reduce(f64::max),
             smallest_gap_m: least(|outcome| outcome.smallest_gap_m),
@@ -205,7 +208,7 @@ mod tests {
             beyond: 3,
             changes: 4,
             violations: 5,
-            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4 },
+            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5 },
         }
     }
 
@@ -227,6 +230,7 @@ mod tests {
             (side.full_stops, side.pairs_beyond, side.association_changes, side.bound_violations),
             (2, 6, 8, 10)
         );
+        assert_eq!(side.emergency_stops, 10);
         assert_eq!((side.limited_share, side.refusals, side.order_disagreements, side.turned_away), (0.5, 4, 6, 8));
     }
 

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::description::{Corridor, IntersectionPlan, Limits, Radio, RoadPlan, Traffic, Wrong};
+use super::description::{Corridor, Emergencies, IntersectionPlan, Limits, Radio, RoadPlan, Traffic, Wrong};
 use super::fit::{self, Part};
 use crate::error::{Error, quoted};
 use crate::input::scenario::keys::{Document, Number, Section};
@@ -38,6 +38,8 @@ const MASS: Number = Number { key: "mass_scale", unit: "a factor", limits: 0.5..
 const GRADE: Number = Number { key: "grade", unit: "a share of the way", limits: -0.15..=0.15, default: 0.0 };
 const WIND: Number = Number { key: "headwind_mps", unit: "m/s", limits: -30.0..=30.0, default: 0.0 };
 const LAG: Number = Number { key: "lag_scale", unit: "a factor", limits: 0.2..=4.0, default: 1.0 };
+const EMERGENCIES: Number = Number { key: "share", unit: "a share", limits: 0.0..=1.0, default: 0.05 };
+const STANDS: Number = Number { key: "stands_s", unit: "seconds", limits: 0.0..=60.0, default: 10.0 };
 const RIGHT: Number = Number { key: "right_m", unit: "metres", limits: -8.0..=8.0, default: 0.0 };
 const PER_MINUTE: Number =
     Number { key: "vehicles_per_min", unit: "vehicles a minute", limits: 0.0..=30.0, default: 3.0 };
@@ -72,6 +74,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let wrong = wrong(top.section("wrong")?)?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let sensors = sensors::fitted(&document, top.section("sensors")?)?;
+    let emergencies = emergencies(top.section("emergencies")?)?;
     let transport = bus::read(top.section("bus")?)?;
     let limits = limits(top.section("limits")?)?;
     let road_sections = counted(&document, "road", top.sections("road")?, ROADS, kind_line)?;
@@ -118,6 +121,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         wrong,
         envelope,
         sensors,
+        emergencies,
         transport,
         limits,
         roads,
@@ -177,6 +181,13 @@ fn wrong(mut section: Section) -> Result<Wrong, Error> {
     };
     section.finish()?;
     Ok(wrong)
+}
+
+fn emergencies(mut section: Section) -> Result<Emergencies, Error> {
+    let emergencies =
+        Emergencies { share: section.number(&EMERGENCIES)?.value, stands_s: section.number(&STANDS)?.value };
+    section.finish()?;
+    Ok(emergencies)
 }
 
 /// A limit that the file leaves out is not checked.

@@ -38,9 +38,11 @@ use crate::sim::world::TargetBelief;
 
 mod arrivals;
 mod departures;
+mod emergencies;
 mod numbers;
 
 use arrivals::LISTENING_S;
+use emergencies::Emergency;
 use numbers::Numbers;
 
 /// A vehicle on the roads.
@@ -54,6 +56,8 @@ struct Traveller {
     log: Option<MemoryNode>,
     /// Whether it has a range sensor.
     sees: bool,
+    /// Its emergency stop, if it makes one.
+    emergency: Option<Emergency>,
 }
 
 impl Traveller {
@@ -117,6 +121,8 @@ pub struct Remains {
     pub disagreements: u64,
     /// Messages that found no slot in a modem.
     pub turned_away: u64,
+    /// Emergency stops.
+    pub emergencies: u64,
 }
 
 impl Remains {
@@ -325,6 +331,7 @@ impl Stages for Traffic<'_> {
             self.drive_alone(at_s);
         }
         self.run_out();
+        self.brake_in_emergencies(at_s);
         Ok(())
     }
 

@@ -22,6 +22,7 @@ use crate::error::Error;
 use crate::input::scenario::{Faults, Fitted};
 use crate::output::{self, LongRuns};
 use crate::roads::conditions::Conditions;
+use crate::roads::description::Emergencies;
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
@@ -92,6 +93,8 @@ pub struct Results {
     pub seeds: usize,
     /// The range sensors.
     pub sensors: Sensors,
+    /// The emergency stops of the side with emergencies, as the scenario says.
+    pub emergency_stops: Emergencies,
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]
     pub sides: Sides,
@@ -121,7 +124,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let logged = usize::from(options.candump.is_some());
-    let bar = ProgressBar::new((4 * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64);
+    let bar = ProgressBar::new((5 * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
         bar.set_style(style);
     }
@@ -158,7 +161,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
     let failures = verdict::failures(&options.corridor.limits, &sides);
-    let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
+    let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope, &sides.emergencies]
         .iter()
         .map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64)
         .sum::<f64>();
@@ -167,6 +170,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         seed: first,
         seeds: options.seeds.len(),
         sensors: Sensors::of(&experiment, &options.seeds),
+        emergency_stops: options.corridor.emergencies,
         sides,
         excerpts_with_envelope: engaged,
         wrong,

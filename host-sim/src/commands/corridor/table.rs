@@ -20,6 +20,7 @@ pub const LINES: &[Line] = &[
     ("collisions on roads", |side| side.collisions_on_roads.to_string()),
     ("collisions in conflict areas", |side| side.collisions_at_intersections.to_string()),
     ("full stops", |side| side.full_stops.to_string()),
+    ("  emergency stops", |side| side.emergency_stops.to_string()),
     ("mean travel time, s", |side| number(side.mean_travel_time_s, 2)),
     ("longest travel time, s", |side| number(side.longest_travel_time_s, 1)),
     ("smallest gap on a road, m", |side| number(side.smallest_gap_m, 2)),
@@ -37,13 +38,13 @@ pub const LINES: &[Line] = &[
 ];
 
 /// The names of the sides, in the order of the table.
-pub const SIDES: [&str; 4] = ["holdover", "perfect link", "drives alone", "with envelope"];
+pub const SIDES: [&str; 5] = ["holdover", "perfect link", "drives alone", "with envelope", "emergencies"];
 
 /// The sides, in the same order.
 #[must_use]
-pub fn sides(results: &Results) -> [&Side; 4] {
+pub fn sides(results: &Results) -> [&Side; 5] {
     let sides = &results.sides;
-    [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope]
+    [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope, &sides.emergencies]
 }
 
 /// The tables.
@@ -57,7 +58,11 @@ pub fn text(results: &Results) -> String {
         let all = results.sides.holdover.served + results.sides.holdover.unserved;
         let _ = writeln!(text, "{} of {all} vehicles have a range sensor", results.sensors.vehicles);
     }
-    let _ = writeln!(text, "{:30}{:>14}{:>14}{:>14}{:>14}", "", SIDES[0], SIDES[1], SIDES[2], SIDES[3]);
+    let _ = write!(text, "{:30}", "");
+    SIDES.iter().for_each(|side| {
+        let _ = write!(text, "{side:>14}");
+    });
+    text.push('\n');
     for (name, of) in LINES {
         let _ = write!(text, "{name:30}");
         sides(results).iter().for_each(|side| {

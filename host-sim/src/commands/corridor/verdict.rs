@@ -12,6 +12,7 @@ use crate::roads::figures::Side;
 pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     let mut failures = safety("", &sides.holdover);
     failures.extend(safety(" with the envelope", &sides.envelope));
+    failures.extend(safety(" with emergencies", &sides.emergencies));
     let full_stops = sides.holdover.full_stops;
     if limits.full_stops.is_some_and(|most| full_stops as u64 > most) {
         failures.push(format!("{full_stops} full stop(s)"));
@@ -73,7 +74,7 @@ mod tests {
             position_error: ErrorFigures { ticks: 1000, max_m: Some(0.2), rms_m: Some(0.05) },
             ..Side::of(&[])
         };
-        Sides { holdover: side, perfect_link: side, alone: side, envelope: side }
+        Sides { holdover: side, perfect_link: side, alone: side, envelope: side, emergencies: side }
     }
 
     fn failing(spoil: impl Fn(&mut Sides)) -> Vec<String> {
@@ -126,6 +127,22 @@ mod tests {
             sides.envelope.position_error.max_m = Some(1.0);
         });
         assert_eq!(late, [""; 0]);
+    }
+
+    #[test]
+    fn with_emergencies_everyone_has_to_be_safe_and_served() {
+        let unsafe_ = failing(|sides| {
+            sides.emergencies.collisions_at_intersections = 1;
+            sides.emergencies.unserved = 2;
+        });
+        assert_eq!(
+            unsafe_,
+            [
+                "collisions with emergencies: 0 on roads, 1 in conflict areas",
+                "2 vehicle(s) did not get through with emergencies"
+            ]
+        );
+        assert_eq!(failing(|sides| sides.emergencies.full_stops = 5), [""; 0]);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use holdover::ConfigError;
 use holdover::wire::Predecessor;
 use holdover::wire::driver_request::DriverRequest;
 
+use super::emergencies::Emergency;
 use super::{Traffic, Traveller};
 use crate::input::kind::Difference;
 use crate::input::scenario::Accuracy;
@@ -138,7 +139,8 @@ impl Traffic<'_> {
             vehicle.hear(at_s, &message)?;
         }
         let dark = trip.dark(at_s, &self.conditions.radio);
-        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees })
+        let emergency = Emergency::of(&self.conditions.emergencies, self.seed, index, lane);
+        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees, emergency })
     }
 }
 
