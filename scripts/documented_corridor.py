@@ -7,11 +7,12 @@ import json
 import re
 import sys
 
-SIDES = ["holdover", "perfect_link", "alone", "envelope"]
+SIDES = ["holdover", "perfect_link", "alone", "envelope", "emergencies"]
 ROWS = {
     "collisions": lambda side: side["collisions_on_roads"] + side["collisions_at_intersections"],
     "not served": lambda side: side["unserved"],
     "full stops": lambda side: side["full_stops"],
+    "of these emergencies": lambda side: side["emergency_stops"],
     "mean travel time": lambda side: side["mean_travel_time_s"],
     "smallest gap on a road": lambda side: side["smallest_gap_m"],
     "lowest speed": lambda side: side["lowest_speed_mps"],

@@ -27,9 +27,10 @@ fn scenario(folder: &Path, text: &str) -> String {
     file.display().to_string()
 }
 
-/// Twenty seconds of the corridor.
-fn corridor() -> String {
+/// Twenty seconds of the corridor, with buses of this kind.
+fn corridor(kind: &str) -> String {
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
+    let text = text.replacen("kind = \"classic\"", &format!("kind = \"{kind}\""), 1);
     text.replacen("duration_s = 600.0", "duration_s = 20.0", 1)
 }
 
@@ -69,9 +70,8 @@ fn a_string_drives_as_over_classic_can_but_for_the_first_messages_which_classic_
 #[test]
 fn a_corridor_drives_as_over_classic_can() {
     let folder = tempfile::tempdir().unwrap();
-    let classic = results(&["run", &scenario(folder.path(), &corridor()), "--seeds", "1"]);
-    let over_fd =
-        results(&["run", &scenario(folder.path(), &format!("{}\n[bus]\nkind = \"fd\"\n", corridor())), "--seeds", "1"]);
+    let classic = results(&["run", &scenario(folder.path(), &corridor("classic")), "--seeds", "1"]);
+    let over_fd = results(&["run", &scenario(folder.path(), &corridor("fd")), "--seeds", "1"]);
     let refusals = |results: &Value| results["holdover"]["refusals"].as_f64().unwrap();
     assert!(refusals(&over_fd) < refusals(&classic));
     for side in ["holdover", "perfect_link", "alone", "envelope"] {
@@ -100,7 +100,7 @@ fn the_unit_of_a_run_sends_the_same_once_more() {
         let [replayed, log] = replayed(folder.path(), &string, vehicle);
         assert!(count(&log) > 2500 && repeats(&replayed, &log), "vehicle {vehicle}");
     }
-    let corridor = scenario(folder.path(), &format!("{}\n[bus]\nkind = \"fd\"\n", corridor()));
+    let corridor = scenario(folder.path(), &corridor("fd"));
     let [replayed, log] = replayed(folder.path(), &corridor, "3");
     assert!(count(&log) > 1000 && repeats(&replayed, &log));
 }

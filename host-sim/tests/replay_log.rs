@@ -212,6 +212,38 @@ fn differences_of_two_interfaces_count_from_line_to_line() {
 }
 
 #[test]
+fn two_frames_that_changed_places_do_not_make_times_since_the_first_frame_differences() {
+    let good = screen('z');
+    let mut lines: Vec<&str> = good.split_inclusive('\n').collect();
+    lines.swap(30, 31);
+    assert_eq!(summary(lines.concat().as_bytes(), &[])["ticks"], 121);
+}
+
+#[test]
+fn a_log_of_another_bus_is_told_from_one_in_which_nothing_happened() {
+    let said = |log: &[u8], arguments: &[&str]| {
+        let output = replay(log, &[&["--summary"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = "warning: none of 1 frames is for the unit; ";
+    assert_eq!(said(b"(1.0) can0 123#00\n", &[]), format!("{warning}give --base-id or --place\n"));
+    let fd = b"(1.0) can0 484##50102030405060708090A0B0C\n";
+    assert_eq!(said(fd, &[]), format!("{warning}the log has CAN FD frames: give --fd\n"));
+    assert_eq!(said(b"(1.0) can0 484#0102030405060708\n", &[]), "");
+}
+
+#[test]
+fn a_log_that_ends_within_a_line_says_which_one_to_delete() {
+    let whole = b"(1436509052.249713) can1 484#0102030405060708\n(1436509052.250000) can1 484#0102030405060708";
+    for length in [56, 60, 68, 73, 76] {
+        let output = replay(&whole[..length], &["--summary"]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(said, "error: bus.log:2: the line is not complete; delete it\n", "{length}");
+    }
+}
+
+#[test]
 fn a_mistake_behind_the_first_relative_times_has_its_line() {
     let log = " (000.000000)  can0  123   [0] \n\n (000.010000)  can0  123   [1]\n";
     let output = replay(log.as_bytes(), &["--summary"]);

@@ -1,10 +1,13 @@
 //! The log of a simulated bus is one that a wire could have carried.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
 use embedded_can::{Frame as _, Id};
 use holdover::time::{Duration, Instant};
+use holdover::wire::Slot;
+use holdover::wire::catalogue::{CATALOGUE, Line};
 use holdover_sim::bus::Frame;
 use holdover_sim::bus::candump::{Content, LogReader};
 use holdover_sim::bus::wire::length;
@@ -62,10 +65,33 @@ fn in_a_log_of_a_string_over_can_fd_too() {
 #[test]
 fn in_a_log_of_a_corridor_too() {
     let folder = tempfile::tempdir().unwrap();
-    let scenario = folder.path().join("short.toml");
+    let scenario = short_corridor(folder.path());
+    could_have_been(&log(folder.path(), &["run", &scenario, "--candump-vehicle", "3"]));
+}
+
+/// The corridor with arrivals of 20 s.
+fn short_corridor(folder: &Path) -> String {
+    let scenario = folder.join("short.toml");
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
     std::fs::write(&scenario, text.replacen("duration_s = 600.0", "duration_s = 20.0", 1)).unwrap();
-    could_have_been(&log(folder.path(), &["run", scenario.to_str().unwrap(), "--candump-vehicle", "3"]));
+    scenario.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn every_message_that_anybody_sends_is_in_the_log_of_a_shipped_scenario() {
+    let folder = tempfile::tempdir().unwrap();
+    let logs = [
+        log(folder.path(), &["run", "storm", "--candump-vehicle", "3"]),
+        log(folder.path(), &["run", &short_corridor(folder.path()), "--candump-vehicle", "3"]),
+    ];
+    let offsets: BTreeSet<u16> = logs.iter().flatten().map(|(_, frame)| number(frame) - 0x480).collect();
+    // A simulated vehicle that tells where it is on the globe tells its route too, and its modem sends that.
+    let is_expected = |line: &&Line| line.is_sent() && line.name != "Peer{slot}Position";
+    for line in CATALOGUE.iter().filter(is_expected) {
+        let slots = if line.is_per_slot() { 16 } else { 1 };
+        let is_logged = (0..slots).any(|slot| offsets.contains(&line.offset_for(Slot(slot))));
+        assert!(is_logged, "{}", line.name);
+    }
 }
 
 /// A wire could have carried it: no frame begins before the one before it has ended, and no window of 10 ms is loaded by more than

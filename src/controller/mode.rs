@@ -11,9 +11,10 @@
 //!     |                                      Holdover          |
 //!     |                                        |               |
 //!     |        silent for longer than a        v               |
-//!     |        holdover lasts, no target, or  Fallback --------+
+//!     |        holdover lasts, no target,     Fallback --------+
 //!     |        the range sensor contradicts
-//!     |        what is heard
+//!     |        what is heard; from everywhere:
+//!     |        the driver's request is lost
 //!     |
 //!     +--- Fault  from everywhere while engaged: own motion unknown; left when that has not been so for RECOVER
 //! ```

@@ -55,7 +55,7 @@ macro_rules! meaning {
     (speed_difference) => { "Speed of that vehicle less the own speed: negative where the own vehicle closes in." };
     (distance_accuracy) => { "95 % of the errors of Distance are below this. Do not send a view that is worse than can be said." };
     (range_speed_accuracy) => { "95 % of the errors of SpeedDifference are below this. Do not send a view that is worse than can be said." };
-    (range_age) => { "How old the measurement was when the frame was sent, rounded up. The frame has to be on the bus within 3 ms. Do not send an older one." };
+    (range_age) => { "How old the measurement was when the frame was handed to the CAN controller, rounded up. Do not send a measurement older than 63 ms. The frame has to have ended on the bus 3 ms after that." };
     (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
     (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to the crossing point of that leg at Intersection, which is the next one on the own way: any other is ignored. Negative beyond the crossing point." };
     (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };

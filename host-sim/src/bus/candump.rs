@@ -128,6 +128,9 @@ impl<R: BufRead> LogReader<R> {
                     return Ok(line);
                 }
                 Err(error) => {
+                    // The last line of a log that was being written when the machine stopped may end anywhere.
+                    let is_cut = self.has_begun && length < LONGEST_LINE as usize && !self.text.ends_with(b"\n");
+                    let error = if is_cut { line::cut_off() } else { error };
                     let foreign = if self.has_begun { None } else { foreign::named(&self.file, &self.text) };
                     return Err(foreign.unwrap_or_else(|| error.in_file(&self.file).at_line(self.read)));
                 }

@@ -12,6 +12,7 @@ pub(crate) mod sensors;
 mod start;
 mod validate;
 
+pub use bus::VehicleBus;
 pub use envelope::Envelope;
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
 
@@ -20,7 +21,7 @@ use crate::input::impairment::ChannelModel;
 use crate::input::kind::{Difference, Kind};
 use crate::input::library;
 use crate::input::recording::Motion;
-use holdover::wire::{Identifiers, Transport};
+use holdover::wire::Identifiers;
 use std::path::{Path, PathBuf};
 
 /// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the nearest eight.
@@ -52,7 +53,7 @@ pub struct Scenario {
     /// The envelope of every unit.
     pub envelope: Envelope,
     /// The frames on every vehicle's own bus.
-    pub transport: Transport,
+    pub bus: VehicleBus,
     /// Their identifiers. A scenario's file does not tell them; a device under test may have its own.
     pub identifiers: Identifiers,
 }

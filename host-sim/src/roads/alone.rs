@@ -11,7 +11,6 @@
 //!
 //! If only the link to the vehicle on its leg is lost, it yields to the crossing vehicle as its unit does. The unit
 //! also follows its estimate of the silent vehicle, which can only slow the vehicle down.
-//! only slow it down.
 
 use holdover::controller::Mode;
 use holdover::coordination::Choice;

@@ -59,7 +59,7 @@ impl Conditions {
 pub fn config(corridor: &Corridor, conditions: &Conditions, number: usize, kind: Kind) -> Config {
     let traffic = &corridor.traffic;
     let mut config = Config::car(station(number));
-    config.transport = corridor.transport;
+    config.transport = corridor.bus.transport;
     config.period = duration(corridor.period_s);
     config.length = distance(kind.length_m());
     config.lag = fine_seconds(kind.lag_s());

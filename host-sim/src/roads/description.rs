@@ -1,10 +1,9 @@
 //! The description of a corridor: its roads and intersections, the traffic, and the channel. [`super::read`] reads it
 //! from a scenario file; the values here have been checked.
 
-use holdover::wire::Transport;
 use serde::Serialize;
 
-use crate::input::scenario::{Envelope, Fitted, Span};
+use crate::input::scenario::{Envelope, Fitted, Span, VehicleBus};
 use crate::sim::ground::Point;
 
 /// A network of roads that cross, and its traffic.
@@ -40,8 +39,8 @@ pub struct Corridor {
     pub sensors: Fitted,
     /// The emergency stops of the side with emergencies.
     pub emergencies: Emergencies,
-    /// The frames on every vehicle's own bus.
-    pub transport: Transport,
+    /// Every vehicle's own bus.
+    pub bus: VehicleBus,
     /// Limits for the verdict.
     pub limits: Limits,
     /// The roads; 1 to 32.

@@ -75,7 +75,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let sensors = sensors::fitted(&document, top.section("sensors")?)?;
     let emergencies = emergencies(top.section("emergencies")?)?;
-    let transport = bus::read(top.section("bus")?)?;
+    let bus = bus::read(top.section("bus")?)?;
     let limits = limits(top.section("limits")?)?;
     let road_sections = counted(&document, "road", top.sections("road")?, ROADS, kind_line)?;
     let intersection_sections =
@@ -122,7 +122,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         envelope,
         sensors,
         emergencies,
-        transport,
+        bus,
         limits,
         roads,
         intersections,

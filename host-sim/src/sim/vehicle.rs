@@ -8,6 +8,7 @@ use std::io;
 
 use holdover::coordination::{Itinerary, MapError};
 use holdover::time::Instant;
+use holdover::wire::actuators::ActuatorState;
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::estimate::TargetEstimate;
@@ -51,6 +52,8 @@ const SYNC_EVERY_S: f64 = 0.5;
 const LOCATE_EVERY_S: f64 = 0.1;
 /// Time for which the target estimate of a unit outside holds, in seconds: the timeout of that message.
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
+/// Cycle of what the actuators say, in seconds.
+const ACTUATORS_EVERY_S: f64 = 0.02;
 /// Cycle of the driver's request, in seconds.
 const REQUEST_EVERY_S: f64 = 0.1;
 
@@ -91,6 +94,8 @@ pub struct Vehicle {
     /// The unit's place on the bus. `None`: a unit outside has that place.
     ecu: Option<MemoryNode>,
     actuators: Actuators,
+    /// What the actuators say of the unit's commands, if they speak.
+    actuator_state: Option<ActuatorState>,
     /// The effort until the next tick that is not the unit's.
     overriding: Option<Effort>,
     /// Time of the unit's last target estimate.
@@ -144,6 +149,7 @@ impl Vehicle {
             broadcasts: Vec::new(),
             ecu: Some(bus.node()),
             actuators: Actuators::new(f64::INFINITY),
+            actuator_state: None,
             overriding: None,
             estimate_s: f64::NEG_INFINITY,
             alias: Alias::default(),
@@ -253,6 +259,9 @@ impl Vehicle {
         {
             self.put(at_s, &Message::Range(seen))?;
         }
+        if let Some(state) = self.actuator_state.filter(|_| is_due(at_s, ACTUATORS_EVERY_S, period_s)) {
+            self.put(at_s, &Message::Actuators(state))?;
+        }
         if is_due(at_s, UNSERVED_EVERY_S, period_s)
             && let Some(unserved) = self.relay.unserved(at_s)
         {
@@ -347,6 +356,10 @@ impl Vehicle {
                     }
                     if !is_outside || command.mode != ModeCode::Standby {
                         self.actuators.take(at_s, command.effort);
+                    }
+                    let stands = self.plant.speed_mps == 0.0;
+                    if let Some(state) = &mut self.actuator_state {
+                        *state = actuators::acknowledged(&command, stands);
                     }
                 }
                 _ => self.follow_up()?, // perhaps it was the `Sync`

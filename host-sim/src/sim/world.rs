@@ -108,7 +108,10 @@ impl<'a> World<'a> {
             );
             let clock_offset_us = clock_offset(seed, index);
             let sensors = Sensors::new(described, seed, index);
-            vehicles.push(Vehicle::new(index, &config, plant, described.length_m, request, clock_offset_us, sensors)?);
+            let mut vehicle =
+                Vehicle::new(index, &config, plant, described.length_m, request, clock_offset_us, sensors)?;
+            vehicle.acknowledge(scenario.bus.actuator_state);
+            vehicles.push(vehicle);
         }
         let measured = Measured::of(scenario);
         let starts_m = vehicles.iter().map(|vehicle: &Vehicle| vehicle.plant.position_m).collect();

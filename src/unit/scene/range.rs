@@ -25,10 +25,11 @@ use crate::wire::range_sensor::RangeSample;
 /// for those of a tick that win over it.
 const ON_BUS: Duration = Duration::from_millis(3);
 
-/// A view that the estimate may be right about corrects it by at most this fraction: a view errs by more than an estimate.
+/// A view that the estimate may be right about corrects it by at most this fraction, one in so many: a view errs by more than an
+/// estimate.
 const MOST_SHARE: i64 = 10;
 
-/// A correction by less than this fraction is not made.
+/// A correction by less than this fraction, one in so many, is not made.
 const LEAST_SHARE: i64 = 16;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {

@@ -82,6 +82,7 @@ pub struct World<'a> {
     views: Vec<View>,
     random: Random,
     range_random: Random,
+    bus_random: Random,
 }
 
 impl<'a> World<'a> {
@@ -119,6 +120,7 @@ impl<'a> World<'a> {
             views: Vec::new(),
             random: Random::new(scenario.seed, 1),
             range_random: Random::new(scenario.seed, 2),
+            bus_random: Random::new(scenario.seed, 4),
         }
     }
 
@@ -244,7 +246,9 @@ impl<'a> World<'a> {
         let random = &mut self.range_random;
         let distance = distance + error(kind, random) * largest(position, 0.0, random) * times;
         let difference = difference + error(speed_error, random) * largest(speed, 0.0, random) * times;
-        self.views.push((at + range.age, distance.max(0.0), difference, range.age));
+        // From the controller to the end of the frame (A12).
+        let on_bus = self.bus_random.between(0.0, 0.0029);
+        self.views.push((at + range.age + on_bus, distance.max(0.0), difference, range.age));
     }
 
     fn put_views(&mut self, until: f64) {

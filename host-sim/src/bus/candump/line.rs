@@ -57,7 +57,7 @@ pub(super) fn parse(line: &str) -> Result<Option<Line>, Error> {
 const NOT_A_LOG: &str = "give a log as `candump -l` writes it";
 
 /// The error of the last line of a log that was being written when the machine stopped.
-fn cut_off() -> Error {
+pub(super) fn cut_off() -> Error {
     Error::new("the line is not complete", "delete it")
 }
 

@@ -94,7 +94,7 @@ pub struct Results {
     /// The range sensors.
     pub sensors: Sensors,
     /// The emergency stops of the side with emergencies, as the scenario says.
-    pub emergency_stops: Emergencies,
+    pub emergency: Emergencies,
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]
     pub sides: Sides,
@@ -170,7 +170,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         seed: first,
         seeds: options.seeds.len(),
         sensors: Sensors::of(&experiment, &options.seeds),
-        emergency_stops: options.corridor.emergencies,
+        emergency: options.corridor.emergencies,
         sides,
         excerpts_with_envelope: engaged,
         wrong,

@@ -29,7 +29,7 @@ Examples:
   holdover-sim dbc --place MotionCommand=0x0CFF022A --place PeerMotionA=0x18FF404A/0x100 > bus.dbc
 
 The unit's are `identifiers` in its configuration, and the same options of ecu, hil and replay.
-canmatrix makes ARXML, KCD and SYM of it: canconvert bus.dbc bus.arxml
+canmatrix (1.3.3 or later) makes ARXML, KCD and SYM of it: canconvert bus.dbc bus.arxml
 
 Exit codes:
   0  it was written

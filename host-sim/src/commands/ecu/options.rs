@@ -56,7 +56,7 @@ pub fn file_of(name: &Path) -> Option<&Path> {
 /// # Errors
 /// An index without a vehicle, and a scenario that a unit refuses.
 pub fn unit(scenario: &Scenario, arguments: &UnitArguments) -> Result<Config, Error> {
-    let transport = if arguments.fd { Transport::Fd } else { scenario.transport };
+    let transport = if arguments.fd { Transport::Fd } else { scenario.bus.transport };
     let identifiers = arguments.identifiers.read(transport, slots())?;
     if let Some(station) = arguments.station {
         return Ok(Config { identifiers, transport, ..Config::car(StationHash(station)) });

@@ -6,7 +6,7 @@ use super::session::Setup;
 use crate::commands::ecu::options::{file_of, scenario, unit};
 use crate::commands::ending::Destination;
 use crate::error::Error;
-use crate::input::scenario::{Overrides, Scenario};
+use crate::input::scenario::{Overrides, Scenario, VehicleBus};
 use crate::sim::quantities::duration;
 
 /// A run with hardware in the loop.
@@ -40,7 +40,8 @@ impl HilOptions {
             return Err(error.in_option("--vehicle"));
         }
         let config = unit(&scenario, &arguments.unit)?;
-        let scenario = Scenario { transport: config.transport, identifiers: config.identifiers, ..scenario };
+        let bus = VehicleBus { transport: config.transport, ..scenario.bus };
+        let scenario = Scenario { bus, identifiers: config.identifiers, ..scenario };
         if config.period != duration(scenario.period_s) {
             let cause = format!("`period_s` is {}, and the device ticks every 0.01 s", scenario.period_s);
             let error = Error::new(cause, "set it to 0.01 for a device with the firmware");

@@ -88,11 +88,12 @@ Logs:
 Time:
   The unit lives by the log's clock: its first tick is at the time of the first
   frame, every further one a period later, and before each it receives the
-  frames up to and including that time. What it sends has the time of its tick. The last tick is the first one at or
-  after the last frame. A line may lie up to 1 s before an earlier one, as in
-  logs merged of several; it is received late, at its own time. Beyond that,
-  after a gap of more than an hour, and without times the log is refused, by
-  line. Lines are read one by one, so frames may have been printed by then.
+  frames up to and including that time. What it sends has the time of its tick.
+  The last tick is the first one at or after the last frame. A line may lie up
+  to 1 s before an earlier one, as in logs merged of several; it is received
+  late, at its own time. Beyond that, after a gap of more than an hour, and
+  without times the log is refused, by line. Lines are read one by one, so
+  frames may have been printed by then.
 
   With --bus the first frame is sent at once and every further one as long after
   it as the log says, those of CAN FD too; error frames are left out, and so is

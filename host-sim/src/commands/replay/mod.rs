@@ -20,9 +20,10 @@ use std::path::Path;
 use std::time;
 
 use holdover::time::Instant;
+use holdover::wire::Transport;
 
 use crate::bus::Frame;
-use crate::bus::candump::{Interface, LogReader, LogWriter};
+use crate::bus::candump::{Content, Interface, LogReader, LogWriter};
 use crate::commands::ending::json;
 use crate::error::{Error, quoted};
 use crate::output;
@@ -30,6 +31,7 @@ use crate::verdict::Verdict;
 use options::{Output, ReplayOptions};
 use player::{Player, Stop};
 use summary::Summary;
+use tally::Tally;
 
 /// Replays the log.
 ///
@@ -58,7 +60,7 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
         })?;
     }
     let mut chosen = options.interface.clone();
-    let mut other = None;
+    let (mut other, mut is_fd) = (None, false);
     let mut sink = Sink::new(options.output == Output::Frames);
     while let Some(entry) = log.next() {
         let entry = entry?;
@@ -68,6 +70,7 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
             player.ignore();
             continue;
         }
+        is_fd |= matches!(&entry.content, Content::Frame(frame) if frame.is_fd());
         match player.play(&entry, |at, frame| sink.put(interface, at, frame)) {
             Ok(()) => {}
             Err(Stop::Line(error)) => return Err(error.in_file(file).at_line(log.line())),
@@ -80,6 +83,7 @@ fn play<R: BufRead>(options: &ReplayOptions, file: &Path, mut log: LogReader<R>)
         return without_reader(&error);
     }
     let elapsed_s = start.elapsed().as_secs_f64();
+    warn_of_nothing(player.tally(), is_fd && options.config.transport == Transport::Classic);
     let summary = Summary::new(player.tally(), player.has_changed().unwrap_or(false), elapsed_s);
     match options.output {
         Output::Frames | Output::Bus(_) => {}
@@ -121,6 +125,14 @@ fn without_reader(error: &io::Error) -> Result<Verdict, Error> {
     match error.kind() {
         ErrorKind::BrokenPipe => Ok(Verdict::Pass),
         _ => Err(Error::unwritable(Path::new("standard output"), error)),
+    }
+}
+
+/// Says so if no frame was one of the catalogue's: the log is of another bus, or of this one by other identifiers.
+fn warn_of_nothing(tally: &Tally, is_fd: bool) {
+    if tally.recognised().is_empty() && tally.refused().is_empty() {
+        let remedy = if is_fd { "the log has CAN FD frames: give --fd" } else { "give --base-id or --place" };
+        output::say(&format!("warning: none of {} frames is for the unit; {remedy}", tally.frames()));
     }
 }
 

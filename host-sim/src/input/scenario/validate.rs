@@ -58,7 +58,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let ego = index_of_ego(&document, ego, vehicles.len())?;
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
-    let transport = bus::read(top.section("bus")?)?;
+    let bus = bus::read(top.section("bus")?)?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -80,7 +80,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
         ego,
         channel,
         envelope,
-        transport,
+        bus,
         identifiers: Identifiers::DEFAULT,
     })
 }

@@ -116,6 +116,7 @@ impl Traffic<'_> {
                 .map_err(|cause| refused(&cause))?,
         );
         vehicle.limit_slots(self.conditions.slots);
+        vehicle.acknowledge(self.corridor.bus.actuator_state);
         let ground = Ground { road: lane.road, odometer_m };
         let crossings = lane.stops.iter().map(|stop| {
             let junction = &self.network.junctions[stop.intersection];

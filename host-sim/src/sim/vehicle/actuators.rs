@@ -6,12 +6,29 @@
 
 use std::collections::VecDeque;
 
-use holdover::wire::command::Effort;
+use holdover::wire::actuators::{ActuatorState, Control};
+use holdover::wire::command::{Command, Effort, ModeCode};
+
+use super::Vehicle;
 
 /// The timeout of the command, as in the catalogue, in seconds.
 pub const COMMAND_TIMEOUT_S: f64 = 0.05;
 /// Acceleration without a command, in m/s²: braking that surprises no vehicle behind.
 pub const WITHOUT_COMMAND_MPS2: f64 = -2.0;
+
+impl Vehicle {
+    /// Sets whether the actuators acknowledge the unit's commands.
+    pub fn acknowledge(&mut self, acknowledges: bool) {
+        self.actuator_state = acknowledges.then(ActuatorState::default);
+    }
+}
+
+/// What the actuators of a vehicle say once this command is in force.
+#[must_use]
+pub fn acknowledged(command: &Command, stands: bool) -> ActuatorState {
+    let control = if command.mode == ModeCode::Standby { Control::Ready } else { Control::Driving };
+    ActuatorState { control, accelerator: false, brake: false, holding: command.hold && stands, tick: command.tick }
+}
 
 /// The actuators.
 #[derive(Clone, Debug, PartialEq)]

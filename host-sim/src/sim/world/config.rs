@@ -22,7 +22,7 @@ pub fn machine(scenario: &Scenario, index: usize) -> Machine {
 pub fn config(scenario: &Scenario, index: usize) -> Config {
     let vehicle = &scenario.vehicles[index];
     let mut config = Config::car(station(index));
-    config.transport = scenario.transport;
+    config.transport = scenario.bus.transport;
     config.identifiers = scenario.identifiers;
     config.period = duration(scenario.period_s);
     config.length = distance(vehicle.length_m);
