@@ -31,7 +31,7 @@
 #define HOLDOVER_VERSION 256
 
 // Bytes of memory that a unit needs, on every target.
-#define HOLDOVER_UNIT_SIZE 44544
+#define HOLDOVER_UNIT_SIZE 44800
 
 // What the address of that memory has to be a multiple of.
 #define HOLDOVER_UNIT_ALIGN 8

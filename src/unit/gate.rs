@@ -132,7 +132,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// passed by more than a vehicle's length is not on its path.
     fn obstacles_seen(&self) -> impl Iterator<Item = Obstacle> {
         let (scene, now, rearmost) = (self.scene, self.now, self.rearmost);
-        let target = scene.visible().and_then(|index| Some((index, scene.peers.get(index)?.station()?)));
+        let target = scene.visible().and_then(|index| scene.whose(index));
         let is_passed = move |rear: &Bound| rearmost.ahead_of(rear.highest_position()) > DEFAULT_LENGTH;
         let ahead = scene.ranging.strangers(now, target).filter(move |rear| !is_passed(rear));
         ahead.map(move |rear| {

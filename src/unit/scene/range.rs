@@ -19,6 +19,7 @@ use crate::parameters::{LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUN
 use crate::peers::{Sample, excess, largest_error, largest_speed_error};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::Slot;
 use crate::wire::range_sensor::RangeSample;
 
 /// From when the sensor sends a view to when the view has been on the bus, at most: it waits for a frame that is on the bus, and
@@ -111,8 +112,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// the peer or of another vehicle only corrects the estimate.
     fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<Whose> {
         let is_disputed = self.is_contradicted(index, now);
+        let whose = self.whose(index)?;
         let track = self.peers.get_index_mut(index)?;
-        let (station, heard) = (track.station()?, track.newest().map(|newest| newest.received));
+        let heard = track.newest().map(|newest| newest.received);
         let Some(length) = track.published_length() else {
             self.raise(index, sight);
             return None;
@@ -128,7 +130,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         } else {
             Verdict::Contradicts
         };
-        if self.ranging.judge((index, station), now, verdict, heard) {
+        if self.ranging.judge(whose, now, verdict, heard) {
             health.count(Cause::RangeDisagrees);
         }
         if is_disputed {
@@ -153,22 +155,27 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if let Some(newest) = newest {
             self.correct(index, sight, front, &bound, &newest);
         }
-        is_certain.then_some((index, station))
+        is_certain.then_some(whose)
     }
 
     /// Whether what is seen and what is heard of a peer contradict one another.
     pub fn is_contradicted(&self, index: usize, now: Instant) -> bool {
-        self.heard_of(index).is_some_and(|(station, heard)| self.ranging.disagrees(station, now, heard))
+        self.heard_of(index).is_some_and(|(whose, heard)| self.ranging.disagrees(whose, now, heard))
     }
 
     /// Whether the sensor sees that a peer is not where it is held to be.
     pub fn is_seen_past(&self, index: usize, now: Instant) -> bool {
-        self.heard_of(index).is_some_and(|(station, heard)| self.ranging.sees_past(station, now, heard))
+        self.heard_of(index).is_some_and(|(whose, heard)| self.ranging.sees_past(whose, now, heard))
+    }
+
+    /// Whose place is in a slot.
+    pub fn whose(&self, index: usize) -> Option<Whose> {
+        Some((Slot(u8::try_from(index).ok()?), self.peers.get(index)?.station()?))
     }
 
     fn heard_of(&self, index: usize) -> Option<(Whose, Option<Instant>)> {
         let track = self.peers.get(index)?;
-        Some(((index, track.station()?), track.newest().map(|newest| newest.received)))
+        Some((self.whose(index)?, track.newest().map(|newest| newest.received)))
     }
 
     /// Corrects the estimate by the view: moves the horizon where the estimated speed may be right, and starts it anew where not.

@@ -18,7 +18,7 @@ use crate::model::Reading;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
-use crate::wire::StationHash;
+use crate::wire::{Slot, StationHash};
 
 /// A view older than this is not driven by. It also does not show any more that no vehicle is nearer.
 const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
@@ -76,7 +76,7 @@ impl Sight {
 }
 
 /// Whose place is compared with a view: the slot, because two vehicles may have one name, and the name, because a slot changes hands.
-pub(in crate::unit) type Whose = (usize, StationHash);
+pub(in crate::unit) type Whose = (Slot, StationHash);
 
 /// Views that what is certain of a station excludes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
