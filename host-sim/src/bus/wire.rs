@@ -2,29 +2,20 @@
 //! the instant of its end on a bus of 500 kbit/s, classic CAN or CAN FD; the data phase of CAN FD has 2 Mbit/s.
 //!
 //! One frame is on the bus at a time. Of the frames that wait, the one with the dominant identifier is next; frames of one
-//! identifier stay in order. Every frame takes its own bits, with the stuff bits that its content and its CRC need, and
-//! three bits of intermission follow. In CAN FD the stuff bits around the CRC are fixed, so that its value does not matter.
-//! Neither errors nor full mailboxes are modelled.
+//! identifier stay in order. Every frame takes its own bits ([`length`]), and three bits of intermission follow. Neither
+//! errors nor full mailboxes are modelled.
 
 use std::collections::{BTreeMap, VecDeque};
 
 use embedded_can::{Frame as _, Id};
-use holdover::time::{Duration, Instant};
+use holdover::time::Instant;
 
 use super::Frame;
+use length::INTERMISSION;
 
-/// Time of a bit at 500 kbit/s, and at 2 Mbit/s, in ns.
-const BIT_NS: u32 = 2_000;
-const DATA_BIT_NS: u32 = 500;
-/// Delimiter of the CRC, acknowledgement with its delimiter, and end of frame. They are not stuffed.
-const TAIL_BITS: u32 = 1 + 2 + 7;
-/// Bits between two frames.
-const INTERMISSION_BITS: u32 = 3;
-/// Bits of the CRC, and its polynomial without the highest term.
-const CRC_BITS: u32 = 15;
-const CRC_POLYNOMIAL: u16 = 0x4599;
-/// After so many equal bits the opposite bit is stuffed.
-const EQUAL_BITS: u32 = 5;
+mod length;
+
+pub use length::length;
 
 /// A frame that is to be sent, and the number of the node that sends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,7 +72,7 @@ impl Wire {
         }
         let (_, wanted) = self.waiting.pop_first()?;
         let end = starts.plus(length(&wanted.frame));
-        self.free = end.plus(micros(INTERMISSION_BITS));
+        self.free = end.plus(INTERMISSION);
         Some((end, wanted))
     }
 }
@@ -89,100 +80,6 @@ impl Wire {
 impl Default for Wire {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-/// The time for which the frame is on the bus, from its first bit to the end of the end of frame.
-#[must_use]
-pub fn length(frame: &Frame) -> Duration {
-    match frame.is_fd() {
-        true => fd_length(frame),
-        false => micros(bits(frame)),
-    }
-}
-
-fn micros(bits: u32) -> Duration {
-    nanos(bits * BIT_NS)
-}
-
-/// To the next microsecond.
-fn nanos(nanos: u32) -> Duration {
-    Duration::from_micros(i64::from(nanos.div_ceil(1_000)))
-}
-
-/// The time of a frame of CAN FD: with the higher bit rate, if its flags say so, from the error state indicator to the CRC.
-fn fd_length(frame: &Frame) -> Duration {
-    const BIT_RATE_SWITCH: u8 = 1;
-    let switch = u32::from(frame.flags() & BIT_RATE_SWITCH);
-    let mut stuffing = Stuffing::default();
-    stuffing.put(0, 1); // start of frame
-    match frame.id() {
-        // Identifier, no remote request, standard, CAN FD, reserved, bit rate switch.
-        Id::Standard(id) => stuffing.put(u32::from(id.as_raw()) << 5 | 0b0_0100 | switch, 16),
-        Id::Extended(id) => {
-            stuffing.put((id.as_raw() >> 18) << 2 | 0b11, 13);
-            stuffing.put((id.as_raw() & 0x3_FFFF) << 4 | 0b0100 | switch, 22);
-        }
-    }
-    let arbitration = stuffing.bits;
-    let data = frame.data();
-    let code = holdover::wire::load::fd::code_of(data.len());
-    stuffing.put(code, 5); // error state indicator, length
-    data.iter().for_each(|byte| stuffing.put(u32::from(*byte), 8));
-    let fast = stuffing.bits - arbitration + holdover::wire::load::fd::crc_field_bits(data.len());
-    let bit_ns = if switch == 1 { DATA_BIT_NS } else { BIT_NS };
-    nanos((arbitration + TAIL_BITS) * BIT_NS + fast * bit_ns)
-}
-
-/// The number of bits of a frame, stuff bits among them.
-fn bits(frame: &Frame) -> u32 {
-    let mut stuffing = Stuffing::default();
-    let dlc = frame.dlc() as u32;
-    let remote = u32::from(frame.is_remote_frame());
-    stuffing.put(0, 1); // start of frame
-    match frame.id() {
-        // Identifier, remote request, two dominant bits.
-        Id::Standard(id) => stuffing.put(u32::from(id.as_raw()) << 3 | remote << 2, 14),
-        Id::Extended(id) => {
-            stuffing.put((id.as_raw() >> 18) << 2 | 0b11, 13);
-            stuffing.put((id.as_raw() & 0x3_FFFF) << 3 | remote << 2, 21);
-        }
-    }
-    stuffing.put(dlc, 4);
-    frame.data().iter().for_each(|byte| stuffing.put(u32::from(*byte), 8));
-    stuffing.put(stuffing.crc.into(), CRC_BITS);
-    stuffing.bits + TAIL_BITS
-}
-
-/// The bits of a frame up to its CRC.
-#[derive(Default)]
-struct Stuffing {
-    /// Number of bits so far, with stuff bits.
-    bits: u32,
-    crc: u16,
-    /// The last bit, and the number of its equals up to it.
-    last: bool,
-    equal: u32,
-}
-
-impl Stuffing {
-    /// Puts the lowest `count` bits of `value`, the highest of them first.
-    fn put(&mut self, value: u32, count: u32) {
-        for place in (0..count).rev() {
-            let bit = value >> place & 1 == 1;
-            let divides = bit != (self.crc >> (CRC_BITS - 1) & 1 == 1);
-            self.crc = self.crc << 1 & 0x7FFF ^ if divides { CRC_POLYNOMIAL } else { 0 };
-            self.put_bit(bit);
-            if self.equal == EQUAL_BITS {
-                self.put_bit(!bit);
-            }
-        }
-    }
-
-    fn put_bit(&mut self, bit: bool) {
-        self.equal = if self.bits > 0 && bit == self.last { self.equal + 1 } else { 1 };
-        self.last = bit;
-        self.bits += 1;
     }
 }
 
@@ -211,46 +108,6 @@ mod tests {
         Frame::standard(id, &[0x55]).unwrap()
     }
 
-    #[test]
-    fn a_frame_has_the_bits_that_can_utils_count() {
-        let standard = |id: u16, data: &[u8]| bits(&Frame::standard(id, data).unwrap());
-        let extended = |id: u32, data: &[u8]| bits(&Frame::extended(id, data).unwrap());
-        assert_eq!(standard(0x123, &[]), 45);
-        assert_eq!(standard(0, &[]), 50);
-        assert_eq!(standard(0x7FF, &[0; 8]), 123);
-        assert_eq!(standard(0x480, &[0x3C; 8]), 126);
-        assert_eq!(standard(0x482, &[0, 1, 2, 3, 4, 5, 6, 7]), 118);
-        assert_eq!(standard(0x555, &[0x55; 8]), 109);
-        assert_eq!(extended(0x1234_5678, &[1, 2, 3]), 92);
-        assert_eq!(extended(0, &[0; 8]), 147);
-        assert_eq!(extended(0x1FFF_FFFF, &[0xFF; 8]), 146);
-    }
-
-    #[test]
-    fn a_frame_of_can_fd_has_its_bits_at_two_rates() {
-        let micros = |flags, length| {
-            let frame = Frame::fd(StandardId::new(0x555).unwrap(), flags, &[0x55; 64][..length]).unwrap();
-            super::length(&frame).as_micros()
-        };
-        // 17 bits of arbitration and 10 at the end; without stuff bits in 0x55: 5 and 8 N bits, 27 or 32 of the CRC. 0b10100 of
-        // the header, then the code of the length, has no five equal bits at 8 and 64 bytes.
-        assert_eq!(micros(5, 8), 27 * 2 + (5 + 64 + 27) / 2);
-        assert_eq!(micros(4, 8), (27 + 5 + 64 + 27) * 2);
-        assert!((27 * 2 + (5 + 512 + 32) / 2..27 * 2 + (5 + 512 + 32) / 2 + 3).contains(&micros(5, 64)));
-    }
-
-    #[test]
-    fn no_frame_of_the_catalogue_takes_longer_than_the_worst_case() {
-        for (length, fill) in
-            [12, 16, 64].into_iter().flat_map(|length| [0, 0xFF, 0x3C, 0x0F].map(|fill| (length, fill)))
-        {
-            let frame = Frame::fd(StandardId::ZERO, 5, &[fill; 64][..length]).unwrap();
-            let worst = holdover::wire::load::fd::worst_nanos(500_000, 2_000_000, false, length);
-            let took = super::length(&frame).plus(super::micros(INTERMISSION_BITS)).as_micros();
-            assert!(took <= i64::from(worst.div_ceil(1_000)), "{length} {fill}: {took} us of {worst} ns");
-        }
-    }
-
     /// The frames in the order in which they are on the wire, each with the instant of its end.
     fn on_wire(wanted: Vec<(Instant, Frame)>) -> Vec<(Instant, Frame)> {
         let mut wire = Wire::new();
@@ -268,7 +125,7 @@ mod tests {
         let order: Vec<Frame> = sent.iter().map(|(_, frame)| *frame).collect();
         assert_eq!(order, [frame(9), first, second, frame(7), frame(1)]);
         assert_eq!(sent[0].0, at(0).plus(length(&frame(9))));
-        assert_eq!(sent[1].0, sent[0].0.plus(micros(INTERMISSION_BITS)).plus(length(&first)));
+        assert_eq!(sent[1].0, sent[0].0.plus(INTERMISSION).plus(length(&first)));
         assert_eq!(sent[4].0, at(9000).plus(length(&frame(1))));
     }
 
@@ -295,7 +152,7 @@ mod tests {
         let (end, first) = wire.next_before(at(11)).unwrap();
         assert_eq!((end, first.from), (at(10).plus(length(&frame(7))), 1));
         // The second one would start after the first one and its intermission. Until then another one may come.
-        let start = end.plus(micros(INTERMISSION_BITS));
+        let start = end.plus(INTERMISSION);
         assert_eq!(wire.next_before(start), None);
         wire.want(start, Wanted { from: 3, frame: frame(8) });
         let later = Instant::from_micros(start.as_micros() + 1);
