@@ -52,9 +52,9 @@ pub struct Scenario {
     pub channel: ChannelModel,
     /// The envelope of every unit.
     pub envelope: Envelope,
-    /// The frames on every vehicle's own bus.
+    /// Every vehicle's own bus.
     pub bus: VehicleBus,
-    /// Their identifiers. A scenario's file does not tell them; a device under test may have its own.
+    /// The identifiers on it. A scenario's file does not tell them; a device under test may have its own.
     pub identifiers: Identifiers,
 }
 

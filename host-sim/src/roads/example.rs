@@ -1,11 +1,13 @@
-//! Inputs of the tests of a corridor: the corridor that comes with the program, the corridor of a text, and a plain
-//! sighting of a vehicle.
+//! Inputs of the tests of a corridor: the corridor that comes with the program, the corridor of a text, a plain trip,
+//! and a plain sighting of a vehicle.
 
 use std::path::Path;
 
 use super::description::Corridor;
 use super::read;
+use super::trips::Trip;
 use super::watch::Sighting;
+use crate::input::kind::Kind;
 use crate::sim::station::station;
 
 /// The scenario file that comes with the program.
@@ -19,6 +21,11 @@ pub fn of(text: &str) -> Corridor {
 /// The corridor that comes with the program.
 pub fn corridor() -> Corridor {
     of(TEXT)
+}
+
+/// A car that arrives by a road at time 0, at 10 m/s, and is silent only after a minute.
+pub fn trip(road: usize) -> Trip {
+    Trip { road, at_s: 0.0, speed_mps: 10.0, kind: Kind::Car, dark_after_s: 60.0, odometer_m: 0.0 }
 }
 
 /// A car at `way_m` on a road, at 10 m/s, without a target.

@@ -43,6 +43,17 @@ pub struct Sides {
     pub emergencies: Side,
 }
 
+impl Sides {
+    /// Number of sides.
+    pub const COUNT: usize = 5;
+
+    /// All of them, in their order.
+    #[must_use]
+    pub fn all(&self) -> [&Side; Self::COUNT] {
+        [&self.holdover, &self.perfect_link, &self.alone, &self.envelope, &self.emergencies]
+    }
+}
+
 /// A corridor with its map.
 pub struct Experiment {
     /// The description.
@@ -105,7 +116,7 @@ impl Experiment {
     /// # Errors
     /// As for [`run`](Self::run).
     pub fn sides(&self, seeds: &[u64], done: impl Fn() + Sync) -> Result<Sides, Error> {
-        let conditions = five(&self.corridor);
+        let conditions = of_sides(&self.corridor);
         let jobs: Vec<(u64, Conditions)> =
             seeds.iter().flat_map(|seed| conditions.map(|conditions| (*seed, conditions))).collect();
         let outcomes = self.all(&jobs, done)?;
@@ -202,7 +213,7 @@ fn with_ego(corridor: &Corridor, network: &Network, seed: u64) -> (Vec<Trip>, Op
 }
 
 /// The conditions of the sides, in the order of [`Sides`].
-fn five(corridor: &Corridor) -> [Conditions; 5] {
+fn of_sides(corridor: &Corridor) -> [Conditions; Sides::COUNT] {
     let scenario = Conditions::of(corridor);
     let [without, with] =
         [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
@@ -232,12 +243,12 @@ mod tests {
         let asked = Overrides { envelope: true, ..Overrides::default() };
         for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
             let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
-            let five = five(&corridor);
-            assert_eq!(five.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true]);
-            assert_eq!(five[1].radio, corridor.radio.perfect());
-            let is_alone = five.map(|conditions| conditions.when_lost == WhenLost::Alone);
+            let sides = of_sides(&corridor);
+            assert_eq!(sides.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true]);
+            assert_eq!(sides[1].radio, corridor.radio.perfect());
+            let is_alone = sides.map(|conditions| conditions.when_lost == WhenLost::Alone);
             assert_eq!(is_alone, [false, false, true, false, false]);
-            assert_eq!(five.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.05]);
+            assert_eq!(sides.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.05]);
         }
     }
 }

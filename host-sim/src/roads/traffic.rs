@@ -356,7 +356,6 @@ fn followed(vehicle: &Vehicle) -> Option<StationHash> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::kind::Kind;
     use crate::roads::example;
     use crate::roads::experiment::Experiment;
     use crate::roads::network::RUN_OUT_M;
@@ -386,8 +385,7 @@ mod tests {
     fn who_has_left_is_still_seen_until_it_vanishes() {
         let experiment = Experiment::new(example::corridor());
         let Experiment { corridor, network, itineraries } = &experiment;
-        let kind = Kind::Car;
-        let trips = [Trip { road: 2, at_s: 0.0, speed_mps: 10.0, kind, dark_after_s: 60.0, odometer_m: 0.0 }];
+        let trips = [example::trip(2)];
         let mut traffic = Traffic::new(corridor, network, itineraries, &trips, Conditions::of(corridor), 1);
         let mut farthest = Farthest::default();
         traffic.advance(60.0, &mut [&mut farthest]).unwrap();

@@ -124,7 +124,9 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let logged = usize::from(options.candump.is_some());
-    let bar = ProgressBar::new((5 * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64);
+    let bar = ProgressBar::new(
+        (Sides::COUNT * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64,
+    );
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
         bar.set_style(style);
     }
@@ -161,10 +163,8 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
     let failures = verdict::failures(&options.corridor.limits, &sides);
-    let driven_s = [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope, &sides.emergencies]
-        .iter()
-        .map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64)
-        .sum::<f64>();
+    let driven_s =
+        sides.all().iter().map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64).sum::<f64>();
     let results = Results {
         scenario: options.name.clone(),
         seed: first,

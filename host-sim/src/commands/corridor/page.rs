@@ -3,7 +3,7 @@
 use super::options::CorridorOptions;
 use super::plots::{plots, scale};
 use super::scale::{Load, SPAN_S};
-use super::table::{LINES, SCALE, SIDES, proportion, scale_row, sides};
+use super::table::{LINES, SCALE, SIDES, proportion, scale_row};
 use super::{Results, Sensors};
 use crate::commands::motions;
 use crate::report::page::{Cell, Page};
@@ -23,7 +23,7 @@ pub fn render(
     page.verdict(results.failures.is_empty(), &reasons(results));
     let header: Vec<&str> = ["Figure"].into_iter().chain(SIDES).collect();
     let row = |(name, of): &super::table::Line| {
-        let cells = sides(results).into_iter().map(|side| Cell::number(of(side)));
+        let cells = results.sides.all().into_iter().map(|side| Cell::number(of(side)));
         [Cell::text(name.trim())].into_iter().chain(cells).collect()
     };
     let caption = "All seeds together. Beside what the scenario describes, without the envelope: the same trips with a link \

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::Results;
 use super::scale::Load;
+use crate::roads::experiment::Sides;
 use crate::roads::figures::Side;
 
 /// A figure's name, and its text for a side.
@@ -38,14 +39,7 @@ pub const LINES: &[Line] = &[
 ];
 
 /// The names of the sides, in the order of the table.
-pub const SIDES: [&str; 5] = ["holdover", "perfect link", "drives alone", "with envelope", "emergencies"];
-
-/// The sides, in the same order.
-#[must_use]
-pub fn sides(results: &Results) -> [&Side; 5] {
-    let sides = &results.sides;
-    [&sides.holdover, &sides.perfect_link, &sides.alone, &sides.envelope, &sides.emergencies]
-}
+pub const SIDES: [&str; Sides::COUNT] = ["holdover", "perfect link", "drives alone", "with envelope", "emergencies"];
 
 /// The tables.
 #[must_use]
@@ -65,7 +59,7 @@ pub fn text(results: &Results) -> String {
     text.push('\n');
     for (name, of) in LINES {
         let _ = write!(text, "{name:30}");
-        sides(results).iter().for_each(|side| {
+        results.sides.all().iter().for_each(|side| {
             let _ = write!(text, "{:>14}", of(side));
         });
         text.push('\n');

@@ -79,11 +79,9 @@ impl Traffic<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::kind::Kind;
     use crate::roads::conditions::Conditions;
     use crate::roads::example;
     use crate::roads::experiment::Experiment;
-    use crate::roads::trips::Trip;
     use crate::roads::watch::{Sighting, Watch};
 
     #[test]
@@ -118,8 +116,7 @@ mod tests {
     fn it_brakes_as_hard_as_it_has_published_stands_for_the_time_and_drives_on() {
         let experiment = Experiment::new(example::corridor());
         let Experiment { corridor, network, itineraries } = &experiment;
-        let kind = Kind::Car;
-        let trips = [Trip { road: 2, at_s: 0.0, speed_mps: 10.0, kind, dark_after_s: 60.0, odometer_m: 0.0 }];
+        let trips = [example::trip(2)];
         let emergencies = Emergencies { share: 1.0, stands_s: 10.0 };
         let conditions = Conditions { emergencies, ..Conditions::of(corridor) };
         let mut speeds = Speeds::default();
@@ -128,7 +125,7 @@ mod tests {
         assert_eq!((remains.unserved, remains.emergencies), (0, 1));
         let standing = speeds.0.iter().filter(|speed_mps| **speed_mps <= STANDING_MPS).count();
         assert!((990..=1_100).contains(&standing), "{standing} ticks of 10 ms");
-        let hardest = kind.limits().emergency_braking.get().to_num::<f64>();
+        let hardest = trips[0].kind.limits().emergency_braking.get().to_num::<f64>();
         let braking = speeds.0.windows(2).map(|pair| (pair[0] - pair[1]) / 0.01).fold(0.0, f64::max);
         assert!((0.9 * hardest..=hardest + 1e-6).contains(&braking), "{braking} of {hardest}");
     }
