@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 // The most frames that one tick sends.
-#define HOLDOVER_MAX_FRAMES 16
+#define HOLDOVER_MAX_FRAMES 20
 
 // In front of an identifier of 11 bits: `HOLDOVER_STANDARD | 0x123`.
 #define HOLDOVER_STANDARD 1073741824
@@ -31,7 +31,7 @@
 #define HOLDOVER_VERSION 256
 
 // Bytes of memory that a unit needs, on every target.
-#define HOLDOVER_UNIT_SIZE 44800
+#define HOLDOVER_UNIT_SIZE 48000
 
 // What the address of that memory has to be a multiple of.
 #define HOLDOVER_UNIT_ALIGN 8
@@ -185,6 +185,8 @@ enum holdover_status_t
   HOLDOVER_REFUSED_DRIVER_OVERRIDE = -98,
   // Not a refusal of a frame: the actuators acknowledge no command in force.
   HOLDOVER_REFUSED_COMMAND_UNHEEDED = -99,
+  // Not a refusal of a frame: no room for the passes of one more station.
+  HOLDOVER_REFUSED_PASSES_FULL = -100,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -316,6 +318,10 @@ typedef struct holdover_identifiers_t {
   uint32_t own_position;
   // `OwnRoute`.
   uint32_t own_route;
+  // `OwnPass`.
+  uint32_t own_pass;
+  // `PeerPass`.
+  uint32_t peer_pass;
   // `Health`.
   uint32_t health;
   // `Peer{slot}MotionA`.
@@ -466,8 +472,12 @@ typedef struct holdover_envelope_t {
 typedef struct holdover_config_t {
   // The own station's 8-bit hash.
   uint8_t station;
+  // Whether a range sensor is fitted: 0 or 1. With one, the gate trusts other vehicles' passes.
+  uint8_t range_sensor;
   // First CAN identifier of the block in which all messages lie.
   uint16_t base_id;
+  // The whole identity of the own station, of which `station` is the low 8 bits. At intersections no two vehicles have the same.
+  uint32_t station_id;
   // Messages that lie elsewhere.
   struct holdover_identifiers_t identifiers;
   // Period of the task that calls `holdover_tick`, in us.

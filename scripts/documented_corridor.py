@@ -7,7 +7,7 @@ import json
 import re
 import sys
 
-SIDES = ["holdover", "perfect_link", "alone", "envelope", "emergencies"]
+SIDES = ["holdover", "perfect_link", "alone", "envelope", "envelope_perfect_link", "emergencies"]
 ROWS = {
     "collisions": lambda side: side["collisions_on_roads"] + side["collisions_at_intersections"],
     "not served": lambda side: side["unserved"],

@@ -122,6 +122,8 @@ impl Envelope {
 pub struct Config {
     /// The ego's own station.
     pub station: StationHash,
+    /// The whole identity of the ego's station, of which `station` is the low 8 bits. At intersections no two vehicles have the same.
+    pub station_id: u32,
     /// Where each message of the catalogue lies on the bus.
     pub identifiers: Identifiers,
     /// Which frames the bus carries.
@@ -146,12 +148,16 @@ pub struct Config {
     pub link: Link,
     /// The last gate.
     pub envelope: Option<Envelope>,
+    /// Whether a range sensor is fitted. With one, the gate trusts other vehicles' passes: the sensor sees a vehicle that stays in the
+    /// conflict area all the same.
+    pub range_sensor: bool,
 }
 
 impl Config {
     /// Of a unit that is not started: all zero, and refused by every check.
     pub(crate) const NONE: Self = Self {
         station: StationHash(0),
+        station_id: 0,
         identifiers: Identifiers::NONE,
         transport: Transport::Classic,
         period: Duration::ZERO,
@@ -191,6 +197,7 @@ impl Config {
             assumed_delay: Duration::ZERO,
         },
         envelope: None,
+        range_sensor: false,
     };
 
     /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
@@ -199,6 +206,7 @@ impl Config {
     pub const fn car(station: StationHash) -> Self {
         Self {
             station,
+            station_id: station.0 as u32,
             identifiers: Identifiers::DEFAULT,
             transport: Transport::Classic,
             period: Duration::from_millis(10),
@@ -242,6 +250,7 @@ impl Config {
                 assumed_delay: Duration::from_millis(40),
             },
             envelope: None,
+            range_sensor: false,
         }
     }
 

@@ -90,6 +90,7 @@ causes! {
     EgoStation = 33, "ego_station", "No refusal: an EgoMotion of another station than the unit is configured for.";
     DriverOverride = 34, "driver_override", "No refusal: the driver took over by a pedal while the unit was asked to drive; once for each time.";
     CommandUnheeded = 35, "command_unheeded", "No refusal: for 200 ms ActuatorState has acknowledged no command of the last 50 ms while the unit drove; once for each time.";
+    PassesFull = 36, "passes_full", "No refusal: a station comes to the next intersection, and the unit knows so many that there is no room for it. No pass is firm then.";
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so

@@ -3,8 +3,8 @@
 //!
 //! A *pass* is a window of GNSS time. Its vehicle may be in one conflict area only during that window: it goes in only if it is certain
 //! to be out by the end. So the vehicle need not hear anything while it is in the area. Each vehicle *claims* windows and publishes its
-//! claims with every message. The model checker in `tests/passes` runs these functions. The unit does not use them yet. The rules and
-//! their proof are in `docs/COORDINATION.md`.
+//! claims with every message. The model checker in `tests/passes` runs these functions, and so does the unit. The rules and their proof are
+//! in `docs/COORDINATION.md`.
 //!
 //! | rule | what | here |
 //! |---|---|---|
@@ -17,6 +17,15 @@
 //! [`Rules::clocks`].
 
 use crate::time::{Duration, GnssTime};
+
+mod known;
+mod own;
+
+pub use known::{Full, KNOWN, List, Station};
+pub use own::{Order, Outlook, Own, Slack};
+
+/// So many windows a vehicle claims at once: an old one, and a piece that is added.
+pub const PIECES: usize = 2;
 
 /// A window of time in a conflict area: from the entry of the vehicle's front to the exit of its rear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -60,6 +69,13 @@ pub struct Claim {
 }
 
 impl Claim {
+    /// Of nobody: all zero.
+    const NONE: Self = Self {
+        at: GnssTime::from_micros(0),
+        window: Window { entry: GnssTime::from_micros(0), exit: GnssTime::from_micros(0) },
+        station: 0,
+    };
+
     /// Whether it has priority over the other (F3), by the time and the station alone.
     #[must_use]
     pub fn precedes(&self, other: &Self) -> bool {
@@ -94,6 +110,16 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// Those of the unit. Messages come five times a second and may be late, and no silence that is to surprise nobody is longer than 4 s.
+    /// Clocks differ by up to 50 ms, and times are told by 10 ms.
+    pub const UNIT: Self = Self {
+        silence: Duration::from_millis(4_500),
+        clocks: Duration::from_millis(60),
+        clearance: Duration::from_millis(140),
+        forgotten: Duration::from_millis(30_000),
+        step: crate::wire::pass::STEP,
+    };
+
     /// From when on a claim that is made now may count (F2): its station has been on air since `on_air`, and has stamped its last
     /// message with `said`.
     ///
@@ -174,10 +200,10 @@ pub fn is_covered(stay: &Window, firm: impl Iterator<Item = Window> + Clone) -> 
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    const RULES: Rules = Rules {
+    pub const RULES: Rules = Rules {
         silence: Duration::from_micros(40),
         clocks: Duration::from_micros(2),
         clearance: Duration::from_micros(3),
@@ -185,15 +211,15 @@ mod tests {
         step: Duration::from_micros(1),
     };
 
-    fn time(micros: u64) -> GnssTime {
+    pub fn time(micros: u64) -> GnssTime {
         GnssTime::from_micros(micros)
     }
 
-    fn window(entry: u64, exit: u64) -> Window {
+    pub fn window(entry: u64, exit: u64) -> Window {
         Window { entry: time(entry), exit: time(exit) }
     }
 
-    fn claim(at: u64, window: Window, station: u32) -> Claim {
+    pub fn claim(at: u64, window: Window, station: u32) -> Claim {
         Claim { at: time(at), window, station }
     }
 

@@ -29,11 +29,13 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::{ACCELERATION_STEPS, Command};
+use crate::wire::pass::Pass;
 use crate::wire::quantity::Quantity;
 use crate::wire::{Frame, Identifiers, Received, Receiver, Role};
 use association::Association;
 use gate::{Gate, Last};
 use outbox::{Outbox, Report};
+use pass::Range;
 use scene::Scene;
 
 mod answer;
@@ -44,6 +46,7 @@ mod ego_horizon;
 mod gate;
 mod lane;
 mod outbox;
+mod pass;
 mod room;
 mod scene;
 mod vantage;
@@ -194,7 +197,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         if self.is_started() {
             let is_due = self.outbox.is_due(now, self.scene.config.link.period);
             let own = is_due.then(|| self.foresee(now, last, target));
-            self.send(now, own.as_ref().map(Option::as_ref), answer);
+            let pass = own.as_ref().and_then(|_| self.claim(now, ego.as_ref()));
+            self.send(now, own.as_ref().map(Option::as_ref), pass, answer);
         }
         self.demand_before = last.demand;
     }
@@ -317,17 +321,33 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(own)
     }
 
+    /// Claims passes at the next intersection, and says them when it is their turn.
+    #[inline(never)] // apart from the stack of the horizon
+    fn claim(&mut self, now: Instant, ego: Option<&State>) -> Option<Pass> {
+        let is_kept = self.mode != Mode::Standby && self.scene.config.envelope.is_some();
+        let range = Range::of(&self.scene, now, ego?).filter(|_| is_kept && self.scene.fresh_ego(now).is_some())?;
+        pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
+        let tag = self.outbox.next_tag();
+        if Outbox::is_route_due(tag) { self.scene.say_passes(now, tag) } else { None }
+    }
+
     /// Sends the answer, and the own messages if they are due: then `own` is the ego's motion as far as it is known.
-    fn send(&mut self, now: Instant, own: Option<Option<&Sample>>, answer: &mut Answer) {
+    fn send(&mut self, now: Instant, own: Option<Option<&Sample>>, pass: Option<Pass>, answer: &mut Answer) {
         let Answer { command, estimate, frames, .. } = answer;
         self.outbox.send_answer(command, estimate.as_ref(), &mut self.health, frames);
         if let Some(own) = own {
-            self.send_own(now, own, frames);
+            self.send_own(now, own, pass, frames);
         }
     }
 
-    fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
-        let report = Report { mode: self.mode, gains: self.association.gains(), ego: own };
+    fn send_own(
+        &mut self,
+        now: Instant,
+        own: Option<&Sample>,
+        pass: Option<Pass>,
+        frames: &mut Vec<Frame, MAX_FRAMES>,
+    ) {
+        let report = Report { mode: self.mode, gains: self.association.gains(), ego: own, pass };
         self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }
 }

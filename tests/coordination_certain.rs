@@ -125,11 +125,11 @@ fn who_comes_to_a_crossing_without_the_time_waits_for_it() {
     let in_area = |at: f64, crossing: f64| (crossing - HALF..crossing + HALF + LENGTH).contains(&at);
     junction.run(75.0, |junction| {
         let now = junction.now;
-        junction.drivers[0].is_timed = !(2_000_000..45_000_000).contains(&now);
+        junction.drivers[0].is_timed = !(11_000_000..45_000_000).contains(&now);
         let [ego, other] = &junction.drivers[..] else { panic!("two") };
         let (ego, other) = (ego.body.position, other.body.position);
         assert!(!(in_area(ego, 390.0) && in_area(other, 400.0)), "{:.2} s: {ego:.1} {other:.1}", now as f64 * 1e-6);
-        // It goes by its own clock for 5 s after the last synchronisation, and has arrived at the first crossing by then.
+        // It goes by its own clock for 5 s after the last synchronisation, and cannot stop before the first crossing any more by then.
         assert!(now > 45_000_000 || ego < 390.0 - HALF, "{ego}");
     });
     assert!(junction.drivers[0].body.position > 450.0, "{}", junction.drivers[0].body.position);

@@ -9,7 +9,6 @@ const ORDER: [&str; 20] = [
     "fixed",
     "units",
     "time",
-    "passes",
     "held",
     "health",
     "parameters",
@@ -23,6 +22,7 @@ const ORDER: [&str; 20] = [
     "estimator",
     "controller",
     "coordination",
+    "passes",
     "unit",
     "lockstep",
 ];

@@ -92,6 +92,7 @@ fn tagged(mut message: Message, tag: u8) -> Message {
     match &mut message {
         Message::Ego(said) | Message::Own(said) | Message::Peer(_, said) => of(said),
         Message::Estimate(estimate) => estimate.tag = tag,
+        Message::OwnPass(pass) | Message::PeerPass(pass) => pass.tag = tag,
         _ => {}
     }
     message

@@ -12,6 +12,7 @@ use holdover::wire::estimate::{Ends, TargetEstimate};
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::horizon::{Knot, Knots};
 use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::pass::{Claimed, Pass, PassTime};
 use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::route::Route;
 use holdover::wire::status::Status;
@@ -98,6 +99,20 @@ fn route() -> Said {
     })
 }
 
+fn pass() -> Pass {
+    let claimed = |at, entry, length| Some(Claimed { at: PassTime(at), entry: PassTime(entry), length });
+    Pass {
+        tag: 3,
+        station_id: 0x1234_56C8,
+        intersection: 201,
+        leg: 5,
+        left: Some(77),
+        stamp: PassTime(12_345),
+        arrival: 654_321,
+        claims: [claimed(12_300, 13_000, 321), claimed(12_340, 13_321, 40)],
+    }
+}
+
 #[test]
 fn every_message_has_these_bytes() {
     let driver_request = DriverRequest {
@@ -166,6 +181,8 @@ fn every_message_has_these_bytes() {
         Message::Peer(Slot(7), parameters()),
         Message::Peer(Slot(7), geo()),
         Message::Peer(Slot(7), route()),
+        Message::OwnPass(pass()),
+        Message::PeerPass(pass()),
     ];
     let mut sender = Sender::<8>::new(Identifiers::DEFAULT);
     let mut lines = Vec::new();
@@ -227,4 +244,12 @@ const GOLDEN: &[&str] = &[
     "4FC#AA71190986DB1B15",
     "4FD#45908FF79F036302",
     "4FD#835103890F000000",
+    "496#9B30C8563412C905",
+    "496#65713930F1FBD904",
+    "496#81B20C30C8324101",
+    "496#99F3343009342800",
+    "497#FE30C8563412C905",
+    "497#00713930F1FBD904",
+    "497#E4B20C30C8324101",
+    "497#FCF3343009342800",
 ];

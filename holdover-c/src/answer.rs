@@ -6,7 +6,7 @@ use holdover::fixed::{PositionFormat, SpeedFormat, saturate_i32};
 use crate::frame::Frame;
 
 /// The most frames that one tick sends.
-pub const HOLDOVER_MAX_FRAMES: usize = 16;
+pub const HOLDOVER_MAX_FRAMES: usize = 20;
 
 const _: () = assert!(HOLDOVER_MAX_FRAMES == holdover::MAX_FRAMES);
 

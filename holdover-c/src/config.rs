@@ -12,8 +12,12 @@ pub use identifiers::{HOLDOVER_EXTENDED, HOLDOVER_STANDARD, Identifiers, PeerIde
 pub struct Config {
     /// The own station's 8-bit hash.
     pub station: u8,
+    /// Whether a range sensor is fitted: 0 or 1. With one, the gate trusts other vehicles' passes.
+    pub range_sensor: u8,
     /// First CAN identifier of the block in which all messages lie.
     pub base_id: u16,
+    /// The whole identity of the own station, of which `station` is the low 8 bits. At intersections no two vehicles have the same.
+    pub station_id: u32,
     /// Messages that lie elsewhere.
     pub identifiers: Identifiers,
     /// Period of the task that calls `holdover_tick`, in us.

@@ -20,7 +20,7 @@ const STEPS: usize = 400;
 pub type Unit = OnboardUnit<8, 8, STEPS>;
 
 /// Bytes of memory that a unit needs, on every target.
-pub const HOLDOVER_UNIT_SIZE: usize = 44_800;
+pub const HOLDOVER_UNIT_SIZE: usize = 48_000;
 /// What the address of that memory has to be a multiple of.
 pub const HOLDOVER_UNIT_ALIGN: usize = 8;
 

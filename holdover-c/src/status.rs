@@ -156,6 +156,8 @@ pub enum Status {
     RefusedDriverOverride = -98,
     /// Not a refusal of a frame: the actuators acknowledge no command in force.
     RefusedCommandUnheeded = -99,
+    /// Not a refusal of a frame: no room for the passes of one more station.
+    RefusedPassesFull = -100,
 }
 
 impl From<ConfigError> for Status {
@@ -223,6 +225,7 @@ impl From<Cause> for Status {
             Cause::EgoStation => Self::RefusedEgoStation,
             Cause::DriverOverride => Self::RefusedDriverOverride,
             Cause::CommandUnheeded => Self::RefusedCommandUnheeded,
+            Cause::PassesFull => Self::RefusedPassesFull,
         }
     }
 }
@@ -299,6 +302,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedEgoStation, c"counted: ego_station"),
     (Status::RefusedDriverOverride, c"counted: driver_override"),
     (Status::RefusedCommandUnheeded, c"counted: command_unheeded"),
+    (Status::RefusedPassesFull, c"counted: passes_full"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -227,6 +227,23 @@ fn expected_of(message: &Message) -> Expected {
             .value("Legs", u.legs)
             .either("Ahead", u.ahead.map(|way| si!(way)), "nobody")
             .value("Stations", u.stations),
+        Message::OwnPass(p) | Message::PeerPass(p) => {
+            let e = e
+                .value("Tag", p.tag)
+                .value("StationId", p.station_id)
+                .value("Intersection", p.intersection)
+                .value("Leg", p.leg)
+                .either("Left", p.left.map(f64::from), "none")
+                .value("PassStamp", f64::from(p.stamp.0) / 100.0)
+                .value("Arrival", f64::from(p.arrival) / 100.0);
+            p.claims.iter().enumerate().fold(e, |e, (piece, claimed)| {
+                let name = |signal: &str| format!("{signal}{}", piece + 1);
+                let time = |time: Option<u16>| f64::from(time.unwrap_or(0)) / 100.0;
+                e.value(&name("Claimed"), time(claimed.map(|claimed| claimed.at.0)))
+                    .value(&name("Entry"), time(claimed.map(|claimed| claimed.entry.0)))
+                    .either(&name("Length"), claimed.map(|claimed| time(Some(claimed.length))), "no window")
+            })
+        }
         Message::Command(c) => {
             let e = e
                 .value("Acceleration", si!(c.acceleration))
@@ -301,6 +318,8 @@ fn names_of(message: &Message) -> Vec<String> {
         Message::Actuators(_) => vec!["ActuatorState".into()],
         Message::Range(_) => vec!["RangeSensor".into()],
         Message::Unserved(_) => vec!["PeersUnserved".into()],
+        Message::OwnPass(_) => vec!["OwnPass".into()],
+        Message::PeerPass(_) => vec!["PeerPass".into()],
         Message::Command(_) => vec!["MotionCommand".into()],
         Message::Estimate(_) => two("TargetEstimate"),
         Message::Status(_) => vec!["Health".into()],

@@ -130,7 +130,8 @@ fn the_file_tells_what_is_not_always_sent_and_when_it_is() {
     assert_eq!(sent(&classic, "Cyclic"), [&always[..], &["DriverRequest", "Health"]].concat());
     let always = ["TimeSync", "TimeFollowUp", "MotionCommand", "ActuatorState", "EgoMotion", "DriverRequest", "Health"];
     assert_eq!(sent(&fd, "Cyclic"), always);
-    let conditional = ["EgoPosition", "RangeSensor", "PeersUnserved", "TargetEstimate", "OwnState", "OwnRoute"];
+    let conditional =
+        ["EgoPosition", "RangeSensor", "PeersUnserved", "TargetEstimate", "OwnState", "OwnRoute", "OwnPass"];
     let of_peers = ["Peer0State", "Peer0Position", "Peer0Route"];
     assert_eq!(sent(&fd, "CyclicIfActive"), [&conditional[..], &of_peers].concat());
     for file in [&classic, &fd] {

@@ -34,7 +34,7 @@ fn message(station: u8, route: Option<Route>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route }
+    V2xMessage { motion, parameters: None, horizon: None, route, pass: None }
 }
 
 /// A modem on the way to the first intersection, and what a unit makes of its frames.

@@ -49,11 +49,14 @@ impl AccelerationRange {
     }
 
     /// As published, braking by the harder of the two that are. It is not less than 0.1 m/s² each, so that coming to rest takes finite time.
+    /// A vehicle that accelerates as hard as it has published may have a little more than that, because the effort is commanded in steps.
     #[must_use]
     pub fn published(limits: &Limits) -> Self {
         const LEAST: Acceleration = Acceleration::from_mm_per_s2(100);
+        const EFFORT_STEP: Acceleration = Acceleration::from_mm_per_s2(10);
         let braking = limits.emergency_braking.max(limits.braking);
-        Self { acceleration: limits.acceleration.max(LEAST), braking: braking.max(LEAST) }
+        let acceleration = limits.acceleration.plus(EFFORT_STEP);
+        Self { acceleration: acceleration.max(LEAST), braking: braking.max(LEAST) }
     }
 }
 

@@ -89,7 +89,9 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
                 lane: (is_on_lane && takes_along).then_some(side),
             }); // no more than slots
         }
-        let is_ahead = side == Side::Ahead && is_on_lane;
+        // A vehicle that drove on out of reach, or that the range sensor sees past, is not where it is estimated to be.
+        let is_elsewhere = coordination.choice().lost.contains(index) || view.scene.is_seen_past(index, view.at);
+        let is_ahead = side == Side::Ahead && is_on_lane && !is_elsewhere;
         if is_ahead && nearest.is_none_or(|(_, position)| reading.position < position) {
             nearest = Some((index, reading.position));
         }

@@ -2,6 +2,7 @@
 //! leaves.
 
 use super::lane;
+use super::pass::{self, Area, Range};
 use super::scene::Scene;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle, Reckoning, Spare};
@@ -17,6 +18,10 @@ use crate::units::{Acceleration, Distance, Position};
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     reckoning: Held<Reckoning>,
+    /// Whether firm claims covered the ego's stay in the next conflict area when it could last stop before the area.
+    is_covered: bool,
+    /// Whether it cannot stop before the area any more, and was covered then, or is in the area.
+    is_committed: bool,
 }
 
 /// The demand of the last tick, and its age. The age is longer than a period where ticks were missed.
@@ -29,12 +34,18 @@ pub(super) struct Last {
 impl Gate {
     /// Nothing is known of the ego: all zero.
     pub const fn new() -> Self {
-        Self { reckoning: Held::Nothing }
+        Self { reckoning: Held::Nothing, is_covered: false, is_committed: false }
     }
 
     /// Forgets the ego: nothing is known of commands that are not the unit's.
     pub fn forget(&mut self) {
         self.reckoning.clear();
+        (self.is_covered, self.is_committed) = (false, false);
+    }
+
+    /// Whether the ego goes into the next conflict area by a pass, or is in it.
+    pub const fn is_committed(&self) -> bool {
+        self.is_committed
     }
 
     /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether the command differs from the
@@ -65,7 +76,11 @@ impl Gate {
         // The ego as far back as it may be: a vehicle that may be inside a conflict area already has to clear it.
         let rearmost = sample.position.ahead(moved).ahead(off.negated()).ahead(late.negated());
         let spare = |obstacle: Obstacle| envelope::spare(limits, &ego, &obstacle);
-        let view = Rearmost { scene, now, rearmost };
+        let range = Range::around(scene, now, &state, &sample);
+        let entrance = self.entrance(limits, scene, &ego, &range);
+        let wanted = demand;
+        let demand = entrance.demand(scene, &range, demand);
+        let view = Rearmost { scene, now, rearmost, entrance };
         let heard = match scene.coordination.itinerary() {
             None => scene.named_ahead(now).map(spare),
             // The driver may name a vehicle that the order does not know of.
@@ -78,7 +93,66 @@ impl Gate {
         let spare = [heard, seen].into_iter().flatten().min().unwrap_or(Spare::ENDLESS);
         let situation = envelope::Situation { is_fresh: scene.fresh_ego(now).is_some(), spare };
         let command = envelope::gate(limits, demand, &ego, &situation, scene.config.period, last.age);
-        (envelope::encodable(limits, command), command != demand)
+        (envelope::encodable(limits, command), command != wanted)
+    }
+}
+
+impl Gate {
+    /// Whether the ego may go into the next conflict area (F5): only if firm claims cover its whole stay, both at the earliest entry and
+    /// at the latest exit. Once it cannot stop before the area any more, it does not give way.
+    fn entrance<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &mut self,
+        limits: &Envelope,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        ego: &envelope::Ego,
+        range: &Range,
+    ) -> Entrance {
+        let Some(area) = Area::next(scene).filter(|_| scene.keeps_passes()) else {
+            (self.is_covered, self.is_committed) = (false, false);
+            return Entrance { area: None, is_open: true, is_committed: false, opens_in: Duration::ZERO };
+        };
+        let line = Obstacle::standing(area.begins);
+        let is_before = range.rearmost <= area.begins;
+        let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
+        if can_stop {
+            let stay = scene.pass_time(range.now).map(|now| pass::stay_at_worst(scene, &area, range, now));
+            self.is_covered = stay.is_some_and(|stay| scene.is_stay_covered(range.now, &stay));
+        }
+        let is_open = self.is_covered || !is_before;
+        self.is_committed = is_open && !can_stop;
+        let opens_in = pass::soonest(scene, &area, range);
+        Entrance { area: Some(area), is_open, is_committed: self.is_committed, opens_in }
+    }
+}
+
+/// The next conflict area, and whether the ego may go into it.
+struct Entrance {
+    area: Option<Area>,
+    is_open: bool,
+    is_committed: bool,
+    /// The ego cannot be there sooner than this.
+    opens_in: Duration,
+}
+
+impl Entrance {
+    fn demand<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &self,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        range: &Range,
+        demand: Acceleration,
+    ) -> Acceleration {
+        let Some(area) = self.area.filter(|_| scene.fresh_ego(range.now).is_some()) else { return demand };
+        if self.is_open {
+            pass::leave_in_time(scene, &area, range, demand)
+        } else {
+            pass::not_early(scene, &area, range, demand)
+        }
+    }
+
+    /// Where the ego has to be able to stop because it has no pass, or because a vehicle is seen in the area at `seen`.
+    fn line(&self, seen: Option<Position>) -> Option<Position> {
+        let area = self.area?;
+        if self.is_committed { seen } else { seen.map(|_| area.begins).or((!self.is_open).then_some(area.begins)) }
     }
 }
 
@@ -88,6 +162,7 @@ struct Rearmost<'a, const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     now: Instant,
     /// Front bumper of the ego, as far back as it may be.
     rearmost: Position,
+    entrance: Entrance,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, PEERS, SAMPLES, STEPS> {
@@ -104,8 +179,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// the area all the same. The ego also stops before an area at which it has not arrived because it does not know the time: no vehicle
     /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
-        let others = (0..PEERS).filter_map(|index| self.scene.stop_before_area(index, self.now, self.rearmost));
-        others.chain(self.stop_without_time()).chain(self.stop_before_later()).min()
+        let seen = self.scene.ranging.crossing(self.now).filter(|_| !self.scene.is_crossing_heard(self.now));
+        let others = (0..PEERS).filter_map(|index| self.stop_for(index));
+        others.chain(self.entrance.line(seen)).chain(self.stop_without_time()).chain(self.stop_before_later()).min()
+    }
+
+    /// Where the ego stops for a peer whose way crosses its own. A peer that keeps passes is out of the area when the ego's pass begins.
+    /// Where the ego's sensor sees whether that is so, it need not wait for what is certain of the peer. But a peer that is in the area,
+    /// by what it has just said, is waited for.
+    fn stop_for(&self, index: usize) -> Option<Position> {
+        let (scene, now) = (self.scene, self.now);
+        let stop = scene.stop_before_area(index, now, self.rearmost)?;
+        let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && scene.config.range_sensor;
+        let then = now.plus(self.entrance.opens_in);
+        (!is_trusted || !scene.has_pass(index) || scene.is_in_area_until(index, now, then)).then_some(stop)
     }
 
     /// Before the intersection after the next one the ego is able to stop in any case. It takes its place in the order there only when it

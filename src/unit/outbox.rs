@@ -23,6 +23,7 @@ use crate::wire::estimate::{Ends, TargetEstimate};
 use crate::wire::fd::State;
 use crate::wire::horizon::{Knot, Knots};
 use crate::wire::motion::{Motion, WirePosition};
+use crate::wire::pass::Pass;
 use crate::wire::quantity::Quantity;
 use crate::wire::route::Route;
 use crate::wire::status::{INTERFACE, Status};
@@ -43,6 +44,8 @@ pub(super) struct Report<'a> {
     /// The ego's motion, with the demand in force up to its stamp. From it the model of a receiver computes the demand of this tick
     /// again. `None` if the motion is too old.
     pub ego: Option<&'a Sample>,
+    /// What it says of its passes.
+    pub pass: Option<Pass>,
 }
 
 /// When each message is due, and the end-to-end state of each message.
@@ -86,6 +89,16 @@ impl Outbox {
     pub(super) fn next_tick(&mut self) -> u8 {
         self.tick = self.tick.wrapping_add(1) % TICKS;
         self.tick
+    }
+
+    /// The tag of the next own motion, and of what comes with it.
+    pub(super) fn next_tag(&self) -> u8 {
+        self.tag.wrapping_add(1) % 4
+    }
+
+    /// Whether the route is sent with an own motion of this tag.
+    pub(super) fn is_route_due(tag: u8) -> bool {
+        tag.is_multiple_of(ROUTE_EVERY)
     }
 
     /// Whether the own messages are due. A schedule that was missed starts anew from now.
@@ -170,7 +183,7 @@ impl Outbox {
         health: &mut Health,
         frames: &mut Vec<Frame, MAX_FRAMES>,
     ) {
-        self.tag = self.tag.wrapping_add(1) % 4;
+        self.tag = self.next_tag();
         let tag = self.tag;
         let motion = Motion {
             tag,
@@ -191,6 +204,7 @@ impl Outbox {
         if let Some(route) = route(scene, tag, ego) {
             self.emit(&Message::Own(Said::Route(route)), health, frames);
         }
+        self.send_pass(report, health, frames);
         if let Some(parameters) = self.due_parameters(scene, report) {
             self.emit(&Message::Own(Said::DrivingParameters(parameters)), health, frames);
         }
@@ -216,6 +230,13 @@ impl Outbox {
         self.emit(&Message::Own(Said::State(State { motion, parameters, horizon })), health, frames);
         if let Some(route) = route(scene, motion.tag, ego) {
             self.emit(&Message::Own(Said::Route(route)), health, frames);
+        }
+        self.send_pass(report, health, frames);
+    }
+
+    fn send_pass(&mut self, report: &Report<'_>, health: &mut Health, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        if let Some(pass) = report.pass {
+            self.emit(&Message::OwnPass(pass), health, frames);
         }
     }
 
@@ -261,7 +282,7 @@ fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> Option<Route> {
     let (crossing, registration) = (scene.coordination.named()?, scene.coordination.registration()?);
     let point = scene.coordination.crossing_point(crossing)?;
-    tag.is_multiple_of(ROUTE_EVERY).then(|| Route {
+    Outbox::is_route_due(tag).then(|| Route {
         tag,
         intersection: crossing.intersection.id,
         leg: crossing.leg,

@@ -9,6 +9,7 @@ mod actuators;
 mod admission;
 mod inbox;
 mod named;
+pub(super) mod passes;
 mod places;
 mod range;
 mod sight;
@@ -31,6 +32,7 @@ use crate::wire::Predecessor;
 use crate::wire::driver_request::DriverRequest;
 use actuators::Actuators;
 use named::Named;
+use passes::Passes;
 use sight::Ranging;
 use unknown::Unknown;
 
@@ -62,6 +64,8 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub unknown: Unknown,
     /// The vehicle that the driver has put ahead.
     pub named: Named,
+    /// The passes at the next intersection.
+    pub passes: Passes,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
@@ -80,6 +84,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             actuators: Actuators::NONE,
             unknown: Unknown::NONE,
             named: Named::Nobody,
+            passes: Passes::NONE,
         }
     }
 
@@ -97,6 +102,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.actuators = Actuators::NONE;
         self.unknown = Unknown::NONE;
         self.named = Named::Nobody;
+        self.passes = const { Passes::NONE };
     }
 
     /// Whether GNSS time is known.

@@ -94,6 +94,8 @@ pub enum Content {
     Range,
     /// [`super::unserved::Unserved`].
     Unserved,
+    /// [`super::pass::Pass`], of the own vehicle or of another one.
+    Pass(Speaker),
     /// First frame of [`super::estimate::TargetEstimate`].
     EstimateA,
     /// Its second frame.

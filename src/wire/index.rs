@@ -152,7 +152,7 @@ static BY_OFFSET: [u8; OFFSETS] = {
 };
 
 /// What is not said of a vehicle.
-const OTHERS: usize = 10;
+const OTHERS: usize = 12;
 const CONTENTS: usize = OTHERS + 3 * ABOUTS;
 
 /// Places in the catalogue, by [`number`].
@@ -182,6 +182,8 @@ const fn number(content: Content) -> usize {
         Content::Status => 7,
         Content::Unserved => 8,
         Content::Actuators => 9,
+        Content::Pass(Speaker::Peer) => 10,
+        Content::Pass(_) => 11,
         Content::Said(Speaker::Ego, about) => OTHERS + about as usize,
         Content::Said(Speaker::Own, about) => OTHERS + ABOUTS + about as usize,
         Content::Said(Speaker::Peer, about) => OTHERS + 2 * ABOUTS + about as usize,

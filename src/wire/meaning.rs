@@ -59,6 +59,12 @@ macro_rules! meaning {
     (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
     (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to the crossing point of that leg at Intersection, which is the next one on the own way: any other is ignored. Negative beyond the crossing point." };
     (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };
+    (station_id) => { "The whole identity of the station, of which Station is the low 8 bits." };
+    (left) => { "Number of the intersection that the vehicle left last; none if it has left none on its way." };
+    (pass_stamp) => { "GNSS time up to which the vehicle says all that it claims: no window that it claims later counts from before that. Modulo 655.36 s." };
+    (claimed) => { "GNSS time from which the window counts. Of two windows that conflict, that with the earlier one has priority, then that of the smaller StationId. Modulo 655.36 s." };
+    (entry) => { "GNSS time before which the vehicle's front does not enter the conflict area. Modulo 655.36 s." };
+    (pass_length) => { "Time from then to when the vehicle's rear has left the conflict area. 0: no window." };
     (sequence) => { "Ties TimeSync and TimeFollowUp: the same in both, and counts modulo 16." };
     (seconds) => { "Whole seconds of GNSS time (since 1980-01-06, without leap seconds) of the sending of this frame, as far as known beforehand." };
     (micros) => { "What to add to TimeSync.Seconds to get the GNSS time at which the TimeSync with this Sequence was on the bus." };
@@ -163,6 +169,20 @@ fn field(content: Content, name: &str) -> &'static str {
             "Ahead" => meaning!(unserved_ahead),
             "Legs" => meaning!(legs),
             "Intersection" => meaning!(intersection),
+            _ => "",
+        },
+        Content::Pass(_) => match name {
+            "Tag" => meaning!(tag),
+            "Part" => meaning!(part),
+            "StationId" => meaning!(station_id),
+            "Arrival" => meaning!(arrival),
+            "Intersection" => meaning!(intersection),
+            "Leg" => meaning!(leg),
+            "Left" => meaning!(left),
+            "PassStamp" => meaning!(pass_stamp),
+            "Claimed1" | "Claimed2" => meaning!(claimed),
+            "Entry1" | "Entry2" => meaning!(entry),
+            "Length1" | "Length2" => meaning!(pass_length),
             _ => "",
         },
         Content::EstimateA | Content::EstimateB => match name {

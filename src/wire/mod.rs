@@ -29,6 +29,7 @@ pub mod load;
 mod meaning;
 mod message_name;
 pub mod motion;
+pub mod pass;
 mod predecessor;
 pub mod quantity;
 pub mod range_sensor;
@@ -125,8 +126,12 @@ pub enum Message {
     Unserved(unserved::Unserved),
     /// Heard by the modem.
     Peer(Slot, Said),
+    /// The passes of another vehicle, heard by the modem. It need not have a slot.
+    PeerPass(pass::Pass),
     /// For the modem to broadcast.
     Own(Said),
+    /// The own passes, for the modem to broadcast.
+    OwnPass(pass::Pass),
     /// The unit's command to the actuators.
     Command(command::Command),
     /// The unit's estimate of its target.

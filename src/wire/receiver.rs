@@ -20,6 +20,7 @@ use super::horizon::{KNOTS, Knots};
 use super::identifiers::Identifiers;
 use super::index::{self, Entry};
 use super::motion::Motion;
+use super::pass::Pass;
 use super::range_sensor::RangeSample;
 use super::route::Route;
 use super::status::Status;
@@ -118,6 +119,8 @@ pub struct Receiver<const PEERS: usize> {
     /// Of the one vehicle that is not a peer: the ego for the unit, the unit's own for the modem.
     own: Parts,
     estimate: Assembly<2, 0>,
+    /// Of the other vehicles for the unit, of the unit's own for the modem.
+    pass: Assembly<4, 1>,
     peers: [Peer; PEERS],
     #[cfg(feature = "fd")]
     fd: over_fd::OverFd<PEERS>,
@@ -133,6 +136,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
             checks: [Check::new(); LINES],
             own: Parts::NEW,
             estimate: Assembly::NEW,
+            pass: Assembly::NEW,
             peers: [const { Peer::NEW }; PEERS],
             #[cfg(feature = "fd")]
             fd: over_fd::OverFd::NEW,
@@ -213,6 +217,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
         Ok(match entry.content {
             Content::EstimateA | Content::EstimateB if UNIT => None,
             Content::Said(Speaker::Own, _) if UNIT => None,
+            Content::Pass(speaker) => self.pass.add(&piece)?.and_then(|parts| pass::<UNIT>(speaker, &parts)),
             Content::EstimateA => self.add_estimate(&piece.of(0))?,
             Content::EstimateB => self.add_estimate(&piece.of(1))?,
             Content::Said(Speaker::Ego, about) => self.own.add(about, &piece)?.map(Message::Ego),
@@ -233,6 +238,16 @@ impl<const PEERS: usize> Receiver<PEERS> {
     }
 }
 
+/// What is said of passes.
+fn pass<const UNIT: bool>(speaker: Speaker, parts: &[Payload; 4]) -> Option<Message> {
+    let pass = Pass::decode(parts);
+    match speaker {
+        Speaker::Peer => Some(Message::PeerPass(pass)),
+        _ if UNIT => None,
+        _ => Some(Message::OwnPass(pass)),
+    }
+}
+
 /// The message of a content that one frame of classic CAN has room for; `None` for every other.
 #[inline(always)] // into the one place of each bus
 fn decode_single<const UNIT: bool>(content: Content, payload: Payload) -> Result<Option<Message>, Cause> {
@@ -247,7 +262,7 @@ fn decode_single<const UNIT: bool>(content: Content, payload: Payload) -> Result
         Content::Range => Some(Message::Range(RangeSample::decode(&whole))),
         Content::Unserved => Some(Message::Unserved(Unserved::decode(&whole))),
         Content::Status => Some(Message::Status(Status::decode(&whole)?)),
-        Content::EstimateA | Content::EstimateB | Content::Said(..) => None,
+        Content::EstimateA | Content::EstimateB | Content::Pass(_) | Content::Said(..) => None,
     })
 }
 

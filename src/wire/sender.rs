@@ -78,9 +78,10 @@ impl<const PEERS: usize> Sender<PEERS> {
             Message::DriverRequest(parameters) => self.emit(Content::DriverRequest, none, &parameters.encode(), emit),
             Message::Range(sample) => self.emit(Content::Range, none, &sample.encode(), emit),
             Message::Unserved(unserved) => self.emit(Content::Unserved, none, &unserved.encode(), emit),
+            Message::PeerPass(pass) => self.emit(Content::Pass(Speaker::Peer), none, &pass.encode(), emit),
             Message::Ego(said) => self.say(Speaker::Ego, none, said, emit),
             Message::Peer(slot, said) => self.say(Speaker::Peer, *slot, said, emit),
-            Message::Command(_) | Message::Status(_) | Message::Estimate(_) | Message::Own(_) => {
+            Message::Command(_) | Message::Status(_) | Message::Estimate(_) | Message::Own(_) | Message::OwnPass(_) => {
                 self.send_as_unit(message, emit)
             }
         }
@@ -99,6 +100,7 @@ impl<const PEERS: usize> Sender<PEERS> {
                 self.emit_pair([Content::EstimateA, Content::EstimateB], none, &estimate.encode(), emit)
             }
             Message::Own(said) => self.say(Speaker::Own, none, said, emit),
+            Message::OwnPass(pass) => self.emit(Content::Pass(Speaker::Own), none, &pass.encode(), emit),
             _ => Err(Unsent::NoLine),
         }
     }

@@ -12,6 +12,7 @@ use holdover::wire::estimate::{Ends, TargetEstimate};
 use holdover::wire::geo::GeoPosition;
 use holdover::wire::horizon::{KNOTS, Knot, Knots};
 use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::pass::{Claimed, Pass, PassTime};
 use holdover::wire::quantity::Quantity;
 use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::route::Route;
@@ -195,6 +196,21 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    fn claimed()(at: u16, entry: u16, length in 1u16..4096) -> Claimed {
+        Claimed { at: PassTime(at), entry: PassTime(entry), length }
+    }
+}
+
+prop_compose! {
+    pub fn pass()(
+        tag in 0u8..4, station_id: u32, intersection: u8, leg in 0u8..8, left in proptest::option::of(any::<u8>()), stamp: u16,
+        arrival in 0u32..1 << 20, one in proptest::option::of(claimed()), other in proptest::option::of(claimed()),
+    ) -> Pass {
+        Pass { tag, station_id, intersection, leg, left, stamp: PassTime(stamp), arrival, claims: [one, other] }
+    }
+}
+
 /// What a vehicle says of itself.
 pub fn said() -> impl Strategy<Value = Said> {
     prop_oneof![
@@ -217,6 +233,7 @@ pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
         1 => actuators().prop_map(Message::Actuators),
         1 => range_sample().prop_map(Message::Range),
         1 => unserved().prop_map(Message::Unserved),
+        1 => pass().prop_map(Message::PeerPass),
         5 => (0..slots, said()).prop_map(|(slot, said)| Message::Peer(Slot(slot), said)),
     ]
 }
@@ -225,6 +242,7 @@ pub fn to_unit(slots: u8) -> impl Strategy<Value = Message> {
 pub fn from_unit() -> impl Strategy<Value = Message> {
     prop_oneof![
         2 => said().prop_map(Message::Own),
+        1 => pass().prop_map(Message::OwnPass),
         1 => command().prop_map(Message::Command),
         1 => estimate().prop_map(Message::Estimate),
         1 => status().prop_map(Message::Status),

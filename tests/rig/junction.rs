@@ -102,6 +102,7 @@ impl Driver {
     /// The same, with this configuration.
     pub fn of(mut config: Config, station: u8, way: usize, at: f64, speed: f64, envelope: bool) -> Self {
         config.station = StationHash(station);
+        config.station_id = u32::from(station);
         config.envelope = envelope.then_some(holdover::config::Envelope::CAR);
         let mut rig = Rig::new(&config);
         rig.power_up(true, 0);
@@ -198,6 +199,7 @@ impl Junction {
     fn tick(&mut self) {
         let now = self.now;
         let mut said: Vec<(usize, Said)> = Vec::new();
+        let mut passes = Vec::new();
         let places: Vec<_> = self.drivers.iter().map(|driver| (driver.way, driver.body)).collect();
         for (index, driver) in self.drivers.iter_mut().enumerate() {
             let plant::Plant { position, speed, acceleration, .. } = driver.body;
@@ -233,8 +235,10 @@ impl Junction {
             let heard = driver.rig.tick(now);
             if driver.speaks {
                 for message in &heard.all {
-                    if let Message::Own(own) = message {
-                        said.push((index, *own));
+                    match message {
+                        Message::Own(own) => said.push((index, *own)),
+                        Message::OwnPass(pass) if driver.says_route => passes.push((index, *pass)),
+                        _ => {}
                     }
                 }
                 if !driver.says_route && now % 100_000 == 0 {
@@ -244,6 +248,13 @@ impl Junction {
             driver.last = Some(heard);
             let command = driver.command();
             driver.body.drive(command, PERIOD as f64 * 1e-6);
+        }
+        for (from, pass) in passes {
+            for to in (0..self.drivers.len()).filter(|to| *to != from) {
+                if self.drivers[to].hears {
+                    let _ = self.drivers[to].rig.put(now + 1_000, &Message::PeerPass(pass));
+                }
+            }
         }
         for (from, own) in said {
             for to in 0..self.drivers.len() {

@@ -52,6 +52,10 @@ pub struct Identifiers {
     pub own_position: u32,
     /// `OwnRoute`.
     pub own_route: u32,
+    /// `OwnPass`.
+    pub own_pass: u32,
+    /// `PeerPass`.
+    pub peer_pass: u32,
     /// `Health`.
     pub health: u32,
     /// `Peer{slot}MotionA`.
@@ -99,6 +103,8 @@ macro_rules! each {
         $single!(own_driving_parameters, Content::Said(Speaker::Own, About::DrivingParameters));
         $single!(own_position, Content::Said(Speaker::Own, About::Geo));
         $single!(own_route, Content::Said(Speaker::Own, About::Route));
+        $single!(own_pass, Content::Pass(Speaker::Own));
+        $single!(peer_pass, Content::Pass(Speaker::Peer));
         $single!(health, Content::Status);
         $peer!(peer_motion_a, About::MotionA);
         $peer!(peer_motion_b, About::MotionB);

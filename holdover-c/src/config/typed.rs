@@ -38,6 +38,7 @@ impl TryFrom<&Config> for config::Config {
     fn try_from(plain: &Config) -> Result<Self, Status> {
         Ok(Self {
             station: StationHash(plain.station),
+            station_id: plain.station_id,
             identifiers: plain.identifiers.on(BaseId::new(plain.base_id).ok_or(Status::ConfigBaseId)?)?,
             transport: Transport::Classic,
             period: micros(plain.period_us),
@@ -54,6 +55,7 @@ impl TryFrom<&Config> for config::Config {
             },
             link: plain.link.into(),
             envelope: if switch(plain.envelope.engaged)? { Some(plain.envelope.into()) } else { None },
+            range_sensor: switch(plain.range_sensor)?,
         })
     }
 }
@@ -159,6 +161,8 @@ impl From<&config::Config> for Config {
         let config::Prediction { step, horizon, model } = typed.prediction;
         Self {
             station: typed.station.0,
+            station_id: typed.station_id,
+            range_sensor: u8::from(typed.range_sensor),
             base_id: typed.identifiers.base().get(),
             identifiers: (&typed.identifiers).into(),
             period_us: whole(typed.period),

@@ -7,6 +7,7 @@ use super::description::{Corridor, Emergencies, Radio, Wrong};
 use crate::input::kind::Kind;
 use crate::input::scenario::Envelope;
 use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed};
+use crate::sim::sensors::faults::is_fitted;
 use crate::sim::station::station;
 use crate::sim::world::horizon;
 
@@ -54,11 +55,33 @@ impl Conditions {
     }
 }
 
-/// The configuration of the unit of a vehicle, by the number of its station.
+/// Which vehicle it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Identity {
+    /// The index of its trip.
+    pub trip: usize,
+    /// The number of its station, which another vehicle may have later.
+    pub called: usize,
+    /// Whether it has a range sensor.
+    pub sees: bool,
+}
+
+impl Identity {
+    /// Of a trip of a seed, by the number of its station.
+    #[must_use]
+    pub fn of(corridor: &Corridor, seed: u64, trip: usize, called: usize) -> Self {
+        Self { trip, called, sees: is_fitted(corridor.sensors.share, seed, trip as u32) }
+    }
+}
+
+/// The configuration of the unit of a vehicle.
 #[must_use]
-pub fn config(corridor: &Corridor, conditions: &Conditions, number: usize, kind: Kind) -> Config {
+pub fn config(corridor: &Corridor, conditions: &Conditions, identity: Identity, kind: Kind) -> Config {
     let traffic = &corridor.traffic;
-    let mut config = Config::car(station(number));
+    let Identity { trip, called, sees } = identity;
+    let mut config = Config::car(station(called));
+    config.station_id = (trip as u32) << 8 | u32::from(config.station.0);
+    config.range_sensor = sees;
     config.transport = corridor.bus.transport;
     config.period = duration(corridor.period_s);
     config.length = distance(kind.length_m());
@@ -85,6 +108,8 @@ mod tests {
     use crate::roads::example;
     use crate::sim::vehicle::STEPS;
 
+    const FIRST: Identity = Identity { trip: 0, called: 0, sees: false };
+
     #[test]
     fn whatever_a_file_may_say_the_units_take() {
         let extremes: [(&str, &[&str]); 13] = [
@@ -108,7 +133,7 @@ mod tests {
                 let text = text.replacen(from, to, 1);
                 let corridor = example::of(&text);
                 for kind in [Kind::Car, Kind::Van, Kind::Bus] {
-                    let config = config(&corridor, &Conditions::of(&corridor), 0, kind);
+                    let config = config(&corridor, &Conditions::of(&corridor), FIRST, kind);
                     assert_eq!(config.check(STEPS), Ok(()), "{to}");
                 }
             }
@@ -116,6 +141,6 @@ mod tests {
         // A coarse step and a short horizon at once.
         let text = text.replacen("step_s = 0.01 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
         let corridor = example::of(&text);
-        assert_eq!(config(&corridor, &Conditions::of(&corridor), 0, Kind::Car).check(STEPS), Ok(()));
+        assert_eq!(config(&corridor, &Conditions::of(&corridor), FIRST, Kind::Car).check(STEPS), Ok(()));
     }
 }

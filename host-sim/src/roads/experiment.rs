@@ -39,18 +39,27 @@ pub struct Sides {
     pub alone: Side,
     /// The scenario, with the envelope.
     pub envelope: Side,
-    /// The same with vehicles that make emergency stops.
+    /// The same with links without delay, loss and silence.
+    pub envelope_perfect_link: Side,
+    /// The scenario, with the envelope and with vehicles that make emergency stops.
     pub emergencies: Side,
 }
 
 impl Sides {
     /// Number of sides.
-    pub const COUNT: usize = 5;
+    pub const COUNT: usize = 6;
 
     /// All of them, in their order.
     #[must_use]
     pub fn all(&self) -> [&Side; Self::COUNT] {
-        [&self.holdover, &self.perfect_link, &self.alone, &self.envelope, &self.emergencies]
+        [
+            &self.holdover,
+            &self.perfect_link,
+            &self.alone,
+            &self.envelope,
+            &self.envelope_perfect_link,
+            &self.emergencies,
+        ]
     }
 }
 
@@ -121,8 +130,9 @@ impl Experiment {
             seeds.iter().flat_map(|seed| conditions.map(|conditions| (*seed, conditions))).collect();
         let outcomes = self.all(&jobs, done)?;
         let side = |which: usize| Side::of(&outcomes.iter().skip(which).step_by(conditions.len()).collect::<Vec<_>>());
-        let [holdover, perfect_link, alone, envelope, emergencies] = [0, 1, 2, 3, 4].map(side);
-        Ok(Sides { holdover, perfect_link, alone, envelope, emergencies })
+        let [holdover, perfect_link, alone, envelope, envelope_perfect_link, emergencies] =
+            [0, 1, 2, 3, 4, 5].map(side);
+        Ok(Sides { holdover, perfect_link, alone, envelope, envelope_perfect_link, emergencies })
     }
 
     /// The errors under each difference between a vehicle and what its unit assumes.
@@ -173,7 +183,8 @@ impl Experiment {
         let (trips, ego) = self.excerpt().trips(seed);
         let trip = trips.get(ego?)?;
         let conditions = Conditions { step_s, ..Conditions::of(&self.corridor) };
-        let config = super::conditions::config(&self.corridor, &conditions, ego?, trip.kind);
+        let identity = super::conditions::Identity::of(&self.corridor, seed, ego?, ego?);
+        let config = super::conditions::config(&self.corridor, &conditions, identity, trip.kind);
         Some((config, self.itineraries[trip.road]))
     }
 
@@ -219,7 +230,8 @@ fn of_sides(corridor: &Corridor) -> [Conditions; Sides::COUNT] {
         [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
     let perfect_link = Conditions { radio: without.radio.perfect(), ..without };
     let alone = Conditions { when_lost: WhenLost::Alone, ..without };
-    [without, perfect_link, alone, with, Conditions { emergencies: corridor.emergencies, ..with }]
+    let with_perfect_link = Conditions { radio: with.radio.perfect(), ..with };
+    [without, perfect_link, alone, with, with_perfect_link, Conditions { emergencies: corridor.emergencies, ..with }]
 }
 
 /// The error for a configuration that the units refuse. It does not occur as long as the units accept every value that
@@ -244,11 +256,12 @@ mod tests {
         for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
             let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
             let sides = of_sides(&corridor);
-            assert_eq!(sides.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true]);
-            assert_eq!(sides[1].radio, corridor.radio.perfect());
+            assert_eq!(sides.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true, true]);
+            let is_perfect = sides.map(|conditions| conditions.radio == corridor.radio.perfect());
+            assert_eq!(is_perfect, [false, true, false, false, true, false]);
             let is_alone = sides.map(|conditions| conditions.when_lost == WhenLost::Alone);
-            assert_eq!(is_alone, [false, false, true, false, false]);
-            assert_eq!(sides.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.05]);
+            assert_eq!(is_alone, [false, false, true, false, false, false]);
+            assert_eq!(sides.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.0, 0.05]);
         }
     }
 }

@@ -3,7 +3,8 @@
 //!
 //! The way of a vehicle is a strip as wide as the widest vehicle along the middle of its lane. A vehicle on the same
 //! road is on it from its rear bumper on. A vehicle on a road that crosses at an intersection is on it while a part of
-//! its body is inside the strip, and from where that part begins. Near a crossing both roads are taken as straight.
+//! its body is inside the strip, and from where that part begins. While a part of it is in the conflict area beside the
+//! strip, it is seen as if it were in the strip. Near a crossing both roads are taken as straight.
 //! Where roads cross without an intersection one passes over the other, and they do not see one another. A sensor sees
 //! vehicles without V2X, and vehicles that have left, as any others.
 
@@ -39,6 +40,8 @@ struct Crossing {
     other: usize,
     /// Distance to the place along the own road, and along the other one.
     at_m: [f64; 2],
+    /// Where the conflict area of the other road begins and ends along it.
+    area_m: [f64; 2],
     /// Sine and cosine of the angle from the own direction of travel to the other one.
     angle: (f64, f64),
 }
@@ -57,7 +60,8 @@ impl Sights {
         let of_stop = |lane: &Lane, stop: &Stop| {
             let junction = &network.junctions[stop.intersection];
             let legs = junction.legs.iter().enumerate().filter(|(leg, _)| junction.conflict(stop.leg, *leg));
-            legs.map(|(_, leg)| crossing(network, lane, &junction.legs[stop.leg], leg)).collect::<Vec<_>>()
+            legs.map(|(_, leg)| crossing(network, lane, &junction.legs[stop.leg], leg, junction.half_m))
+                .collect::<Vec<_>>()
         };
         let of_lane = |lane: &Lane| lane.stops.iter().flat_map(|stop| of_stop(lane, stop)).collect();
         Self { crossings: network.lanes.iter().map(of_lane).collect() }
@@ -81,7 +85,7 @@ impl Sights {
 
 /// The place where the lanes of two legs of an intersection cross. A leg knows where its lane is nearest to the middle
 /// of the intersection, and lanes lie beside the middle.
-fn crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg) -> Crossing {
+fn crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg, half_m: f64) -> Crossing {
     let own_point = lane.road.at(own.at_m).0;
     let between = Shift::between(own_point, network.lanes[other.road].road.at(other.at_m).0);
     let along = |heading_deg: f64| {
@@ -92,14 +96,18 @@ fn crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg) -> Crossing 
     let (ahead_m, right_m) = (between.along(along(own.heading_deg)), between.along(along(own.heading_deg).right()));
     // From its place on, the other lane is at `right + t sin` to the right of the own one: on it at `t = -right / sin`.
     let t_m = -right_m / sine;
-    Crossing { other: other.road, at_m: [own.at_m + ahead_m + t_m * cosine, other.at_m + t_m], angle: (sine, cosine) }
+    let at_m = [own.at_m + ahead_m + t_m * cosine, other.at_m + t_m];
+    let area_m = [other.at_m - half_m, other.at_m + half_m];
+    Crossing { other: other.road, at_m, area_m, angle: (sine, cosine) }
 }
 
 impl Crossing {
     /// What `own` sees of `other`, if a part of the other's body is on the own way and ahead.
     fn seen(&self, own: &Body, other: &Body) -> Option<Seen> {
         let front_m = other.front_m - self.at_m[1];
-        let (begins_m, ends_m) = self.covered(front_m - other.length_m, front_m)?;
+        let is_in_area = other.front_m > self.area_m[0] && other.front_m - other.length_m < self.area_m[1];
+        let beside = || self.covered(-WIDTH_M, WIDTH_M).filter(|_| is_in_area);
+        let (begins_m, ends_m) = self.covered(front_m - other.length_m, front_m).or_else(beside)?;
         let gap_m = self.at_m[0] + begins_m - own.front_m;
         let is_ahead = self.at_m[0] + ends_m > own.front_m;
         is_ahead.then(|| Seen { gap_m: gap_m.max(0.0), speed_mps: other.speed_mps * self.angle.1 })

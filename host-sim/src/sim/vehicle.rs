@@ -342,6 +342,7 @@ impl Vehicle {
                     self.transmitter.take(&said);
                     self.relay.take(&said);
                 }
+                Ok(Received::Whole(Message::OwnPass(pass))) => self.transmitter.take_pass(&pass),
                 // The last of what the unit sends at a time.
                 Ok(Received::Whole(Message::Status(_))) => {
                     let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));

@@ -186,12 +186,12 @@ fn what_is_published_is_taken_but_a_rest_takes_finite_time() {
         let reach = AccelerationRange::published(&limits(value, value));
         assert_eq!(
             (reach.acceleration.to_mm_per_s2(), reach.braking.to_mm_per_s2()),
-            (value.max(100), value.max(1_000)),
-            "the harder of the two brakings"
+            ((value + 10).max(100), value.max(1_000)),
+            "the harder of the two brakings, and a step of the effort"
         );
     }
     assert_eq!(AccelerationRange::published(&limits(300, 7_000)).braking.to_mm_per_s2(), 7_000);
-    assert_eq!(AccelerationRange::published(&limits(300, 7_000)).acceleration.to_mm_per_s2(), 300);
+    assert_eq!(AccelerationRange::published(&limits(300, 7_000)).acceleration.to_mm_per_s2(), 310);
 }
 
 #[test]

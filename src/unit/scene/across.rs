@@ -3,8 +3,12 @@
 
 use super::Scene;
 use crate::envelope;
-use crate::time::Instant;
+use crate::model::bound::Bound;
+use crate::time::{Duration, Instant};
 use crate::units::Position;
+
+/// A peer that was heard no longer ago than this says where it is itself.
+const JUST_NOW: Duration = Duration::from_millis(500);
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
     /// Where the ego, whose front bumper is at `rearmost` or before that, has to be able to stop for a peer. It stops before the conflict
@@ -27,6 +31,37 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
     }
 
+    /// Whether a peer that was heard just now is in the next conflict area, and may still be there at `then`.
+    pub fn is_in_area_until(&self, index: usize, now: Instant, then: Instant) -> bool {
+        let area = self.area_begins().zip(self.coordination.end_of(self.coordination.next()));
+        let Some(((begins, ends), bound)) = area.zip(self.bound(index, now)) else { return false };
+        let is_inside = bound.lowest_position() >= begins && self.was_heard(index, now);
+        is_inside && self.near_rear(index, then).is_none_or(|(rear, _)| rear < ends)
+    }
+
+    /// Whether a peer that was heard just now explains that a vehicle is seen in the next conflict area.
+    pub fn is_crossing_heard(&self, now: Instant) -> bool {
+        (0..PEERS).any(|index| self.was_heard(index, now) && self.may_be_in_area(index, now))
+    }
+
+    fn was_heard(&self, index: usize, now: Instant) -> bool {
+        let silence = self.peers.get(index).and_then(|track| track.link().silence(now));
+        silence.is_some_and(|silence| silence <= JUST_NOW)
+    }
+
+    /// Whether a peer whose way crosses the ego's may be in the next conflict area.
+    fn may_be_in_area(&self, index: usize, at: Instant) -> bool {
+        let begins_and_ends = self.area_begins().zip(self.coordination.end_of(self.coordination.next()));
+        let is_there = |((begins, ends), (rear, bound)): ((Position, Position), (Position, Bound))| {
+            rear <= ends && bound.highest_position() >= begins
+        };
+        let crosses =
+            self.coordination.approach(index).zip(self.coordination.crossing()).is_some_and(|(peer, own)| {
+                self.coordination.is_here(peer) && own.intersection.conflict(own.leg, peer.leg)
+            });
+        crosses && begins_and_ends.zip(self.near_rear(index, at)).is_some_and(is_there)
+    }
+
     /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, and the ego has to be able to
     /// stop before the area for a vehicle that it has heard. Such a view says nothing new. It does not contradict what is heard of the
     /// vehicle ahead on the own leg, which the crossing one hides. And it need not be remembered, because the crossing vehicle is minded
@@ -37,6 +72,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             Some((self.area_begins()?, self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)))
         });
         let is_in_area = area.is_some_and(|(begins, ends)| begins <= seen && seen <= ends);
-        is_in_area && (0..PEERS).any(|index| self.stop_before_area(index, at, own_front).is_some())
+        is_in_area
+            && (0..PEERS)
+                .any(|index| self.may_be_in_area(index, at) || self.stop_before_area(index, at, own_front).is_some())
     }
 }

@@ -41,9 +41,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             Message::Peer(slot, said) => self.take_peer(at, *slot, said, health)?,
             Message::Range(seen) => self.take_range(at, *seen, health)?,
             Message::Unserved(unserved) => self.unknown.take(at, *unserved),
+            Message::PeerPass(pass) => self.take_pass(at, pass, health)?,
             Message::Ego(Said::Geo(geo)) => self.take_ego_place(at, geo)?,
             Message::Ego(_) => {}
-            Message::Own(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {}
+            Message::Own(_) | Message::OwnPass(_) | Message::Command(_) | Message::Estimate(_) | Message::Status(_) => {
+            }
         }
         Ok(())
     }

@@ -62,6 +62,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.raise(index, &sight);
         }
         if self.is_of_one_that_crosses(at, front, rear) {
+            self.ranging.see_crossing(sight);
             return Ok(());
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {

@@ -34,6 +34,8 @@ const STANDING: Duration = Duration::from_millis(10_000);
 /// A vehicle that may be slower than this stands or crawls. At the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
+/// A vehicle that was seen to cross may still be there for this long, which is longer than views are missing one by one.
+const CROSSING: Duration = Duration::from_millis(300);
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
 
@@ -94,6 +96,8 @@ pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
     /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
     hidden: [Held<Sight>; HIDDEN],
+    /// The last view of a vehicle in the next conflict area, on a way that crosses the ego's.
+    crossing: Held<Sight>,
     /// The vehicle that the views are compared with.
     judged: Held<Whose>,
     /// Views in a row that contradict what is certain of it.
@@ -110,6 +114,7 @@ impl Ranging {
         Self {
             newest: Held::Nothing,
             hidden: [Held::Nothing; HIDDEN],
+            crossing: Held::Nothing,
             judged: Held::Nothing,
             contradictions: 0,
             past: 0,
@@ -136,14 +141,17 @@ impl Ranging {
             return;
         }
         let seen = sight.bound();
-        // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be. One that certainly drives is not
-        // one that stood, and may leave the path close before it.
+        // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be. One that drives may leave the path
+        // close before one that stood. So a view of one that certainly drives is of one that stood only if that was seen just now, and can be
+        // as fast.
         let drives = seen.lowest_speed() > CRAWL;
         let is_beyond = |held: &Sight| {
-            if drives && held.stands() && held.is_remembered(sight.at) {
+            let then = held.bound().after(seen.at(), &AccelerationRange::WORST);
+            let is_the_same = sight.at.since(held.at) <= RANGE_TIMEOUT && seen.lowest_speed() <= then.highest_speed();
+            if drives && !is_the_same && held.stands() && held.is_remembered(sight.at) {
                 return seen.lowest_position() > held.bound().highest_position();
             }
-            seen.highest_position() >= held.bound().after(seen.at(), &AccelerationRange::WORST).lowest_position()
+            seen.highest_position() >= then.lowest_position()
         };
         for held in self.hidden.iter_mut().filter(|held| held.as_ref().is_some_and(is_beyond)) {
             held.clear();
@@ -151,7 +159,23 @@ impl Ranging {
         if let Some(newest) = newest.filter(|newest| !is_beyond(newest)) {
             self.hide(sight.at, newest);
         }
+        let is_gone = |held: &Sight| seen.lowest_position() > held.bound().highest_position();
+        if self.crossing.as_ref().is_some_and(is_gone) {
+            self.crossing.clear();
+        }
         self.newest.set(sight);
+    }
+
+    /// Takes in a view of a vehicle that crosses the ego's way in the next conflict area. It is not remembered like others: it drives out
+    /// of the way.
+    pub(in crate::unit) fn see_crossing(&mut self, sight: Sight) {
+        self.crossing.set(sight);
+    }
+
+    /// The near end of the vehicle that was seen to cross just now.
+    pub(in crate::unit) fn crossing(&self, now: Instant) -> Option<Position> {
+        let sight = self.crossing.get().filter(|sight| now.since(sight.at) <= CROSSING)?;
+        Some(sight.bound().lowest_position())
     }
 
     /// The vehicle ahead at now as the sensor saw it, at constant speed since the view. The position is that of its rear bumper. `None`

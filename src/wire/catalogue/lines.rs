@@ -8,12 +8,12 @@ use super::OnFd::{Follows, Frame, MayFollow};
 use super::Speaker::{Ego, Own, Peer};
 use super::{Content, Line};
 use crate::wire::{
-    actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, range_sensor, route,
+    actuators, command, driver_request, driving_parameters, estimate, geo, horizon, motion, pass, range_sensor, route,
     status, sync, unserved,
 };
 
 /// Lines of the catalogue.
-pub const LINES: usize = 25;
+pub const LINES: usize = 27;
 
 #[allow(clippy::cast_possible_truncation)] // 5
 const KNOTS: u8 = horizon::KNOTS as u8;
@@ -113,6 +113,21 @@ pub static CATALOGUE: [Line; LINES] = [
         .of(2)
         .within(50, TWO_FRAMES)
         .says(ROUTE),
+    Line::new("OwnPass", 0x16, Content::Pass(Own), Unit, pass::FIELDS)
+        .every(200, 600)
+        .only("on a route, with the envelope engaged, as soon as the unit knows its place there and GNSS time, while EgoMotion comes in time")
+        .of(4)
+        .within(50, FOUR_FRAMES)
+        .says(PASS),
+    Line::new("PeerPass", 0x17, Content::Pass(Peer), Modem, pass::FIELDS)
+        .every(25, 0)
+        .only(
+            "on a route; one message for each that was heard of a station that comes to the same intersection or has just left it, whether it \
+             has a slot or not",
+        )
+        .of(4)
+        .within(50, FOUR_FRAMES)
+        .says(PASS),
     Line::new("Health", 0x18, Content::Status, Unit, status::FIELDS)
         .every(100, 300)
         .says("A page per cause, one after the other; Count stops at its largest value. Several causes are no refusals."),
@@ -164,6 +179,7 @@ const ESTIMATE_FRAMES: &str = "Frames A and B of the estimate make one message: 
 const HORIZON_FRAMES: &str =
     "5 frames of one Tag within 50 ms make one message; Tag is that of the motion it starts from.";
 const THREE_FRAMES: &str = "3 frames of one Tag within 50 ms make one message.";
+const FOUR_FRAMES: &str = "4 frames of one Tag within 50 ms make one message.";
 const TWO_FRAMES: &str = "2 frames of one Tag within 50 ms make one message.";
 
 const FRESH: &str = "while EgoMotion comes in time";
@@ -182,4 +198,5 @@ const HORIZON: &str = "Part n is the state after \
     n-1, whose speed and acceleration are v and a, on the way D between the two.";
 const PARAMETERS: &str = "All limits are magnitudes.";
 const ROUTE: &str = "Arrival is GNSS time modulo 2^20 of 10 ms.";
+const PASS: &str = "Times are GNSS time modulo 655.36 s. A window is from Entry to Entry plus Length.";
 const PEER_ROUTE: &str = "Arrival is GNSS time modulo 2^20 of 10 ms. Without an itinerary the unit ignores it.";

@@ -90,6 +90,10 @@ fn decode<const UNIT: bool>(content: Content, slot: Slot, parts: &Parts) -> Resu
     let pair = [first.unwrap_or_default(), second.unwrap_or_default()];
     Ok(match content {
         Content::EstimateA | Content::Said(Speaker::Own, _) if UNIT => None,
+        Content::Pass(speaker) => {
+            let [a, b, c, d, ..] = parts.map(Option::unwrap_or_default);
+            super::pass::<UNIT>(speaker, &[a, b, c, d])
+        }
         Content::EstimateA => Some(Message::Estimate(TargetEstimate::decode(&pair)?)),
         Content::Said(speaker, about) => said(speaker, about, &pair, parts).map(|said| match speaker {
             Speaker::Ego => Message::Ego(said),

@@ -39,7 +39,8 @@ pub const LINES: &[Line] = &[
 ];
 
 /// The names of the sides, in the order of the table.
-pub const SIDES: [&str; Sides::COUNT] = ["holdover", "perfect link", "drives alone", "with envelope", "emergencies"];
+pub const SIDES: [&str; Sides::COUNT] =
+    ["holdover", "perfect link", "drives alone", "with envelope", "… perfect link", "… emergencies"];
 
 /// The tables.
 #[must_use]
@@ -54,13 +55,13 @@ pub fn text(results: &Results) -> String {
     }
     let _ = write!(text, "{:30}", "");
     SIDES.iter().for_each(|side| {
-        let _ = write!(text, "{side:>14}");
+        let _ = write!(text, "{side:>16}");
     });
     text.push('\n');
     for (name, of) in LINES {
         let _ = write!(text, "{name:30}");
         results.sides.all().iter().for_each(|side| {
-            let _ = write!(text, "{:>14}", of(side));
+            let _ = write!(text, "{:>16}", of(side));
         });
         text.push('\n');
     }

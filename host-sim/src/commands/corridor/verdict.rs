@@ -12,6 +12,7 @@ use crate::roads::figures::Side;
 pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     let mut failures = safety("", &sides.holdover);
     failures.extend(safety(" with the envelope", &sides.envelope));
+    failures.extend(safety(" with the envelope over a perfect link", &sides.envelope_perfect_link));
     failures.extend(safety(" with emergencies", &sides.emergencies));
     let full_stops = sides.holdover.full_stops;
     if limits.full_stops.is_some_and(|most| full_stops as u64 > most) {
@@ -74,7 +75,14 @@ mod tests {
             position_error: ErrorFigures { ticks: 1000, max_m: Some(0.2), rms_m: Some(0.05) },
             ..Side::of(&[])
         };
-        Sides { holdover: side, perfect_link: side, alone: side, envelope: side, emergencies: side }
+        Sides {
+            holdover: side,
+            perfect_link: side,
+            alone: side,
+            envelope: side,
+            envelope_perfect_link: side,
+            emergencies: side,
+        }
     }
 
     fn failing(spoil: impl Fn(&mut Sides)) -> Vec<String> {

@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn a_unit_listens_to_the_vehicle_the_modem_and_every_slot() {
         let ids: Vec<u32> = heard(&Identifiers::DEFAULT).map(Identifier::number).collect();
-        assert_eq!(ids.len(), 9 + 6 * PEERS);
+        assert_eq!(ids.len(), 10 + 6 * PEERS);
         assert!(ids.contains(&0x480) && ids.contains(&0x4C0) && ids.contains(&(0x4C0 + 8 * 7 + 5)));
         assert!(!ids.contains(&0x482) && !ids.contains(&(0x4C0 + 8 * u32::try_from(PEERS).unwrap())));
     }

@@ -133,7 +133,10 @@ impl<'a> Publisher<'a> {
                 DrivingParameters { predecessor: Predecessor::Unknown, limits: PHYSICAL, ..parameters }
             }
         });
-        Some(Published { sampled_us, message: V2xMessage { motion, parameters, horizon: None, route: None } })
+        Some(Published {
+            sampled_us,
+            message: V2xMessage { motion, parameters, horizon: None, route: None, pass: None },
+        })
     }
 }
 

@@ -14,7 +14,7 @@ use crate::commands::ecu::options::slots;
 use crate::error::{Error, quoted};
 use crate::input::library;
 use crate::input::scenario::{Overrides, Scenario};
-use crate::roads::conditions::{self, Conditions};
+use crate::roads::conditions::{self, Conditions, Identity};
 use crate::roads::description::Corridor;
 use crate::roads::experiment::of_seed;
 use crate::roads::map::itineraries;
@@ -124,7 +124,8 @@ fn of_corridor(corridor: &Corridor, vehicle: Option<usize>) -> Result<(Config, &
         return Err(Error::new(cause, format!("give an index below {STATIONS}")).in_option("--vehicle"));
     }
     let trip = &trips[vehicle];
-    let config = conditions::config(corridor, &Conditions::of(corridor), vehicle, trip.kind);
+    let identity = Identity::of(corridor, corridor.seed, vehicle, vehicle);
+    let config = conditions::config(corridor, &Conditions::of(corridor), identity, trip.kind);
     Ok((config, itineraries(&network)[trip.road]))
 }
 

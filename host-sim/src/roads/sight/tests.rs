@@ -56,14 +56,15 @@ fn lanes_cross_where_both_are_at_one_point() {
 }
 
 #[test]
-fn a_vehicle_that_crosses_is_seen_while_its_body_is_on_the_own_way_and_not_while_it_is_beside_it() {
+fn a_vehicle_that_crosses_is_seen_while_its_body_is_in_the_conflict_area_and_not_before_or_beyond_it() {
     let street = Street::new();
-    let half_m = 0.5 * WIDTH_M;
-    for beside_m in [-half_m - 0.1, half_m + LENGTH_M + 0.1, -30.0, 30.0] {
+    // The area reaches 3.5 m to either side of the middle of 2nd Street, and its lanes are 1.75 m beside that.
+    let (half_m, out_m, in_m) = (0.5 * WIDTH_M, 3.5 + 1.75, 3.5 - 1.75);
+    for beside_m in [-out_m - 0.1, out_m + LENGTH_M + 0.1, -30.0, 30.0] {
         assert_eq!(street.sees(beside_m), None, "{beside_m}");
     }
-    for on_way_m in [-half_m + 0.1, 0.0, 3.0, half_m + LENGTH_M - 0.1] {
-        let seen = street.sees(on_way_m).expect("it is on the way");
+    for on_way_m in [-in_m + 0.1, -half_m + 0.1, 0.0, 3.0, half_m + LENGTH_M - 0.1, in_m + LENGTH_M - 0.1] {
+        let seen = street.sees(on_way_m).expect("it is in the area");
         // The streets cross at a right angle, to within a degree: the side of the body is half its width nearer.
         assert!((seen.gap_m - (50.0 - half_m)).abs() < 0.1 && seen.speed_mps.abs() < 0.15, "{on_way_m}: {seen:?}");
     }
@@ -108,7 +109,7 @@ fn of_a_vehicle_on_the_own_road_and_one_that_crosses_the_nearer_one_is_seen() {
 #[test]
 fn at_an_acute_angle_a_body_begins_where_its_corner_is_and_its_speed_is_the_part_along_the_way() {
     let angle = 60.0_f64.to_radians().sin_cos();
-    let place = Crossing { other: 1, at_m: [100.0, 0.0], angle };
+    let place = Crossing { other: 1, at_m: [100.0, 0.0], area_m: [0.0, 0.0], angle };
     let own = body(0, 50.0);
     // The body reaches from 4 m before the crossing to 1 m beyond it.
     let seen = place.seen(&own, &body(1, 1.0)).unwrap();

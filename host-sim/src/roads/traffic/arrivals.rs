@@ -11,7 +11,7 @@ use super::emergencies::Emergency;
 use super::{Traffic, Traveller};
 use crate::input::kind::Difference;
 use crate::input::scenario::Accuracy;
-use crate::roads::conditions::config;
+use crate::roads::conditions::{Identity, config};
 use crate::roads::map::number;
 use crate::roads::trips::{HEARD_S, Trip};
 use crate::sim::air::Arrived;
@@ -22,7 +22,6 @@ use crate::sim::plant::{Machine, Plant};
 use crate::sim::quantities::{seconds, speed};
 use crate::sim::road::Ground;
 use crate::sim::sensors::Sensors;
-use crate::sim::sensors::faults::is_fitted;
 use crate::sim::vehicle::Vehicle;
 use crate::sim::world::{WARM_UP_S, clock_offset, warm_up_ticks};
 
@@ -106,10 +105,11 @@ impl Traffic<'_> {
             target_speed: speed(self.corridor.traffic.target_speed_mps),
             time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
         };
-        let config = config(self.corridor, &self.conditions, called, trip.kind);
-        let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let fitted = &self.corridor.sensors;
-        let sees = is_fitted(fitted.share, self.seed, index as u32);
+        let identity = Identity::of(self.corridor, self.seed, index, called);
+        let sees = identity.sees;
+        let config = config(self.corridor, &self.conditions, identity, trip.kind);
+        let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
         let sensors = Sensors::with(ACCURACY, sees.then_some(fitted.sensor), self.seed, index);
         let mut vehicle = Box::new(
             Vehicle::new(called, &config, plant, length_m, request, offset_us, sensors)

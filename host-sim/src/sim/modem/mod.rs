@@ -169,6 +169,7 @@ impl Relay {
         let station = message.motion.station;
         self.begun_s.get_or_insert(at_s);
         self.place(at_s, message);
+        self.relay_pass(message, frames);
         let front = Front::of(&self.course, &self.places);
         let rank = self.rank(station, at_s, &front);
         if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
@@ -201,6 +202,15 @@ impl Relay {
         for said in std::iter::repeat_n(said, times).flatten() {
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             sent.expect("the catalogue has a line for each thing that a peer says");
+        }
+    }
+
+    /// Relays what a station says of its passes, if it comes to the unit's next intersection or has just left it. It needs no slot.
+    fn relay_pass(&mut self, message: &V2xMessage, frames: &mut Vec<Frame>) {
+        let Some((pass, next)) = message.pass.zip(self.course.next()) else { return };
+        if pass.intersection == next.id || pass.left == Some(next.id) {
+            let sent = self.sender.send(&Message::PeerPass(pass), &mut |frame| frames.push(frame));
+            sent.expect("the catalogue has a line for passes");
         }
     }
 

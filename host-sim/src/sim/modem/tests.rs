@@ -20,7 +20,7 @@ fn message(station: u8, parameters: Option<DrivingParameters>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, parameters, horizon: None, route: None }
+    V2xMessage { motion, parameters, horizon: None, route: None, pass: None }
 }
 
 fn parameters(target_speed: i32) -> DrivingParameters {

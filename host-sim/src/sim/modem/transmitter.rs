@@ -5,6 +5,7 @@ use holdover::wire::driving_parameters::DrivingParameters;
 use holdover::wire::fd::State;
 use holdover::wire::horizon::Knots;
 use holdover::wire::motion::Motion;
+use holdover::wire::pass::Pass;
 use holdover::wire::route::Route;
 
 /// One broadcast of a vehicle.
@@ -18,6 +19,8 @@ pub struct V2xMessage {
     pub horizon: Option<Knots>,
     /// Its place on its route, if it has one.
     pub route: Option<Route>,
+    /// Its passes, if it said any.
+    pub pass: Option<Pass>,
 }
 
 /// The messages that the unit sent since the last broadcast.
@@ -27,6 +30,7 @@ pub struct Transmitter {
     parameters: Option<DrivingParameters>,
     horizon: Option<Knots>,
     route: Option<Route>,
+    pass: Option<Pass>,
 }
 
 impl Transmitter {
@@ -46,12 +50,17 @@ impl Transmitter {
         }
     }
 
+    /// Takes in what the unit says of its passes.
+    pub fn take_pass(&mut self, pass: &Pass) {
+        self.pass = Some(*pass);
+    }
+
     /// The message to broadcast now; `None` if the unit has not sent its motion. Driving parameters hold until the next
     /// ones.
     pub fn broadcast(&mut self) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
         let route = self.route.take().filter(|route| route.stamp == motion.stamp);
-        Some(V2xMessage { motion, parameters: self.parameters, horizon, route })
+        Some(V2xMessage { motion, parameters: self.parameters, horizon, route, pass: self.pass.take() })
     }
 }

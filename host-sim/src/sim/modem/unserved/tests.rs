@@ -35,7 +35,7 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(said.0),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route: Some(route(said)) }
+    V2xMessage { motion, parameters: None, horizon: None, route: Some(route(said)), pass: None }
 }
 
 /// A modem with this many slots, one of them in reserve, that has heard those stations for a second. Each station has

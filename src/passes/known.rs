@@ -1,0 +1,206 @@
+//! The vehicles that are known to come to the next intersection by ways that cross the ego's. What was heard of them enters, and what is
+//! known of their claims leaves. A vehicle stays in this list without a slot, and whether it is heard or not, until it says that it has
+//! left, or for so long that it is [forgotten](super::Rules::is_forgotten). After that, its claims do not count any more, but as long as
+//! there is room it stays on record as one that keeps passes.
+
+use super::{Claim, Known, PIECES, Rules};
+use crate::coordination::Arrival;
+use crate::held::Held;
+use crate::time::GnssTime;
+use crate::wire::StationHash;
+
+/// So many vehicles are known at once.
+pub const KNOWN: usize = 24;
+
+/// What was heard of a vehicle last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Station {
+    /// Its whole identity.
+    pub id: u32,
+    /// The leg by which it comes.
+    pub leg: u8,
+    /// The stamp of the message.
+    pub heard: GnssTime,
+    /// When it arrived.
+    pub arrival: Arrival,
+    claims: [Claim; PIECES],
+    count: u8,
+    /// It has left, or is forgotten.
+    is_gone: bool,
+}
+
+impl Station {
+    /// A vehicle, with what it claims.
+    #[must_use]
+    pub fn new(id: u32, leg: u8, heard: GnssTime, arrival: Arrival, claims: [Option<Claim>; PIECES]) -> Self {
+        let mut held = Self { id, leg, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_gone: false };
+        for (place, claim) in held.claims.iter_mut().zip(claims.into_iter().flatten()) {
+            *place = claim;
+            held.count = held.count.saturating_add(1);
+        }
+        held
+    }
+
+    /// Its name in messages that have room for 8 bits only.
+    #[must_use]
+    pub const fn station(&self) -> StationHash {
+        StationHash(self.id.to_le_bytes()[0])
+    }
+
+    /// What it claims.
+    #[must_use]
+    pub fn claims(&self) -> &[Claim] {
+        self.claims.get(..usize::from(self.count)).unwrap_or_default()
+    }
+
+    /// As the rules take it.
+    #[must_use]
+    pub fn known(&self) -> Known<'_> {
+        Known { heard: self.heard, claims: self.claims() }
+    }
+}
+
+/// There was no room for a vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Full;
+
+/// The list.
+#[derive(Clone, Debug)]
+pub struct List {
+    stations: [Held<Station>; KNOWN],
+    /// When a vehicle was heard last for which there was no room.
+    missed: Held<GnssTime>,
+}
+
+impl List {
+    /// Nobody: all zero.
+    pub const EMPTY: Self = Self { stations: [Held::Nothing; KNOWN], missed: Held::Nothing };
+
+    /// The vehicles whose claims count.
+    pub fn iter(&self) -> impl Iterator<Item = &Station> + Clone {
+        self.on_record().filter(|station| !station.is_gone)
+    }
+
+    /// These, and vehicles that have left or are forgotten.
+    pub fn on_record(&self) -> impl Iterator<Item = &Station> + Clone {
+        self.stations.iter().filter_map(Held::as_ref)
+    }
+
+    /// Whether there may be a vehicle for which there was no room. Then nothing is firm.
+    #[must_use]
+    pub fn lacks_one(&self) -> bool {
+        self.missed.as_ref().is_some()
+    }
+
+    /// Takes in what was heard of a vehicle. Older news than the last changes nothing.
+    ///
+    /// # Errors
+    /// [`Full`].
+    pub fn hear(&mut self, station: Station) -> Result<(), Full> {
+        let is_same = |held: &Held<Station>| held.as_ref().is_some_and(|held| held.id == station.id);
+        let place = self.stations.iter().position(is_same);
+        let is_free = |held: &Held<Station>| held.as_ref().is_none_or(|held| held.is_gone);
+        let place = place.or_else(|| self.stations.iter().position(|held| held.as_ref().is_none()));
+        let place = place.or_else(|| self.stations.iter().position(is_free));
+        let Some(held) = place.and_then(|place| self.stations.get_mut(place)) else {
+            self.missed.set(station.heard);
+            return Err(Full);
+        };
+        if held.as_ref().is_none_or(|held| held.heard <= station.heard) {
+            held.set(station);
+        }
+        Ok(())
+    }
+
+    /// A vehicle has left, as it says.
+    pub fn leave(&mut self, id: u32, said: GnssTime) {
+        for held in self.stations.iter_mut() {
+            if let Some(station) = held.get().filter(|station| station.id == id && station.heard <= said) {
+                held.set(Station { heard: said, is_gone: true, ..station });
+            }
+        }
+    }
+
+    /// Forgets the vehicles that have been silent for long.
+    pub fn forget(&mut self, rules: &Rules, now: GnssTime) {
+        let is_forgotten = |station: &Station| {
+            let exit = station.claims().iter().map(|claim| claim.window.exit).max();
+            rules.is_forgotten(now, station.heard, exit)
+        };
+        for held in self.stations.iter_mut() {
+            if let Some(station) = held.get().filter(|station| !station.is_gone && is_forgotten(station)) {
+                held.set(Station { is_gone: true, ..station });
+            }
+        }
+        if self.missed.get().is_some_and(|missed| rules.is_forgotten(now, missed, None)) {
+            self.missed.clear();
+        }
+    }
+
+    /// Forgets everybody.
+    pub fn clear(&mut self) {
+        self.stations = [Held::Nothing; KNOWN];
+        self.missed.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::passes::tests::{RULES, claim, time, window};
+
+    fn station(id: u32, heard: u64) -> Station {
+        Station::new(id, 1, time(heard), Arrival(5), [None; PIECES])
+    }
+
+    #[test]
+    fn the_newest_news_of_each_vehicle_is_known_until_it_has_left() {
+        let mut list = List::EMPTY;
+        for (id, heard) in [(7, 100), (8, 110), (7, 120), (7, 90)] {
+            list.hear(station(id, heard)).unwrap();
+        }
+        let known = |list: &List| list.iter().map(|known| (known.id, known.heard)).collect::<Vec<_>>();
+        assert_eq!(known(&list), [(7, time(120)), (8, time(110))]);
+        list.leave(7, time(119));
+        assert_eq!(known(&list).len(), 2, "it came back since");
+        list.leave(7, time(121));
+        assert_eq!(known(&list), [(8, time(110))]);
+        list.hear(station(7, 120)).unwrap();
+        assert_eq!(known(&list), [(8, time(110))], "old news does not bring it back");
+        let on_record: Vec<u32> = list.on_record().map(|known| known.id).collect();
+        assert_eq!(on_record, [7, 8]);
+    }
+
+    #[test]
+    fn a_silent_vehicle_is_forgotten_after_its_windows() {
+        let mut list = List::EMPTY;
+        let claims = [Some(claim(1, window(1_100, 1_400), 7)), None];
+        list.hear(Station::new(7, 1, time(1_000), Arrival(5), claims)).unwrap();
+        for (now, known) in [(1_301, 1), (1_402, 1), (1_403, 0)] {
+            list.forget(&RULES, time(now));
+            assert_eq!(list.iter().count(), known, "{now}");
+        }
+    }
+
+    #[test]
+    fn one_for_whom_there_is_no_room_is_remembered_as_missing() {
+        let mut list = List::EMPTY;
+        for id in 0..KNOWN as u32 {
+            list.hear(station(id, 1_000)).unwrap();
+        }
+        assert!(!list.lacks_one());
+        assert_eq!(list.hear(station(99, 1_000)), Err(Full));
+        assert!(list.lacks_one());
+        list.leave(0, time(1_001));
+        list.forget(&RULES, time(1_300));
+        assert!(list.lacks_one(), "nobody knows where it is");
+        list.hear(station(98, 1_299)).unwrap();
+        assert!(
+            list.iter().any(|known| known.id == 98) && list.on_record().all(|known| known.id != 0),
+            "it has the place of one that left"
+        );
+        list.forget(&RULES, time(1_301));
+        assert!(!list.lacks_one());
+    }
+}

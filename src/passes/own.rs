@@ -1,0 +1,388 @@
+//! What a vehicle claims itself. When it will be in the conflict area, and what is known of the others, enter; what it says, and whether
+//! a stay is covered, leave.
+//!
+//! A vehicle claims the time for which it foresees to be in the area, with some slack before and after. As long as that covers what it
+//! foresees, the claim stays as it is, because only time that is claimed anew has to become firm anew (F6). What it will not need it
+//! gives back. Time that is missing at the end becomes a window of its own, which joins the first. If anything else is missing, another
+//! window is claimed: the earliest that is free.
+
+use super::{Claim, Known, PIECES, Rules, Window, is_covered};
+use crate::held::Held;
+use crate::time::{Duration, GnssTime};
+
+/// Time beyond what is wanted that a vehicle does not give back, so that a claim does not follow every change of what is foreseen.
+const KEPT: Duration = Duration::from_millis(400);
+
+/// When a vehicle foresees to be in the conflict area.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outlook {
+    /// From the entry of its front to the exit of its rear.
+    pub stay: Window,
+    /// Time to claim beyond the stay.
+    pub slack: Slack,
+    /// With less than this beyond the stay, more is claimed.
+    pub least: Slack,
+    /// It cannot stop before the area any more, or is in it.
+    pub is_committed: bool,
+}
+
+/// Time before and after a stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slack {
+    /// The vehicle may be there earlier by so much.
+    pub before: Duration,
+    /// It may be there later by so much.
+    pub after: Duration,
+}
+
+impl Slack {
+    const KEPT: Self = Self { before: KEPT, after: KEPT };
+
+    /// A window with this before and after it.
+    fn around(self, window: &Window) -> Window {
+        Window { entry: window.entry.plus(Duration::ZERO.minus(self.before)), exit: window.exit.plus(self.after) }
+    }
+
+    /// How far it falls short of another.
+    fn minus(self, other: Self) -> Self {
+        Self { before: self.before.minus(other.before), after: self.after.minus(other.after) }
+    }
+}
+
+/// The place of another vehicle in the order at the intersection, against the own one. It decides who gets time that two want. It does
+/// not decide what is firm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// It goes first: the ego gives way to what it claims, and when.
+    Ahead,
+    /// It goes after the ego, and gives way.
+    Behind,
+    /// Not known: the earlier claim goes first (F3).
+    Unknown,
+}
+
+/// The own claims at the next intersection.
+#[derive(Clone, Debug)]
+pub struct Own {
+    /// Since when messages name that intersection.
+    on_air: Held<GnssTime>,
+    /// The stamp of the last message.
+    said: Held<GnssTime>,
+    pieces: [Held<Claim>; PIECES],
+}
+
+impl Own {
+    /// Nothing is claimed: all zero.
+    pub const NOTHING: Self = Self { on_air: Held::Nothing, said: Held::Nothing, pieces: [Held::Nothing; PIECES] };
+
+    /// Another intersection comes next, or the time is not known any more (F8).
+    pub fn begin(&mut self) {
+        *self = Self::NOTHING;
+    }
+
+    /// The claims.
+    pub fn claims(&self) -> impl Iterator<Item = Claim> + Clone {
+        self.pieces.iter().filter_map(|piece| piece.get())
+    }
+
+    /// Claims what is foreseen, and gives back the rest. Without an outlook everything is given back. `known` are the vehicles on ways
+    /// that cross the own one, with their places in the order.
+    pub fn plan<'a>(
+        &mut self,
+        rules: &Rules,
+        now: GnssTime,
+        station: u32,
+        outlook: Option<&Outlook>,
+        known: impl Iterator<Item = (Known<'a>, Order)> + Clone,
+    ) {
+        let Some(outlook) = outlook else {
+            self.pieces = [Held::Nothing; PIECES];
+            return;
+        };
+        if !outlook.is_committed {
+            self.give_way(rules, known.clone());
+        }
+        let want = outlook.slack.around(&outlook.stay);
+        self.shrink(now, outlook, &want);
+        if self.is_claimed(&outlook.least.around(&outlook.stay)) {
+            return;
+        }
+        let on_air = self.on_air.get().unwrap_or(now);
+        let at = rules.claims_from(now, on_air, self.said.get());
+        let is_firm = |claim: &Claim| rules.is_firm(now, claim, known.clone().map(|(other, _)| other));
+        // Who goes after the ego gives way.
+        let before = known.clone().filter(|(_, order)| *order != Order::Behind);
+        let taken = before.flat_map(|(other, _)| other.claims.iter()).map(|claim| claim.window);
+        let free = |window: &Window| {
+            let cut =
+                |window: Window, other| if outlook.is_committed { window } else { rules.trimmed(&window, &other) };
+            taken.clone().fold(*window, cut)
+        };
+        if let Some(growth) =
+            self.missing(outlook, &want).map(|window| free(&window)).filter(|window| !window.is_empty())
+        {
+            self.add(Claim { at, window: growth, station }, is_firm);
+            if self.is_claimed(&outlook.stay) {
+                return;
+            }
+        }
+        let window = if outlook.is_committed {
+            want
+        } else {
+            // What is left of the slack is enough, if it is free.
+            let least = outlook.least.around(&outlook.stay);
+            let cut = free(&want);
+            let is_enough = cut.entry <= least.entry && cut.exit >= least.exit;
+            if is_enough { cut } else { rules.earliest_free(&want, taken) }
+        };
+        // While it waits for a later window, that one is as good as one that moves on with what is foreseen.
+        if self.is_claimed(&outlook.least.minus(outlook.slack).around(&window)) {
+            return;
+        }
+        self.replace(Claim { at, window, station }, &outlook.stay, is_firm);
+    }
+
+    /// The claims as they are said in a message with this stamp.
+    pub fn say(&mut self, stamp: GnssTime) -> [Option<Claim>; PIECES] {
+        self.on_air.set(self.on_air.get().unwrap_or(stamp));
+        self.said.set(stamp);
+        self.pieces.map(|piece| piece.get())
+    }
+
+    /// Whether a stay is covered by firm claims (F4, F5).
+    pub fn covers<'a>(
+        &self,
+        rules: &Rules,
+        now: GnssTime,
+        stay: &Window,
+        known: impl Iterator<Item = Known<'a>> + Clone,
+    ) -> bool {
+        // Most of the time nothing covers it, firm or not.
+        if !self.is_claimed(stay) {
+            return false;
+        }
+        let firm = self.claims().filter(|claim| rules.is_firm(now, claim, known.clone()));
+        is_covered(stay, firm.map(|claim| claim.window))
+    }
+
+    /// Whether a stay is claimed, firm or not.
+    #[must_use]
+    pub fn is_claimed(&self, stay: &Window) -> bool {
+        is_covered(stay, self.claims().map(|claim| claim.window))
+    }
+
+    /// What is missing of the wanted window before or after what is claimed already.
+    fn missing(&self, outlook: &Outlook, want: &Window) -> Option<Window> {
+        let stay = &outlook.stay;
+        if let Some(end) = self.reaches(stay.entry) {
+            return Some(Window { entry: end, exit: want.exit });
+        }
+        let is_later = |claim: &Claim| (stay.entry..stay.exit).contains(&claim.window.entry);
+        let first = self.claims().filter(is_later).map(|claim| claim.window.entry).min()?;
+        Some(Window { entry: want.entry, exit: first })
+    }
+
+    /// The end of the claimed time that begins at `entry` or before.
+    #[must_use]
+    pub fn reaches(&self, entry: GnssTime) -> Option<GnssTime> {
+        reached(entry, self.claims())
+    }
+
+    /// The end of the firmly claimed time that begins at `entry` or before.
+    pub fn firmly_reaches<'a>(
+        &self,
+        rules: &Rules,
+        now: GnssTime,
+        entry: GnssTime,
+        known: impl Iterator<Item = Known<'a>> + Clone,
+    ) -> Option<GnssTime> {
+        reached(entry, self.claims().filter(|claim| rules.is_firm(now, claim, known.clone())))
+    }
+
+    /// Gives up what has to give way, or cuts it (F3). What a vehicle that goes after the ego has claimed is waited for: until that one
+    /// has given way, the own claim is not firm.
+    fn give_way<'a>(&mut self, rules: &Rules, known: impl Iterator<Item = (Known<'a>, Order)>) {
+        for (other, order) in known.flat_map(|(other, order)| other.claims.iter().map(move |claim| (claim, order))) {
+            for piece in &mut self.pieces {
+                let gives_way = |own: &Claim| match order {
+                    Order::Ahead => true,
+                    Order::Behind => false,
+                    Order::Unknown => other.precedes(own),
+                };
+                let Some(own) = piece.get().filter(gives_way) else { continue };
+                let window = rules.trimmed(&own.window, &other.window);
+                *piece = Some(Claim { window, ..own }).filter(|own| !own.window.is_empty()).into();
+            }
+        }
+    }
+
+    /// Gives back what is over, and what will not be needed.
+    fn shrink(&mut self, now: GnssTime, outlook: &Outlook, want: &Window) {
+        let kept = Slack::KEPT.around(want);
+        for piece in &mut self.pieces {
+            let Some(own) = piece.get() else { continue };
+            let mut window = own.window;
+            if !outlook.is_committed {
+                window.entry = window.entry.max(kept.entry);
+                // A window that is later than what is wanted is waited for.
+                if window.entry <= outlook.stay.entry {
+                    window.exit = window.exit.min(kept.exit);
+                }
+            }
+            let is_needed = !window.is_empty() && window.exit > now;
+            *piece = Some(Claim { window, ..own }).filter(|_| is_needed).into();
+        }
+    }
+
+    /// Adds a window. Where there is no place for it, the two that are there become one, if that is firm: it counts from when the later of
+    /// them did, and all messages since have said as much. Otherwise the later one becomes part of the new one.
+    fn add(&mut self, claim: Claim, is_firm: impl Fn(&Claim) -> bool) {
+        let [Held::Value(one), Held::Value(other)] = self.pieces else {
+            if let Some(free) = self.pieces.iter_mut().find(|piece| piece.as_ref().is_none()) {
+                free.set(claim);
+            }
+            return;
+        };
+        let (first, second) = if one.at <= other.at { (one, other) } else { (other, one) };
+        let joined = joined(&first.window, &second.window).map(|window| Claim { window, ..second });
+        self.pieces = if let Some(joined) = joined.filter(is_firm) {
+            [Held::Value(joined), Held::Value(claim)]
+        } else {
+            let window = joined_or(&second.window, &claim.window);
+            [Held::Value(first), Held::Value(Claim { window, ..claim })]
+        };
+    }
+
+    /// Claims another window. What overlaps the stay is kept: it is firm already, and the ego may still be there in that time.
+    fn replace(&mut self, claim: Claim, stay: &Window, is_firm: impl Fn(&Claim) -> bool) {
+        for piece in &mut self.pieces {
+            let overlaps = |own: &Claim| own.window.entry < stay.exit && stay.entry < own.window.exit;
+            *piece = piece.get().filter(overlaps).into();
+        }
+        self.add(claim, is_firm);
+    }
+}
+
+/// The end of the windows that follow one another from `entry` on.
+fn reached(entry: GnssTime, claims: impl Iterator<Item = Claim> + Clone) -> Option<GnssTime> {
+    let mut end = entry;
+    for _ in 0..PIECES {
+        let further = |claim: &Claim| claim.window.entry <= end && claim.window.exit > end;
+        end = claims.clone().filter(further).map(|claim| claim.window.exit).max().unwrap_or(end);
+    }
+    (end > entry).then_some(end)
+}
+
+/// Two windows as one, if there is no time between them.
+fn joined(one: &Window, other: &Window) -> Option<Window> {
+    let do_join = one.entry <= other.exit && other.entry <= one.exit;
+    do_join.then(|| Window { entry: one.entry.min(other.entry), exit: one.exit.max(other.exit) })
+}
+
+/// Two windows as one; the second alone if there is time between them.
+fn joined_or(one: &Window, other: &Window) -> Window {
+    joined(one, other).unwrap_or(*other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::passes::tests::{RULES, claim, time, window};
+
+    const SLACK: Slack = Slack { before: Duration::from_micros(8), after: Duration::from_micros(8) };
+    const LEAST: Slack = Slack { before: Duration::from_micros(4), after: Duration::from_micros(4) };
+
+    fn outlook(stay: Window) -> Outlook {
+        Outlook { stay, slack: SLACK, least: LEAST, is_committed: false }
+    }
+
+    /// One that has been on the air for long enough, with its last message at 990.
+    fn own() -> Own {
+        Own { on_air: Held::Value(time(900)), said: Held::Value(time(990)), ..Own::NOTHING }
+    }
+
+    /// Plans at 1,000 as station 5.
+    fn plan(own: &mut Own, outlook: &Outlook, others: &[(u64, &[Claim], Order)]) {
+        let others = others.iter().map(|(heard, claims, order)| (Known { heard: time(*heard), claims }, *order));
+        own.plan(&RULES, time(1_000), 5, Some(outlook), others);
+    }
+
+    fn windows(own: &Own) -> Vec<Window> {
+        own.claims().map(|claim| claim.window).collect()
+    }
+
+    #[test]
+    fn the_stay_is_claimed_with_slack_and_the_claim_is_kept_while_enough_of_it_is_left() {
+        let mut own = own();
+        plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
+        assert_eq!(windows(&own), [window(1_092, 1_158)]);
+        for stay in [window(1_104, 1_154), window(1_096, 1_146)] {
+            plan(&mut own, &outlook(stay), &[]);
+            assert_eq!(windows(&own), [window(1_092, 1_158)], "{stay:?}");
+        }
+    }
+
+    #[test]
+    fn who_will_be_late_claims_a_second_window_that_joins_the_first() {
+        let mut own = own();
+        plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
+        plan(&mut own, &outlook(window(1_105, 1_155)), &[]);
+        assert_eq!(windows(&own), [window(1_092, 1_158), window(1_158, 1_163)]);
+        assert!(own.is_claimed(&window(1_100, 1_163)));
+        assert_eq!(own.reaches(time(1_100)), Some(time(1_163)));
+    }
+
+    #[test]
+    fn who_foresees_nothing_gives_everything_back() {
+        let mut own = own();
+        plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
+        own.plan(&RULES, time(1_000), 5, None, [].into_iter());
+        assert_eq!(windows(&own), []);
+    }
+
+    #[test]
+    fn a_claim_is_cut_by_who_is_ahead_in_the_order_and_not_by_who_is_behind() {
+        // The other one claimed first, so that without an order it has priority.
+        let other = [claim(10, window(1_060, 1_095), 6)];
+        for (order, expected) in [(Order::Behind, 1_092), (Order::Ahead, 1_100), (Order::Unknown, 1_100)] {
+            let mut own = own();
+            plan(&mut own, &outlook(window(1_104, 1_150)), &[]);
+            own.pieces[0] = Held::Value(claim(1_000, window(1_092, 1_158), 5));
+            plan(&mut own, &outlook(window(1_104, 1_150)), &[(995, &other, order)]);
+            assert_eq!(windows(&own)[0].entry, time(expected), "{order:?}");
+        }
+    }
+
+    #[test]
+    fn who_cannot_have_its_stay_claims_the_next_time_that_is_free() {
+        let mut own = own();
+        let taken = [claim(10, window(1_090, 1_140), 6)];
+        plan(&mut own, &outlook(window(1_100, 1_150)), &[(995, &taken, Order::Ahead)]);
+        // 2 for the clocks, 3 for the clearance.
+        assert_eq!(windows(&own), [window(1_145, 1_211)]);
+    }
+
+    #[test]
+    fn who_cannot_stop_any_more_gives_nothing_up() {
+        let mut own = own();
+        plan(&mut own, &outlook(window(1_010, 1_060)), &[]);
+        let taken = [claim(10, window(1_020, 1_040), 6)];
+        let committed = Outlook { is_committed: true, ..outlook(window(1_010, 1_060)) };
+        plan(&mut own, &committed, &[(995, &taken, Order::Ahead)]);
+        assert_eq!(windows(&own), [window(1_002, 1_068)]);
+    }
+
+    #[test]
+    fn a_stay_is_covered_once_all_that_are_known_have_been_heard_since_the_claim() {
+        let mut own = own();
+        plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
+        let stay = window(1_100, 1_150);
+        for (heard, expected) in [(999, false), (1_000, true)] {
+            let known = || [Known { heard: time(heard), claims: &[] }].into_iter();
+            assert_eq!(own.covers(&RULES, time(1_001), &stay, known()), expected, "{heard}");
+            let reached = own.firmly_reaches(&RULES, time(1_001), stay.entry, known());
+            assert_eq!(reached, expected.then_some(time(1_158)), "{heard}");
+        }
+        assert!(!own.covers(&RULES, time(1_001), &window(1_100, 1_159), [].into_iter()), "it was not claimed");
+    }
+}

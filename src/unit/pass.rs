@@ -1,0 +1,292 @@
+//! The ego's passes. Where the ego will be, by its own horizon, enters; the windows that it claims, and whether it may go into the next
+//! conflict area, leave. The rules are those of [`crate::passes`].
+
+use super::scene::Scene;
+use super::scene::passes::whole_steps;
+use crate::fixed::quotient;
+use crate::model::State;
+use crate::parameters::{POSITION_ROUNDING, SPEED_ROUNDING};
+use crate::passes::{Outlook, Rules, Slack, Window};
+use crate::peers::Sample;
+use crate::time::{Duration, GnssTime, Instant};
+use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::wire::pass::STEP;
+
+/// How much earlier or later than foreseen the ego may be in the area.
+const SLACK: Slack = Slack { before: Duration::from_millis(800), after: Duration::from_millis(800) };
+/// With less than this left, more is claimed.
+const LEAST: Slack = Slack { before: Duration::from_millis(400), after: Duration::from_millis(400) };
+/// A stay that begins sooner than this has to be possible at both ends of what the ego can do.
+const AT_ONCE: Duration = Duration::from_millis(1_500);
+/// The same for an ego that is slow, and may go on faster than it foresees.
+const NEAR: Duration = Duration::from_millis(4_000);
+const SLOW: Speed = Speed::from_mm_per_s(4_000);
+/// An ego that is slower than this waits, and may wait for so long that its claims become firm.
+const WAITING: Speed = Speed::from_mm_per_s(1_000);
+const WAITS: Duration = Duration::from_millis(1_000);
+/// What is later is not foreseen.
+const FORESEEN: Duration = Duration::from_millis(25_000);
+/// A horizon that ends at less than this says nothing of when the ego gets to a place beyond.
+const STANDS: Speed = Speed::from_mm_per_s(500);
+/// An ego that would leave the area too late otherwise accelerates by at least this, or by as much as it has published, up to the speed
+/// that it wants on a free road.
+const LEAVING: Acceleration = Acceleration::from_mm_per_s2(1_500);
+/// An ego that would be early brakes by no more than this.
+const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
+/// From when on it would be late.
+const LATE: Duration = Duration::from_millis(100);
+
+/// The ego at now, from the least to the most that it may be ahead and fast.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Range {
+    pub now: Instant,
+    /// Front bumper.
+    pub rearmost: Position,
+    pub foremost: Position,
+    pub slowest: Speed,
+    pub fastest: Speed,
+    /// Acceleration that is reached, as low as it may be.
+    pub least: Acceleration,
+}
+
+impl Range {
+    /// The ego in this state at now, by its newest sample's accuracies.
+    pub fn of<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        now: Instant,
+        state: &State,
+    ) -> Option<Self> {
+        Some(Self::around(scene, now, state, scene.ego.as_ref()?))
+    }
+
+    pub fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        now: Instant,
+        state: &State,
+        sample: &Sample,
+    ) -> Self {
+        let front = sample.position.ahead(state.position.ahead_of(sample.position.ring()));
+        let faster = sample.speed_error().plus(SPEED_ROUNDING);
+        let late = sample.speed.plus(faster).over(scene.own_clock_error(sample).seconds());
+        let off = sample.position_error().plus(POSITION_ROUNDING).plus(late);
+        Self {
+            now,
+            rearmost: front.ahead(off.negated()),
+            foremost: front.ahead(off),
+            slowest: state.speed.minus(faster).max(Speed::ZERO),
+            fastest: state.speed.plus(faster),
+            least: state.acceleration,
+        }
+    }
+}
+
+/// The acceleration of an ego that leaves.
+fn leaving<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+) -> Acceleration {
+    LEAVING.min(scene.config.limits.acceleration)
+}
+
+/// The next conflict area on the ego's axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    pub begins: Position,
+    /// Where the front bumper is when the rear bumper has left.
+    pub is_left_at: Position,
+}
+
+impl Area {
+    pub fn next<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+    ) -> Option<Self> {
+        let begins = scene.area_begins()?;
+        let ends = scene.coordination.end_of(scene.coordination.next())?;
+        Some(Self { begins, is_left_at: ends.ahead(scene.config.length) })
+    }
+}
+
+/// The stay in the area from now on at both ends of what the ego may do: it goes there as fast as it may at all, and gets out as slowly
+/// as [`leaving`] lets it.
+pub(super) fn stay_at_worst<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    ego: &Range,
+    now: GnssTime,
+) -> Window {
+    let (config, top) = (&scene.config, scene.target_speed());
+    let entry = soonest(scene, area, ego);
+    // What is lost until the actuators have turned to leaving.
+    let lost = ego.least.min(Acceleration::ZERO).over(config.lag);
+    let slowest = ego.slowest.plus(lost).max(Speed::ZERO);
+    let way = Way { length: area.is_left_at.ahead_of(ego.rearmost), top, acceleration: leaving(scene) };
+    let exit = way.within(slowest, Duration::of_fine_seconds(config.lag));
+    Window { entry: now.plus(entry), exit: now.plus(exit) }
+}
+
+/// The time in which the ego may be in the area at the earliest.
+pub(super) fn soonest<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    ego: &Range,
+) -> Duration {
+    let (length, top) = (area.begins.ahead_of(ego.foremost), scene.target_speed());
+    Way { length, top, acceleration: scene.config.limits.acceleration }.within(ego.fastest, Duration::ZERO)
+}
+
+/// The demand of an ego that has a pass: no less than what gets it out of the area in time.
+pub(super) fn leave_in_time<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    ego: &Range,
+    demand: Acceleration,
+) -> Acceleration {
+    let Some(now) = scene.pass_time(ego.now) else { return demand };
+    let stay = stay_at_worst(scene, area, ego, now);
+    let is_late = scene.is_covered_until(ego.now, stay.entry).is_some_and(|exit| stay.exit.plus(LATE) > exit);
+    let least = if ego.slowest < scene.target_speed() { leaving(scene) } else { Acceleration::ZERO };
+    if is_late { demand.max(least) } else { demand }
+}
+
+/// The demand of an ego that comes to the area before its pass begins: no more than what takes it there in time, as long as it need not
+/// stop for that.
+pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    ego: &Range,
+    demand: Acceleration,
+) -> Acceleration {
+    let Some(now) = scene.pass_time(ego.now) else { return demand };
+    let soonest = stay_at_worst(scene, area, ego, now).entry;
+    if scene.passes.own.reaches(soonest).is_some() {
+        return demand;
+    }
+    let opens = scene.passes.own.claims().map(|claim| claim.window.entry).filter(|entry| *entry > soonest).min();
+    let Some(until) = opens.map(|opens| opens.as_micros().saturating_sub(now.as_micros()) / 1_000) else {
+        return demand;
+    };
+    let (until, way) =
+        (i64::try_from(until).unwrap_or(i64::MAX), i64::from(area.begins.ahead_of(ego.foremost).to_mm()));
+    let (until, speed) = (until.min(NEAR.as_millis().saturating_mul(2)), i64::from(ego.fastest.to_mm_per_s()));
+    // On the way in half of the time at its speed it would have to stop.
+    if until <= 0 || quotient(speed.saturating_mul(until), 1_000) > way.saturating_mul(2) {
+        return demand;
+    }
+    let lacking = way.saturating_mul(1_000).saturating_sub(speed.saturating_mul(until));
+    let braking = quotient(lacking.saturating_mul(2_000), until.saturating_mul(until));
+    let braking = Acceleration::from_mm_per_s2(crate::fixed::saturate_i32(braking));
+    demand.min(braking.max(GENTLE))
+}
+
+/// Claims the time for which the ego foresees to be in the next area, and gives back what it does not need.
+pub(super) fn plan<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &mut Scene<PEERS, SAMPLES, STEPS>,
+    ego: &Range,
+    is_by_law: bool,
+    is_committed: bool,
+) {
+    let gnss = scene.pass_time(ego.now);
+    scene.passes.turn_to(scene.coordination.next());
+    scene.passes.note_time(ego.now, gnss);
+    let Some(now) = gnss else { return };
+    scene.passes.known.forget(&Rules::UNIT, now);
+    let outlook = Area::next(scene).and_then(|area| outlook(scene, &area, ego, now, is_by_law, is_committed));
+    // A claim counts from the next time that a message can say.
+    scene.plan_passes(whole_steps(now.plus(STEP)), outlook.as_ref());
+}
+
+fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    ego: &Range,
+    now: GnssTime,
+    is_by_law: bool,
+    is_committed: bool,
+) -> Option<Outlook> {
+    let entry = arrives(scene, area.begins, ego, is_by_law)?;
+    let exit = arrives(scene, area.is_left_at, ego, is_by_law).filter(|exit| *exit <= FORESEEN)?;
+    let mut stay = Window { entry: now.plus(entry), exit: now.plus(exit) };
+    let is_slow = ego.fastest < SLOW && entry < NEAR;
+    if is_slow || entry < AT_ONCE {
+        let worst = stay_at_worst(scene, area, ego, now);
+        stay = Window { entry: stay.entry.min(worst.entry), exit: stay.exit.max(worst.exit) };
+    }
+    if ego.fastest < WAITING && !is_committed {
+        stay.exit = stay.exit.plus(WAITS);
+    }
+    let stay = Window { entry: whole_steps(stay.entry), exit: whole_steps(stay.exit.plus(STEP)) };
+    Some(Outlook { stay, slack: SLACK, least: LEAST, is_committed })
+}
+
+/// The time until the ego's front is at a place, by its own horizon; beyond the end of that, at the speed there.
+fn arrives<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    place: Position,
+    ego: &Range,
+    is_by_law: bool,
+) -> Option<Duration> {
+    if ego.rearmost >= place {
+        return Some(Duration::ZERO);
+    }
+    let step = scene.config.prediction.step;
+    let length = scene.estimator.horizon_length().min(scene.config.prediction.horizon).minus(step.times(2));
+    let read = |after| scene.estimator.read_own(ego.now.plus(after)).filter(|_| is_by_law);
+    let way = |length, top| Way { length, top, acceleration: leaving(scene) };
+    let Some(last) = read(length) else {
+        return Some(way(place.ahead_of(ego.rearmost), scene.target_speed()).within(ego.slowest, Duration::ZERO));
+    };
+    if last.position < place {
+        let further = place.ahead_of(last.position);
+        let gains = read(length.minus(step.times(2))).is_some_and(|before| last.speed > before.speed);
+        let top = if gains { scene.target_speed() } else { last.speed };
+        let then = way(further, top).within(last.speed, Duration::ZERO);
+        return (gains || last.speed > STANDS).then(|| length.plus(then));
+    }
+    let (mut before, mut after) = (Duration::ZERO, length);
+    while after.minus(before) > STEP {
+        let middle = Duration::from_micros(before.plus(after).as_micros() >> 1);
+        let is_there = read(middle).is_none_or(|reading| reading.position >= place);
+        (before, after) = if is_there { (before, middle) } else { (middle, after) };
+    }
+    Some(after)
+}
+
+/// A way to make.
+struct Way {
+    length: Distance,
+    /// Up to which speed.
+    top: Speed,
+    /// How fast the speed grows.
+    acceleration: Acceleration,
+}
+
+impl Way {
+    /// The time in which it is made: at this speed until the actuators have turned, and then faster up to the top. 0 behind, and an hour
+    /// where nothing moves.
+    fn within(&self, speed: Speed, turns: Duration) -> Duration {
+        const NEVER: Duration = Duration::from_millis(3_600_000);
+        let (way, speed) = (i64::from(self.length.to_mm()), i64::from(speed.to_mm_per_s()).max(0));
+        let top = i64::from(self.top.to_mm_per_s()).max(speed);
+        let acceleration = i64::from(self.acceleration.to_mm_per_s2()).max(1);
+        if way <= 0 {
+            return Duration::ZERO;
+        }
+        if top == 0 {
+            return NEVER;
+        }
+        let coasted = quotient(speed.saturating_mul(turns.as_micros()), 1_000_000);
+        if coasted >= way {
+            return Duration::from_micros(quotient(way.saturating_mul(1_000_000), speed.max(1)));
+        }
+        let (left, squared) = (way.saturating_sub(coasted), |speed: i64| speed.saturating_mul(speed));
+        let reached = squared(speed).saturating_add(acceleration.saturating_mul(left).saturating_mul(2));
+        let micros = if reached <= squared(top) {
+            let then = i64::try_from(reached.unsigned_abs().isqrt()).unwrap_or(top);
+            quotient(left.saturating_mul(2_000_000), speed.saturating_add(then).max(1))
+        } else {
+            let gained = quotient(squared(top).saturating_sub(squared(speed)), acceleration.saturating_mul(2));
+            quotient(top.saturating_sub(speed).saturating_mul(1_000_000), acceleration)
+                .saturating_add(quotient(left.saturating_sub(gained).saturating_mul(1_000_000), top))
+        };
+        turns.plus(Duration::from_micros(micros)).min(NEVER)
+    }
+}

@@ -1,0 +1,186 @@
+//! Passes of the others, as they are heard. What a vehicle says of its passes enters; which vehicles the ego's claims have to be heard by
+//! leaves.
+
+use super::Scene;
+use crate::coordination::{Arrival, Entry};
+use crate::health::{Cause, Health};
+use crate::held::Held;
+use crate::passes::{Claim, Known, List, Order, Outlook, Own, PIECES, Rules, Station, Window};
+use crate::time::{Duration, GnssTime, Instant};
+use crate::wire::Predecessor;
+use crate::wire::pass::{Claimed, LONGEST, Pass, PassTime, STEP};
+
+/// The passes at the next intersection.
+#[derive(Clone, Debug)]
+pub(in crate::unit) struct Passes {
+    /// The ego's own.
+    pub own: Own,
+    /// Those of the vehicles on ways that cross the ego's.
+    pub known: List,
+    /// The index of that intersection on the ego's way, and one more.
+    crossing: usize,
+    /// The last time at which GNSS time was asked for, and what it was.
+    clock: Held<(Instant, GnssTime)>,
+}
+
+/// A clock that is off by more than this against the unit's own has stepped.
+const STEPPED: Duration = Duration::from_millis(5);
+
+impl Passes {
+    /// Nothing is known: all zero.
+    pub const NONE: Self = Self { own: Own::NOTHING, known: List::EMPTY, crossing: 0, clock: Held::Nothing };
+
+    /// Forgets what was known and claimed when another intersection comes next.
+    pub fn turn_to(&mut self, next: usize) {
+        let crossing = next.saturating_add(1);
+        if self.crossing != crossing {
+            self.crossing = crossing;
+            self.own.begin();
+            self.known.clear();
+        }
+    }
+
+    /// Notes what GNSS time is. If it is not known, or has stepped, nothing that was claimed counts (F8).
+    pub fn note_time(&mut self, now: Instant, gnss: Option<GnssTime>) {
+        let Some(gnss) = gnss else {
+            self.clock.clear();
+            return self.own.begin();
+        };
+        let has_stepped = self.clock.get().is_some_and(|(then, said)| {
+            let foretold = Instant::from_micros(said.plus(now.since(then)).as_micros());
+            let off = Instant::from_micros(gnss.as_micros()).since(foretold);
+            off > STEPPED || off < Duration::ZERO.minus(STEPPED)
+        });
+        if has_stepped {
+            self.own.begin();
+        }
+        self.clock.set((now, gnss));
+    }
+}
+
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// Whether the ego keeps passes: its own gate has to be engaged, because that is what keeps the promise.
+    pub fn keeps_passes(&self) -> bool {
+        self.config.envelope.is_some() && self.coordination.crossing().is_some()
+    }
+
+    /// GNSS time, if it is known well enough for passes.
+    pub fn pass_time(&self, now: Instant) -> Option<GnssTime> {
+        self.clock.gnss(now).filter(|_| self.is_synchronised(now))
+    }
+
+    /// Takes in what a vehicle says of its passes.
+    pub(super) fn take_pass(&mut self, at: Instant, pass: &Pass, health: &mut Health) -> Result<(), Cause> {
+        let (Some(crossing), Some(now)) = (self.coordination.crossing(), self.pass_time(at)) else { return Ok(()) };
+        if !self.keeps_passes() {
+            return Ok(());
+        }
+        if pass.station_id == self.config.station_id {
+            return Err(Cause::StationConflict);
+        }
+        self.passes.turn_to(self.coordination.next());
+        let stamp = pass.stamp.near(now);
+        if stamp > now.plus(Rules::UNIT.clocks) {
+            return Err(Cause::Future);
+        }
+        let intersection = crossing.intersection;
+        if pass.left == Some(intersection.id) {
+            self.passes.known.leave(pass.station_id, stamp);
+        } else if pass.intersection == intersection.id && intersection.conflict(crossing.leg, pass.leg) {
+            let claims = pass.claims.map(|claimed| claimed.map(|claimed| claim(&claimed, pass.station_id, now)));
+            let station = Station::new(pass.station_id, pass.leg, stamp, Arrival(pass.arrival), claims);
+            if self.passes.known.hear(station).is_err() {
+                health.count(Cause::PassesFull);
+            }
+        }
+        Ok(())
+    }
+
+    /// The vehicles that the ego's claims have to be heard by, as the rules take them.
+    pub fn known_passes(&self) -> impl Iterator<Item = Known<'_>> + Clone {
+        self.passes.known.iter().map(Station::known)
+    }
+
+    /// Whether the vehicle in a slot keeps passes at the next intersection, by what was heard of it at any time.
+    pub fn has_pass(&self, index: usize) -> bool {
+        let Some((station, approach)) =
+            self.peers.get(index).and_then(|track| track.station()).zip(self.coordination.approach(index))
+        else {
+            return false;
+        };
+        self.passes.known.on_record().any(|known| known.station() == station && known.leg == approach.leg)
+    }
+
+    /// Whether firm claims cover a stay in the next conflict area, in GNSS time.
+    pub fn is_stay_covered(&self, now: Instant, stay: &Window) -> bool {
+        let Some(gnss) = self.pass_time(now).filter(|_| !self.passes.known.lacks_one()) else { return false };
+        self.passes.own.covers(&Rules::UNIT, gnss, stay, self.known_passes())
+    }
+
+    /// The end of the firmly claimed time that begins at `entry` or before, in GNSS time.
+    pub fn is_covered_until(&self, now: Instant, entry: GnssTime) -> Option<GnssTime> {
+        self.passes.own.firmly_reaches(&Rules::UNIT, self.pass_time(now)?, entry, self.known_passes())
+    }
+
+    /// Whether a vehicle is ahead of the ego in the order.
+    fn order_of(&self, other: &Station) -> Order {
+        let Some(own) = self.coordination.registration() else { return Order::Unknown };
+        let entry = |station, arrival, leg| Entry { station, arrival: Some(arrival), claim: Predecessor::Unknown, leg };
+        let other = entry(other.station(), other.arrival, other.leg);
+        if other.is_before(&entry(self.config.station, own.arrival, self.coordination.leg())) {
+            Order::Ahead
+        } else {
+            Order::Behind
+        }
+    }
+
+    /// Plans the ego's claims, by what it foresees.
+    pub fn plan_passes(&mut self, now: GnssTime, outlook: Option<&Outlook>) {
+        let mut own = self.passes.own.clone();
+        let known = self.passes.known.iter().map(|station| (station.known(), self.order_of(station)));
+        own.plan(&Rules::UNIT, now, self.config.station_id, outlook, known);
+        self.passes.own = own;
+    }
+
+    /// The ego's own message about its passes.
+    pub fn say_passes(&mut self, now: Instant, tag: u8) -> Option<Pass> {
+        let gnss = self.pass_time(now)?;
+        let itinerary = self.coordination.itinerary()?;
+        let (named, registration) = (self.coordination.named()?, self.coordination.registration()?);
+        let left = self.coordination.next().checked_sub(1).and_then(|last| itinerary.crossings.get(last));
+        let stamp = whole_steps(gnss);
+        let claims = self.passes.own.say(stamp);
+        Some(Pass {
+            tag,
+            station_id: self.config.station_id,
+            intersection: named.intersection.id,
+            leg: named.leg,
+            left: left.map(|crossing| crossing.intersection.id),
+            stamp: PassTime::down(stamp),
+            arrival: registration.arrival.0,
+            claims: claims.map(|claim| claim.and_then(|claim| claimed(&claim))),
+        })
+    }
+}
+
+/// A GNSS time, rounded down to what a message can say.
+pub(in crate::unit) fn whole_steps(time: GnssTime) -> GnssTime {
+    let step = STEP.as_micros().unsigned_abs().max(1);
+    GnssTime::from_micros(time.as_micros().checked_div(step).unwrap_or(0).saturating_mul(step))
+}
+
+fn claim(claimed: &Claimed, station: u32, now: GnssTime) -> Claim {
+    let entry = claimed.entry.near(now);
+    let window = Window { entry, exit: entry.plus(STEP.times(i64::from(claimed.length))) };
+    Claim { at: claimed.at.near(now), window, station }
+}
+
+/// A claim as it is said: its window is in whole steps already.
+fn claimed(claim: &Claim) -> Option<Claimed> {
+    let Window { entry, exit } = claim.window;
+    let steps = exit.as_micros().saturating_sub(entry.as_micros()).checked_div(STEP.as_micros().unsigned_abs())?;
+    let length = u16::try_from(steps).unwrap_or(LONGEST).min(LONGEST);
+    Some(Claimed { at: PassTime::down(claim.at), entry: PassTime::down(entry), length })
+}
+
+const _: () = assert!(PIECES == 2, "a message has room for two");

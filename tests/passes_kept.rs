@@ -1,0 +1,40 @@
+//! Passes on the way: two vehicles cross, and the one that goes first falls silent before the crossing. It keeps its pass, so nobody who
+//! sees the area has to wait for it.
+
+#[allow(dead_code)] // shared with the tests of the order
+mod rig;
+
+use rig::config;
+use rig::junction::{CROSSING, Driver, HALF, Junction};
+
+/// Where the ego is after half a minute, and how slow it was. It is silent for the other one too: that is deaf.
+fn behind_a_silent_one(range_sensor: bool) -> (f64, f64) {
+    let ego = Driver::of(holdover::Config { range_sensor, ..config() }, 3, 0, 20.0, 10.0, true);
+    // Both come at once, so the smaller station is ahead in the order.
+    let other = Driver::new(2, 1, 50.0, 10.0, true);
+    let mut junction = Junction::new(vec![ego, other]);
+    let mut slowest = f64::MAX;
+    junction.run(30.0, |junction| {
+        // Both know one another, and all claims are firm.
+        let is_silent = junction.now > 12_000_000;
+        junction.drivers[1].speaks = !is_silent;
+        junction.drivers[1].hears = !is_silent;
+        let [ego, other] = &junction.drivers[..] else { panic!("two") };
+        assert!(!(ego.is_inside() && other.is_inside()), "{:.2} s", junction.now as f64 * 1e-6);
+        slowest = slowest.min(ego.body.speed);
+    });
+    assert!(junction.drivers[1].body.position > CROSSING + HALF, "the silent one is through");
+    (junction.drivers[0].body.position, slowest)
+}
+
+#[test]
+fn who_has_a_range_sensor_does_not_wait_for_a_silent_vehicle_that_keeps_its_pass() {
+    let (at, slowest) = behind_a_silent_one(true);
+    assert!(at > CROSSING + 50.0 && slowest > 5.0, "at {at:.1} m, {slowest:.1} m/s");
+}
+
+#[test]
+fn who_has_none_waits_until_the_silent_vehicle_has_left_for_certain() {
+    let (at, slowest) = behind_a_silent_one(false);
+    assert!(at < CROSSING - HALF && slowest < 0.1, "at {at:.1} m, {slowest:.1} m/s");
+}
