@@ -81,7 +81,7 @@ pub struct Link {
     pub assumed_delay: Duration,
 }
 
-/// The limits of the last gate; disengaged unless given.
+/// The limits of the last gate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Envelope {
@@ -146,7 +146,7 @@ pub struct Config {
     pub prediction: Prediction,
     /// The link.
     pub link: Link,
-    /// The last gate.
+    /// The last gate. `None` disengages it: for studies only, because nothing certain stands behind a command then.
     pub envelope: Option<Envelope>,
     /// Whether a range sensor is fitted. With one, the gate trusts other vehicles' passes: the sensor sees a vehicle that stays in the
     /// conflict area all the same.
@@ -200,8 +200,8 @@ impl Config {
         range_sensor: false,
     };
 
-    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, `δt` = 10 ms, horizon 3.9 s (400 steps with the two that
-    /// interpolation needs).
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, no range sensor. `δt` is 50 ms, and the horizon of
+    /// 10.7 s is what a message can say: two silences of 4 s in a row, and more. With the two that interpolation needs these are 216 steps.
     #[must_use]
     pub const fn car(station: StationHash) -> Self {
         Self {
@@ -232,8 +232,8 @@ impl Config {
                 max_speed: Speed::from_mm_per_s(50_000),
             },
             prediction: Prediction {
-                step: Duration::from_millis(10),
-                horizon: Duration::from_millis(3900),
+                step: Duration::from_millis(50),
+                horizon: Duration::from_millis(10_700),
                 model: Model::HOLDOVER,
             },
             link: Link {
@@ -249,7 +249,7 @@ impl Config {
                 sync_timeout: Duration::from_millis(5000),
                 assumed_delay: Duration::from_millis(40),
             },
-            envelope: None,
+            envelope: Some(Envelope::CAR),
             range_sensor: false,
         }
     }

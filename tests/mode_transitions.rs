@@ -204,7 +204,8 @@ fn from_outside_every_transition_happens_but_those_that_cannot() {
 #[test]
 fn a_held_over_target_is_driven_by_again_without_a_jump_of_the_command() {
     for silence in [0.4, 2.0, 6.0] {
-        let mut road = Road::new(&config(), 20.0, 22.0);
+        // Without the envelope, whose limit on jerk is its own.
+        let mut road = Road::new(&holdover::Config { envelope: None, ..config() }, 20.0, 22.0);
         road.power_up();
         road.run(1.01);
         road.senses.v2x = false;
@@ -239,7 +240,7 @@ fn a_target_that_was_given_up_is_followed_again_with_a_limited_jerk() {
 
 #[test]
 fn taking_over_from_a_driver_who_brakes_hard_is_limited_in_jerk() {
-    let mut road = Road::new(&config(), 20.0, 60.0);
+    let mut road = Road::new(&holdover::Config { envelope: None, ..config() }, 20.0, 60.0);
     road.engaged = false;
     road.run(2.0);
     // The driver brakes harder than the controller ever would.

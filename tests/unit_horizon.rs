@@ -4,7 +4,7 @@
 mod traffic;
 
 use holdover::Config;
-use holdover::config::Model;
+use holdover::config::{Model, Prediction};
 use holdover::controller::{FallbackCause, Mode};
 use holdover::time::Duration;
 use holdover::units::Speed;
@@ -35,7 +35,9 @@ fn a_minute_of_silence_never_runs_out_of_horizon() {
 #[test]
 fn in_paper_mode_the_last_value_is_held_past_the_end() {
     let mut config = Config::car(EGO);
-    config.prediction.model = Model::PAPER;
+    config.prediction =
+        Prediction { step: traffic::PERIOD, horizon: Duration::from_millis(3_900), model: Model::PAPER };
+    config.envelope = None;
     let (mut unit, mut traffic) = settled_with(&config);
     traffic.target = false;
     let start = traffic.now().minus(Duration::from_millis(100)); // when it spoke last
@@ -74,6 +76,7 @@ fn after_a_silence_the_command_does_not_jump_to_the_new_estimate() {
     let command = |smooth: bool| {
         let mut config = Config::car(EGO);
         config.prediction.model.smooth = smooth;
+        config.envelope = None; // its own limit would hide the jump too
         config.limits.jerk = holdover::units::Jerk::from_mm_per_s3(51_150); // or else it would hide the jump
         let (mut unit, mut traffic) = settled_with(&config);
         traffic.target = false;

@@ -133,9 +133,10 @@ fn with(field: &Field, value: u64) -> Config {
     let mut config = default();
     match &*field.name {
         "limits.acceleration_mm_s2" => config.law.free_road_acceleration_mm_s2 = 100,
-        "limits.emergency_braking_mm_s2" => config.limits.braking_mm_s2 = 1,
+        "limits.emergency_braking_mm_s2" => (config.limits.braking_mm_s2, config.envelope.engaged) = (1, 0),
+        // The envelope has narrower ranges of its own for these two.
+        "lag_ms" => config.envelope.engaged = 0,
         "prediction.step_us" => config.prediction.horizon_us = 2_000_000.min(2 * value as u32),
-        name if name.starts_with("envelope.") => config.envelope.engaged = 1,
         _ => {}
     }
     (field.set)(&mut config, value);

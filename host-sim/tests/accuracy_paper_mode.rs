@@ -40,6 +40,7 @@ impl Scene {
     fn new() -> Self {
         let mut config = Config::car(StationHash(200));
         config.prediction.model = Model::PAPER;
+        config.prediction.step = Duration::from_millis(10);
         config.prediction.horizon = Duration::from_millis(4_990);
         Self {
             unit: Unit::new(&config).expect("the configuration is sound"),

@@ -136,6 +136,7 @@ fn gnss(at: Instant) -> GnssTime {
 /// A unit that has heard all of the chain before its first tick, after that tick.
 fn unit(chain: &[Vehicle]) -> Unit {
     let mut config = Config::car(StationHash(200));
+    config.prediction.step = Duration::from_millis(10);
     config.prediction.horizon = Duration::from_millis(4010);
     let mut unit = Unit::new(&config).expect("the configuration is checked");
     let mut sender = Sender::<PEERS>::new(Identifiers::DEFAULT);

@@ -120,7 +120,7 @@ fn the_sides_are_what_they_are_called_with_the_envelope_or_not() {
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     });
-    for side in ["holdover", "perfect_link", "alone", "envelope"] {
+    for side in ["holdover", "perfect_link", "alone", "envelope", "envelope_perfect_link"] {
         assert_eq!(with[side], without[side], "{side}");
     }
     assert_eq!(without["holdover"]["limited_share"], 0.0);

@@ -67,13 +67,9 @@ fn json(folder: &Path, text: &str) -> (serde_json::Value, String) {
 }
 
 #[test]
-fn a_table_with_a_share_of_0_changes_nothing_and_with_sensors_their_views_are_on_the_bus() {
+fn with_a_share_of_0_the_other_keys_change_nothing_and_with_sensors_their_views_are_on_the_bus() {
     let folder = tempfile::tempdir().unwrap();
-    let with_table = text(&[(ALL, NONE)]);
-    let (before, after) = with_table.split_once("[sensors]").unwrap();
-    let without_table = format!("{before}{}", &after[after.find("[limits]").unwrap()..]);
-    let (none, log) = json(folder.path(), &with_table);
-    assert_eq!((none.clone(), log.clone()), json(folder.path(), &without_table));
+    let (none, log) = json(folder.path(), &text(&[(ALL, NONE)]));
     let other =
         text(&[(ALL, NONE), ("misses = 0.02", "misses = 0.5"), ("ghosts_per_min = 0.0", "ghosts_per_min = 60")]);
     let (mut blind, its_log) = json(folder.path(), &other);
@@ -93,8 +89,7 @@ fn the_table_that_comes_with_the_program_is_what_it_is_when_left_out() {
     let minimal = "kind = \"corridor\"\n[[road]]\nname = \"n\"\npoints = [[0.0, 0.0], [0.002, 0.0]]\n\
                    [[intersection]]\nname = \"A\"\nat = [0.001, 0.0]\n";
     let (sensors, shipped) = (corridor(minimal).sensors, corridor(&text(&[])).sensors);
-    assert_eq!((sensors.share, shipped.share), (0.0, 1.0));
-    assert_eq!((sensors.sensor, sensors.sensor.sees_up_to_m), (shipped.sensor, 100.0));
+    assert_eq!((sensors, sensors.share, sensors.sensor.sees_up_to_m), (shipped, 1.0, 100.0));
     // A12 and P9: the sensor shows nothing that is not there, and is not blind for longer than a unit remembers.
     let Faults { ghosts_per_min, dropout_s, .. } = sensors.sensor.faults;
     assert!(ghosts_per_min == 0.0 && dropout_s < 1.0);
@@ -112,10 +107,6 @@ fn a_table_that_cannot_be_is_refused_with_file_line_cause_and_remedy() {
         ("share = 1\nghosts_per_min = -1", "c.toml:4: `ghosts_per_min` is -1; give ghosts a minute from 0 to 60"),
         ("share = 1\nrange_accuracy_m = 2", "c.toml:4: `range_accuracy_m` is 2; give metres from 0 to 1.55"),
         ("share = 1\nmiss = 0.1", "c.toml:4: unknown key \"miss\" in [sensors]; write `misses`"),
-        (
-            "range_m = 80",
-            "c.toml:2: [sensors] has no `share`, so no vehicle has a range sensor; give it `share = 1.0`, or remove the table",
-        ),
     ];
     for (keys, said) in cases {
         let text = format!("kind = \"corridor\"\n[sensors]\n{keys}\n");

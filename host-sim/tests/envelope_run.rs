@@ -44,8 +44,8 @@ fn scenario(folder: &Path, text: &str) -> String {
 }
 
 #[test]
-fn without_being_asked_the_envelope_is_not_engaged_and_the_bound_is_told() {
-    let results = json(&[]);
+fn disengaged_the_envelope_limits_nothing_and_the_bound_is_told() {
+    let results = json(&["--envelope=off"]);
     assert_eq!(results["bound"]["violations"], 0);
     assert_eq!(results["bound"]["beyond_limits"], 0);
     let width_m = results["bound"]["median_width_m"].as_f64().unwrap();
@@ -54,8 +54,8 @@ fn without_being_asked_the_envelope_is_not_engaged_and_the_bound_is_told() {
 }
 
 #[test]
-fn engaged_it_stops_in_a_long_silence_and_that_is_no_failure() {
-    let results = json(&["--envelope"]);
+fn without_a_range_sensor_it_stops_in_a_long_silence_and_that_is_no_failure() {
+    let results = json(&["--range-sensors", "off"]);
     assert_eq!(results["envelope"]["engaged"], true);
     assert!(results["envelope"]["limited_share"].as_f64().unwrap() > 0.05, "{results}");
     assert!(results["full_stops"].as_u64().unwrap() > 0, "{results}");
@@ -65,14 +65,14 @@ fn engaged_it_stops_in_a_long_silence_and_that_is_no_failure() {
 #[test]
 fn without_silence_and_delay_it_has_nothing_to_do() {
     let folder = tempfile::tempdir().unwrap();
-    let clean = "[envelope]\nengaged = true\n[channel]\nloss = 0\noutages = []\ndelay_mean_s = 0\ndelay_std_s = 0\n";
+    let clean = "[channel]\nloss = 0\noutages = []\ndelay_mean_s = 0\ndelay_std_s = 0\n";
     let results = json(&[&scenario(folder.path(), clean)]);
     assert_eq!(results["envelope"]["limited_share"], 0.0, "{results}");
 }
 
 #[test]
 fn the_trace_holds_the_truth_between_the_ends_and_marks_what_was_limited() {
-    let ticks = trace(&["--envelope"]);
+    let ticks = trace(&["--range-sensors", "off"]);
     let (mut known, mut limited) = (0, 0);
     for tick in &ticks {
         limited += usize::from(tick["limited"] == 1.0);
@@ -88,7 +88,7 @@ fn the_trace_holds_the_truth_between_the_ends_and_marks_what_was_limited() {
     }
     assert!(known * 100 > ticks.len() * 98, "{known} of {}", ticks.len());
     assert!((50..1000).contains(&limited), "{limited}");
-    assert!(trace(&[]).iter().all(|tick| tick["limited"] == 0.0));
+    assert!(trace(&["--envelope=off"]).iter().all(|tick| tick["limited"] == 0.0));
 }
 
 #[test]
@@ -96,12 +96,12 @@ fn a_range_sensor_keeps_the_bound_narrow_through_a_silence() {
     let folder = tempfile::tempdir().unwrap();
     let with = |sensor: &str| {
         let plain = "[[vehicle]]\n";
-        let text = plain.repeat(3) + "[[vehicle]]\n" + sensor + plain;
+        let text = plain.repeat(3) + "[[vehicle]]\n" + sensor + plain + "[envelope]\nengaged = false\n";
         let ticks = trace(&[&scenario(folder.path(), &text)]);
         let silent = ticks.iter().filter(|tick| (6.0..7.9).contains(&tick["t_s"]));
         silent.map(|tick| tick["highest_position_m"] - tick["lowest_position_m"]).fold(0.0, f64::max)
     };
-    let (without, with) = (with(""), with("range_sensor = true\n"));
+    let (without, with) = (with("range_sensor = false\n"), with(""));
     assert!(without > 20.0 && with < 1.8, "{without} {with}");
 }
 
@@ -113,10 +113,10 @@ fn the_report_shows_the_bound_and_what_the_envelope_limited() {
         assert!(run(&[arguments, &["--out", &out]].concat()).status.success());
         std::fs::read_to_string(folder.path().join("index.html")).unwrap()
     };
-    let engaged = page(&["--envelope", "--seed", "3"]);
-    assert!(engaged.contains("holdover-sim run --seed 3 --envelope"));
+    let engaged = page(&["--range-sensors", "off", "--seed", "3"]);
+    assert!(engaged.contains("holdover-sim run --seed 3 --range-sensors off"));
     assert!(engaged.contains("is inside at every one of") && engaged.contains("The envelope limits that for"));
-    assert!(page(&[]).contains("The envelope is not engaged."));
+    assert!(page(&["--envelope=off"]).contains("The envelope is not engaged."));
 }
 
 #[test]

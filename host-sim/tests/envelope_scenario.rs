@@ -1,7 +1,7 @@
 //! What the keys of the envelope and of the sensors mean, and what is said of ones that cannot be.
 
 use holdover::config::Envelope;
-use holdover_sim::input::scenario::{Faults, Overrides, RangeSensor, Scenario};
+use holdover_sim::input::scenario::{Faults, Overrides, RangeSensor, Scenario, Switch};
 use std::path::Path;
 
 fn parse(text: &str) -> Result<Scenario, String> {
@@ -9,12 +9,15 @@ fn parse(text: &str) -> Result<Scenario, String> {
 }
 
 #[test]
-fn the_envelope_is_a_cars_and_not_engaged_unless_said_otherwise() {
-    assert_eq!(parse("").unwrap().envelope.limits(), None);
-    assert_eq!(parse("[envelope]\nengaged = true").unwrap().envelope.limits(), Some(Envelope::CAR));
-    let overrides = Overrides { envelope: true, ..Overrides::default() };
-    let engaged = Scenario::parse(Path::new("s.toml"), "[envelope]\nengaged = false", &overrides).unwrap();
-    assert_eq!(engaged.envelope.limits(), Some(Envelope::CAR));
+fn the_envelope_is_a_cars_and_engaged_unless_said_otherwise() {
+    assert_eq!(parse("").unwrap().envelope.limits(), Some(Envelope::CAR));
+    assert_eq!(parse("[envelope]\nengaged = false").unwrap().envelope.limits(), None);
+    for (engaged, said, limits) in [(false, Switch::On, Some(Envelope::CAR)), (true, Switch::Off, None)] {
+        let overrides = Overrides { envelope: Some(said), ..Overrides::default() };
+        let text = format!("[envelope]\nengaged = {engaged}");
+        let scenario = Scenario::parse(Path::new("s.toml"), &text, &overrides).unwrap();
+        assert_eq!(scenario.envelope.limits(), limits, "the command line has the last word");
+    }
 }
 
 #[test]
@@ -47,16 +50,21 @@ fn accuracies_are_those_of_good_positioning_and_of_a_recording_those_of_what_rec
 }
 
 #[test]
-fn nobody_has_a_range_sensor_unless_it_is_given_one() {
+fn everybody_who_follows_has_a_range_sensor_unless_said_otherwise() {
     let sensors = |text: &str| -> Vec<Option<RangeSensor>> {
         parse(text).unwrap().vehicles.iter().map(|vehicle| vehicle.range_sensor).collect()
     };
-    assert!(sensors("").iter().all(Option::is_none));
-    let given = "[[vehicle]]\n[[vehicle]]\nrange_sensor = true\n[[vehicle]]\nrange_sensor = true\n\
+    let given = "[[vehicle]]\n[[vehicle]]\n[[vehicle]]\nrange_sensor = true\n\
                  range_accuracy_m = 0.5\nrange_speed_accuracy_mps = 0.3\n[[vehicle]]\nrange_sensor = false\n";
     let (sees_up_to_m, faults) = (200.0, Faults::NONE);
     let sensor = |distance_m, speed_mps| Some(RangeSensor { distance_m, speed_mps, sees_up_to_m, faults });
     assert_eq!(sensors(given), [None, sensor(0.25, 0.1), sensor(0.5, 0.3), None]);
+    for (said, follower) in [(Switch::On, sensor(0.25, 0.1)), (Switch::Off, None)] {
+        let overrides = Overrides { range_sensors: Some(said), ..Overrides::default() };
+        let scenario =
+            Scenario::parse(Path::new("s.toml"), "[[vehicle]]\n[[vehicle]]\nrange_sensor = false", &overrides);
+        assert_eq!(scenario.unwrap().vehicles[1].range_sensor, follower, "the command line has the last word");
+    }
 }
 
 #[test]
@@ -89,8 +97,8 @@ fn keys_that_cannot_be_are_refused_with_file_line_cause_and_remedy() {
             "s.toml:4: `range_accuracy_m` is 1.6; give metres from 0 to 1.55",
         ),
         (
-            "[[vehicle]]\n[[vehicle]]\nrange_speed_accuracy_mps = 0.2",
-            "s.toml:3: a vehicle without a range sensor has an accuracy of it; give it `range_sensor = true`, or remove \
+            "[[vehicle]]\n[[vehicle]]\nrange_sensor = false\nrange_speed_accuracy_mps = 0.2",
+            "s.toml:4: a vehicle without a range sensor has an accuracy of it; give it `range_sensor = true`, or remove \
              its accuracies",
         ),
     ];

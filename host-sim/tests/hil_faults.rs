@@ -16,7 +16,7 @@ use std::path::Path;
 /// So many seconds on a clean channel, and one fault.
 fn setup(duration_s: u32, fault: &str) -> Setup {
     let text = format!("duration_s = {duration_s}\n[channel]\noutages = []\nloss = 0.0");
-    let scenario = Scenario::parse(Path::new("test"), &text, &Overrides::default()).unwrap();
+    let scenario = Scenario::parse(Path::new("test"), &text, &Overrides::MESSAGES_ALONE).unwrap();
     let config = world::config(&scenario, scenario.ego);
     Setup {
         scenario,

@@ -19,7 +19,7 @@ use std::io;
 use std::path::Path;
 
 fn setup(scenario: &str, faults: &[&str]) -> Setup {
-    let scenario = Scenario::parse(Path::new("test"), scenario, &Overrides::default()).unwrap();
+    let scenario = Scenario::parse(Path::new("test"), scenario, overrides).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
     Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms: LATENCY_P99_MS, faults }

@@ -60,6 +60,7 @@ fn the_figures_are_those_of_the_runs_of_these_seeds_together() {
         let trace = folder.path().join("ticks.csv");
         let run = Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
             .args(["--step", "0.1", "--seed", seed, "--no-report", "--trace", trace.to_str().unwrap()])
+            .args(["--envelope=off", "--range-sensors", "off"])
             .output()
             .unwrap();
         assert!(run.status.success());

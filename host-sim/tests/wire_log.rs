@@ -82,7 +82,7 @@ fn every_message_that_anybody_sends_is_in_the_log_of_a_shipped_scenario() {
     let folder = tempfile::tempdir().unwrap();
     let logs = [
         log(folder.path(), &["run", "storm", "--candump-vehicle", "3"]),
-        log(folder.path(), &["run", &short_corridor(folder.path()), "--envelope", "--candump-vehicle", "3"]),
+        log(folder.path(), &["run", &short_corridor(folder.path()), "--candump-vehicle", "3"]),
     ];
     let offsets: BTreeSet<u16> = logs.iter().flatten().map(|(_, frame)| number(frame) - 0x480).collect();
     // A simulated vehicle that tells where it is on the globe tells its route too, and its modem sends that.

@@ -174,10 +174,11 @@ pub fn settled_with(config: &Config) -> (Unit, Traffic) {
     (unit, traffic)
 }
 
-/// Behind a target at the gap of 1 s.
+/// Behind a target at the gap of 1 s. The ego of this traffic does not heed its commands, so an envelope would brake ever harder.
 pub fn settled() -> (Unit, Traffic) {
     let mut config = Config::car(EGO);
     config.law.time_gap = Seconds::from_millis(1_000);
+    config.envelope = None;
     settled_with(&config)
 }
 

@@ -22,6 +22,7 @@ use crate::input::kind::{Difference, Kind};
 use crate::input::library;
 use crate::input::recording::Motion;
 use holdover::wire::Identifiers;
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// The most vehicles of a scenario: a leader and a string of ten. A unit has slots for the nearest eight.
@@ -147,7 +148,45 @@ pub struct Overrides {
     /// `--channel-trace`, relative to the current directory.
     pub channel_trace: Option<PathBuf>,
     /// `--envelope`.
-    pub envelope: bool,
+    pub envelope: Option<Switch>,
+    /// `--range-sensors`.
+    pub range_sensors: Option<Switch>,
+}
+
+impl Overrides {
+    /// Those of a study of the estimate from messages alone: without the envelope, which changes commands that nobody can foresee, and
+    /// without range sensors.
+    pub const MESSAGES_ALONE: Self = Self {
+        seed: None,
+        step_s: None,
+        leader_motion: None,
+        channel_trace: None,
+        envelope: Some(Switch::Off),
+        range_sensors: Some(Switch::Off),
+    };
+}
+
+/// What a switch on the command line is set to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Switch {
+    /// On.
+    On,
+    /// Off.
+    Off,
+}
+
+impl fmt::Display for Switch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if self.is_on() { "on" } else { "off" })
+    }
+}
+
+impl Switch {
+    /// Whether it is on.
+    #[must_use]
+    pub fn is_on(self) -> bool {
+        self == Self::On
+    }
 }
 
 impl Scenario {

@@ -114,20 +114,20 @@ mod tests {
     fn whatever_a_file_may_say_the_units_take() {
         let extremes: [(&str, &[&str]); 13] = [
             ("period_s = 0.01 ", &["period_s = 0.001", "period_s = 0.1"]),
-            ("step_s = 0.01 ", &["step_s = 0.001", "step_s = 1"]),
+            ("step_s = 0.05 ", &["step_s = 0.001", "step_s = 1"]),
             ("horizon_s = 10.7", &["horizon_s = 0.5"]),
             ("message_rate_hz = 10.0", &["message_rate_hz = 1", "message_rate_hz = 100"]),
             ("target_speed_mps = 11.0", &["target_speed_mps = 1", "target_speed_mps = 50"]),
             ("time_gap_s = 1.0", &["time_gap_s = 0.1", "time_gap_s = 3.995"]),
             ("standstill_m = 2.0", &["standstill_m = 0", "standstill_m = 10.23"]),
-            ("engaged = false", &["engaged = true"]),
+            ("engaged = true ", &["engaged = false"]),
             ("acceleration_mps2 = 3.0", &["acceleration_mps2 = 0.1", "acceleration_mps2 = 20.46"]),
             ("braking_mps2 = 8.0", &["braking_mps2 = 0.5"]),
             ("jerk_mps3 = 25.0", &["jerk_mps3 = 1", "jerk_mps3 = 51.15"]),
             ("speed_mps = 50.0", &["speed_mps = 1", "speed_mps = 65.534"]),
             ("margin_m = 0.5", &["margin_m = 0", "margin_m = 10"]),
         ];
-        let text = example::TEXT.replacen("engaged = false", "engaged = true", 1);
+        let text = example::TEXT;
         for (from, tos) in extremes {
             for to in tos {
                 let text = text.replacen(from, to, 1);
@@ -139,7 +139,7 @@ mod tests {
             }
         }
         // A coarse step and a short horizon at once.
-        let text = text.replacen("step_s = 0.01 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
+        let text = text.replacen("step_s = 0.05 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
         let corridor = example::of(&text);
         assert_eq!(config(&corridor, &Conditions::of(&corridor), FIRST, Kind::Car).check(STEPS), Ok(()));
     }

@@ -245,15 +245,15 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::input::scenario::Overrides;
+    use crate::input::scenario::{Overrides, Switch};
     use crate::roads::example::TEXT;
     use crate::roads::read::corridor;
 
     #[test]
     fn a_side_is_what_it_is_called_whatever_the_scenario_does_with_the_envelope() {
-        let engaged = TEXT.replacen("engaged = false", "engaged = true", 1);
-        let asked = Overrides { envelope: true, ..Overrides::default() };
-        for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&engaged, Overrides::default())] {
+        let off = TEXT.replacen("engaged = true ", "engaged = false", 1);
+        let asked = Overrides { envelope: Some(Switch::Off), ..Overrides::default() };
+        for (text, overrides) in [(TEXT, Overrides::default()), (TEXT, asked), (&off, Overrides::default())] {
             let corridor = corridor(Path::new("corridor.toml"), text, &overrides).unwrap();
             let sides = of_sides(&corridor);
             assert_eq!(sides.map(|conditions| conditions.envelope.engaged), [false, false, false, true, true, true]);

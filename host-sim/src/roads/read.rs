@@ -11,11 +11,11 @@ use crate::input::scenario::keys::{Document, Number, Section};
 use crate::input::scenario::{Overrides, Span, bus, envelope, sensors};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
-use crate::sim::modem::PEERS;
+use crate::sim::modem::{ECU_PEERS, PEERS};
 
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 10.0..=86_400.0, default: 600.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
-const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.01 };
+const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.05 };
 const HORIZON: Number = Number { key: "horizon_s", unit: "seconds", limits: 0.5..=10.7, default: 10.7 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 1.0..=100.0, default: 10.0 };
 const EGO_AFTER: Number = Number { key: "ego_after_s", unit: "seconds", limits: 0.0..=86_400.0, default: 60.0 };
@@ -73,7 +73,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let radio = radio(top.section("channel")?)?;
     let wrong = wrong(top.section("wrong")?)?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
-    let sensors = sensors::fitted(&document, top.section("sensors")?)?;
+    let sensors = sensors::fitted(top.section("sensors")?, overrides.range_sensors)?;
     let emergencies = emergencies(top.section("emergencies")?)?;
     let bus = bus::read(top.section("bus")?)?;
     let limits = limits(top.section("limits")?)?;
@@ -90,7 +90,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         let remedy = format!("give `message_rate_hz` up to {}", 1.0 / period.value);
         return Err(document.error_at(rate.line.or(period.line), cause, remedy));
     }
-    let slots = slots.map_or(Ok(PEERS), |slots| {
+    let slots = slots.map_or(Ok(ECU_PEERS), |slots| {
         let given = usize::try_from(slots.value).ok().filter(|given| (LEAST_SLOTS..=PEERS).contains(given));
         let cause = format!("`slots` is {}", slots.value);
         given.ok_or_else(|| document.error_at(slots.line, cause, format!("give from {LEAST_SLOTS} to {PEERS}")))

@@ -19,10 +19,10 @@ use serde::Serialize;
 use crate::commands::ending::json;
 use crate::commands::motions::rows::{self, Row};
 use crate::error::Error;
-use crate::input::scenario::{Faults, Fitted};
+use crate::input::scenario::{Envelope, Faults, Fitted};
 use crate::output::{self, LongRuns};
 use crate::roads::conditions::Conditions;
-use crate::roads::description::Emergencies;
+use crate::roads::description::{Corridor, Emergencies};
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
@@ -135,12 +135,15 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let sides = experiment.sides(&options.seeds, done)?;
     let wall_s = start.elapsed().as_secs_f64();
     let first = options.seeds[0];
-    let wrong = experiment.wrong(first, done)?;
-    let steps: Vec<(StepRow, Journal)> = if is_drawn { experiment.steps(first, done)? } else { Vec::new() };
+    let engaged = options.excerpts_with_envelope;
+    let envelope = Envelope { engaged, ..options.corridor.envelope };
+    let excerpts = experiment.of(Corridor { envelope, ..options.corridor.clone() });
+    let wrong = excerpts.wrong(first, done)?;
+    let steps: Vec<(StepRow, Journal)> = if is_drawn { excerpts.steps(first, done)? } else { Vec::new() };
     let costs: Vec<cost::Cost> = steps
         .iter()
         .filter_map(|(row, journal)| {
-            let (config, itinerary) = experiment.ego_unit(first, row.step_s)?;
+            let (config, itinerary) = excerpts.ego_unit(first, row.step_s)?;
             cost::measure(row.step_s, &config, itinerary, &journal.log)
         })
         .collect();
@@ -151,11 +154,10 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         done();
     }
     let mut loads = Vec::new();
-    let engaged = options.corridor.envelope.engaged;
     let timed = if engaged { &sides.envelope } else { &sides.holdover };
     if let Some(travel_s) = timed.mean_travel_time_s {
         for vehicles in &options.vehicles {
-            loads.push(scale::measure(&experiment, first, *vehicles, travel_s)?);
+            loads.push(scale::measure(&excerpts, first, *vehicles, travel_s)?);
             done();
         }
     }

@@ -7,7 +7,7 @@ use crate::commands::ending::Destination;
 use crate::commands::run::arguments::RunSettings;
 use crate::commands::run::candump::Candump;
 use crate::error::Error;
-use crate::input::scenario::Overrides;
+use crate::input::scenario::{Overrides, Switch};
 use crate::places::can_be_file;
 use crate::roads::description::Corridor;
 use crate::roads::experiment::of_seed;
@@ -25,6 +25,8 @@ pub struct CorridorOptions {
     pub corridor: Corridor,
     /// Its name in the report.
     pub name: String,
+    /// Whether the excerpts and figures over time are with the envelope.
+    pub excerpts_with_envelope: bool,
     /// The command line that repeats this run.
     pub command: String,
     /// The seeds, from the first on.
@@ -63,6 +65,7 @@ impl CorridorOptions {
             seed: settings.seed,
             step_s: settings.step,
             envelope: settings.envelope,
+            range_sensors: settings.range_sensors,
             ..Overrides::default()
         };
         let mut corridor = read::corridor(file, text, &overrides)?;
@@ -98,8 +101,11 @@ impl CorridorOptions {
         if let Some(step_s) = settings.step {
             command += &format!(" --step {step_s}");
         }
-        if settings.envelope {
-            command += " --envelope";
+        if let Some(envelope) = settings.envelope {
+            command += &format!(" --envelope={envelope}");
+        }
+        if let Some(sensors) = settings.range_sensors {
+            command += &format!(" --range-sensors {sensors}");
         }
         let listed = |numbers: Vec<String>| numbers.join(",");
         if !demand.is_empty() {
@@ -115,6 +121,7 @@ impl CorridorOptions {
         Ok(Self {
             corridor,
             name,
+            excerpts_with_envelope: settings.envelope.is_some_and(Switch::is_on),
             command,
             seeds,
             destination,

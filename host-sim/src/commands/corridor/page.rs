@@ -114,7 +114,7 @@ fn facts(options: &CorridorOptions, sensors: &Sensors) -> Vec<(String, String)> 
         ),
         ("every vehicle", format!("silent for {} s from a random moment on", radio.dark_s)),
         ("range sensors", said(sensors)),
-        ("envelope in the figures", if corridor.envelope.engaged { "engaged" } else { "not engaged" }.to_owned()),
+        ("envelope in the figures", if options.excerpts_with_envelope { "engaged" } else { "not engaged" }.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .to_vec()

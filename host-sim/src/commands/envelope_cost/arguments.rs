@@ -4,6 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 use crate::commands::ending::OutputArguments;
+use crate::input::scenario::Switch;
 
 /// The arguments of `envelope-cost`.
 #[derive(Clone, Debug, Args)]
@@ -37,6 +38,10 @@ pub struct EnvelopeCostArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
+    /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says
+    #[arg(long, value_name = "on|off", hide_possible_values = true)]
+    pub range_sensors: Option<Switch>,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -47,6 +52,8 @@ pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim envelope-cost                silences of 1, 2, 4 and 8 s
   holdover-sim envelope-cost --silences 0.5,1 --seeds 100 --json
+  holdover-sim envelope-cost --range-sensors off
+                                            what it costs by messages alone
   holdover-sim envelope-cost --leader-motion drive.csv --channel-trace link.csv
                                             your recordings, as they are
 

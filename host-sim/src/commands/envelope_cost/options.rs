@@ -49,6 +49,7 @@ impl EnvelopeCostOptions {
             seed,
             leader_motion: arguments.leader_motion,
             channel_trace: arguments.channel_trace,
+            range_sensors: arguments.range_sensors,
             ..Overrides::default()
         };
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -123,5 +124,6 @@ fn typed(arguments: &EnvelopeCostArguments) -> Vec<String> {
     let motion = file("--leader-motion", &arguments.leader_motion);
     let trace = file("--channel-trace", &arguments.channel_trace);
     let distance = Some(format!("--distance {}", arguments.distance));
-    [silences, distance, motion, trace].into_iter().flatten().collect()
+    let sensors = arguments.range_sensors.map(|switch| format!("--range-sensors {switch}"));
+    [silences, distance, motion, trace, sensors].into_iter().flatten().collect()
 }

@@ -96,13 +96,13 @@ impl TargetMotion {
             Self::Sine | Self::Braking | Self::HardBraking => (1, vehicle(&format!("speed_mps = {CRUISE_MPS}"))),
         };
         let text = format!(
-            "duration_s = {}\nego = {listener}\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n{ahead}{}[channel]\n\
+            "duration_s = {}\nstep_s = 0.01\nego = {listener}\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n{ahead}{}[channel]\n\
              applies_to = [{listener}]\noutages = [[{from_s}, {}]]\n",
             from_s + SILENCE_S,
             vehicle("speed_mps = 10.0\ngap_m = 60.0\ntime_gap_s = 3.9"),
             from_s + SILENCE_S,
         );
-        let mut scenario = Scenario::parse(Path::new("motions"), &text, &Overrides::default())?;
+        let mut scenario = Scenario::parse(Path::new("motions"), &text, &Overrides::MESSAGES_ALONE)?;
         scenario.leader.motion = self.driven(phase, &scenario);
         Ok(scenario)
     }

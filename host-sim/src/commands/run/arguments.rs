@@ -1,6 +1,7 @@
 //! The arguments of `run`, as they are typed.
 
 use crate::commands::ending::OutputArguments;
+use crate::input::scenario::Switch;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -61,10 +62,15 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
-    /// Engage the envelope, the last stage of every unit: stay able to stop behind the bound of the vehicle ahead. A
-    /// corridor is always run without and with it; with this option its excerpts and figures are those with it
-    #[arg(long)]
-    pub envelope: bool,
+    /// Whether the envelope is engaged, instead of what the scenario says. It is the last stage of every unit: stay able to
+    /// stop behind the bound of the vehicle ahead. A corridor is always run without and with it; with this option its
+    /// excerpts and figures are those with it
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
+    pub envelope: Option<Switch>,
+
+    /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says
+    #[arg(long, value_name = "on|off", hide_possible_values = true)]
+    pub range_sensors: Option<Switch>,
 
     /// Where its results go.
     #[command(flatten)]
@@ -94,7 +100,8 @@ Examples:
   holdover-sim run corridor --seeds 10   four intersections, ten seeds
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
-  holdover-sim --envelope                with every unit's last gate engaged
+  holdover-sim --envelope=off --range-sensors off
+                                         by messages alone, as in the paper
   holdover-sim run corridor --no-report --candump ego.log
                                          the frames on the ego's bus
   holdover-sim evaluate --help           measure the estimate on recordings

@@ -49,6 +49,7 @@ impl RunOptions {
             leader_motion: settings.leader_motion.clone(),
             channel_trace: settings.channel_trace.clone(),
             envelope: settings.envelope,
+            range_sensors: settings.range_sensors,
         };
         let arguments = typed(&overrides);
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -79,6 +80,7 @@ fn typed(overrides: &Overrides) -> Vec<String> {
     let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
     let motion = file("--leader-motion", &overrides.leader_motion);
     let trace = file("--channel-trace", &overrides.channel_trace);
-    let envelope = overrides.envelope.then(|| "--envelope".to_owned());
-    [step, motion, trace, envelope].into_iter().flatten().collect()
+    let [envelope, sensors] = [("--envelope=", overrides.envelope), ("--range-sensors ", overrides.range_sensors)]
+        .map(|(option, switch)| switch.map(|switch| format!("{option}{switch}")));
+    [step, motion, trace, envelope, sensors].into_iter().flatten().collect()
 }

@@ -171,7 +171,7 @@ fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) 
          applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
         vehicle(""),
     );
-    let mut scenario = Scenario::parse(Path::new("string"), &text, &Overrides::default())?;
+    let mut scenario = Scenario::parse(Path::new("string"), &text, &Overrides::MESSAGES_ALONE)?;
     scenario.leader.motion = Some(disturbance.motion(scenario.period_s));
     Ok(scenario)
 }

@@ -4,6 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 use crate::commands::ending::OutputArguments;
+use crate::input::scenario::Switch;
 
 /// The arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
@@ -31,6 +32,14 @@ pub struct SweepArguments {
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 
+    /// Whether the envelope is engaged. Nobody can foresee the commands that it changes
+    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", default_value = "off")]
+    pub envelope: Switch,
+
+    /// Whether every vehicle that follows another has a range sensor
+    #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
+    pub range_sensors: Switch,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -42,13 +51,17 @@ Examples:
   holdover-sim sweep                           the paper's steps, 100 seeds each
   holdover-sim sweep --seeds 10 --steps 0.01,0.1,1 --json
   holdover-sim sweep city.toml --out city-sweep
+  holdover-sim sweep --envelope --range-sensors on
+                                               as the units are shipped
   RAYON_NUM_THREADS=2 holdover-sim sweep       on two cores instead of all
 
 Figures:
   The position error of the ego as its follower estimates it, from 1 s on, ours
   and the literal paper's on the same messages. The maximum is the worst of all
   seeds; the 99th percentile is the nearest rank of all seeds' errors together.
-  The units tick at the scenario's period whatever the step.
+  The units tick at the scenario's period whatever the step. The estimate is by
+  messages alone and no envelope limits a command, whatever the scenario says,
+  unless the two options say otherwise.
 
 Cost (\"timing\"):
   After the runs of a step, alone on its thread, the follower's unit is given

@@ -31,8 +31,10 @@ impl SweepOptions {
     /// # Errors
     /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
-        let SweepArguments { scenario: scenario_file, steps, seeds, seed, output } = arguments;
-        let scenario = Scenario::read(scenario_file.as_deref(), &Overrides { seed, ..Overrides::default() })?;
+        let SweepArguments { scenario: scenario_file, steps, seeds, seed, envelope, range_sensors, output } = arguments;
+        let (envelope, range_sensors) = (Some(envelope), Some(range_sensors));
+        let overrides = Overrides { seed, envelope, range_sensors, ..Overrides::default() };
+        let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
         let at_step = |step_s| scenario.at_step(step_s).map_err(|error| error.in_option("--steps"));
         let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
         seeds::checked(scenario.seed, seeds)?;

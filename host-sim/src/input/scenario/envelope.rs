@@ -1,6 +1,7 @@
 //! The section `[envelope]`: keys enter, the limits of every unit's envelope leave. The defaults are those of a car,
-//! and the envelope is not engaged, as in the core.
+//! and the envelope is engaged, as in the core.
 
+use super::Switch;
 use super::keys::{Number, Section};
 use crate::error::Error;
 use holdover::units::{Acceleration, Distance, Jerk, Speed};
@@ -30,10 +31,11 @@ pub struct Envelope {
     pub margin_m: f64,
 }
 
-/// Reads the section. `engaged` on the command line overrides it.
-pub fn read(mut section: Section, engaged: bool) -> Result<Envelope, Error> {
+/// Reads the section. What the command line says overrides it.
+pub fn read(mut section: Section, said: Option<Switch>) -> Result<Envelope, Error> {
+    let engaged = section.flag("engaged")?.is_none_or(|engaged| engaged.value);
     let envelope = Envelope {
-        engaged: section.flag("engaged")?.is_some_and(|engaged| engaged.value) || engaged,
+        engaged: said.map_or(engaged, Switch::is_on),
         acceleration_mps2: section.number(&ACCELERATION)?.value,
         braking_mps2: section.number(&BRAKING)?.value,
         jerk_mps3: section.number(&JERK)?.value,

@@ -2,6 +2,7 @@
 //! leave. Of a corridor: the table `[sensors]` enters; the share of vehicles that have a range sensor leaves, and what
 //! it sees.
 
+use super::Switch;
 use super::keys::{Document, Number, Section};
 use crate::error::Error;
 use serde::Serialize;
@@ -14,7 +15,7 @@ const RANGE_SPEED: Number = Number { key: "range_speed_accuracy_mps", unit: "m/s
 
 // The defaults of a corridor. Range and faults are those of a mid-range radar as its tracked objects are published. A
 // view that is missing is of nothing, so misses and dropouts keep assumption A12; a ghost is of no vehicle and does not.
-const SHARE: Number = Number { key: "share", unit: "a share", limits: 0.0..=1.0, default: 0.0 };
+const SHARE: Number = Number { key: "share", unit: "a share", limits: 0.0..=1.0, default: 1.0 };
 const SEES: Number = Number { key: "range_m", unit: "metres", limits: 1.0..=250.0, default: 100.0 };
 const MISSES: Number = Number { key: "misses", unit: "a share", limits: 0.0..=1.0, default: 0.02 };
 const DROPOUTS: Number =
@@ -89,8 +90,14 @@ pub fn accuracy(section: &mut Section, is_recorded: bool) -> Result<Accuracy, Er
     })
 }
 
-/// The range sensor of a vehicle, if it has one.
-pub fn range_sensor(document: &Document, section: &mut Section, follows: bool) -> Result<Option<RangeSensor>, Error> {
+/// The range sensor of a vehicle, if it has one. A vehicle that follows another has one unless the file or the command line says
+/// otherwise.
+pub fn range_sensor(
+    document: &Document,
+    section: &mut Section,
+    follows: bool,
+    said: Option<Switch>,
+) -> Result<Option<RangeSensor>, Error> {
     let fitted = section.flag("range_sensor")?;
     let (distance, speed) = (section.number(&RANGE)?, section.number(&RANGE_SPEED)?);
     match fitted {
@@ -98,26 +105,26 @@ pub fn range_sensor(document: &Document, section: &mut Section, follows: bool) -
             let cause = "the leader (vehicle 0) has a `range_sensor`, and nobody is ahead of it";
             Err(document.error_at(fitted.line, cause, "remove it"))
         }
-        Some(fitted) if fitted.value => Ok(Some(RangeSensor {
-            distance_m: distance.value,
-            speed_mps: speed.value,
-            sees_up_to_m: STRING_SEES_UP_TO_M,
-            faults: Faults::NONE,
-        })),
-        _ => match distance.line.or(speed.line) {
-            None => Ok(None),
-            line => {
-                let cause = "a vehicle without a range sensor has an accuracy of it";
-                Err(document.error_at(line, cause, "give it `range_sensor = true`, or remove its accuracies"))
-            }
-        },
+        Some(fitted) if !fitted.value && distance.line.or(speed.line).is_some() => {
+            let cause = "a vehicle without a range sensor has an accuracy of it";
+            let remedy = "give it `range_sensor = true`, or remove its accuracies";
+            Err(document.error_at(distance.line.or(speed.line), cause, remedy))
+        }
+        _ => {
+            let is_fitted = said.map_or(fitted.is_none_or(|fitted| fitted.value), Switch::is_on);
+            Ok((follows && is_fitted).then_some(RangeSensor {
+                distance_m: distance.value,
+                speed_mps: speed.value,
+                sees_up_to_m: STRING_SEES_UP_TO_M,
+                faults: Faults::NONE,
+            }))
+        }
     }
 }
 
-/// The range sensors of a corridor: the table `[sensors]`. Without the table no vehicle has one.
-pub fn fitted(document: &Document, mut section: Section) -> Result<Fitted, Error> {
-    let table = section.line();
-    let share = section.number(&SHARE)?;
+/// The range sensors of a corridor: the table `[sensors]`. What the command line says overrides its share.
+pub fn fitted(mut section: Section, said: Option<Switch>) -> Result<Fitted, Error> {
+    let share = section.number(&SHARE)?.value;
     let (dropouts, dropout) = (section.number(&DROPOUTS)?, section.number(&DROPOUT)?);
     let sensor = RangeSensor {
         distance_m: section.number(&RANGE)?.value,
@@ -131,9 +138,6 @@ pub fn fitted(document: &Document, mut section: Section) -> Result<Fitted, Error
         },
     };
     section.finish()?;
-    if table.is_some() && share.line.is_none() {
-        let cause = "[sensors] has no `share`, so no vehicle has a range sensor";
-        return Err(document.error_at(table, cause, "give it `share = 1.0`, or remove the table"));
-    }
-    Ok(Fitted { share: share.value, sensor })
+    let share = said.map_or(share, |said| if said.is_on() { 1.0 } else { 0.0 });
+    Ok(Fitted { share, sensor })
 }

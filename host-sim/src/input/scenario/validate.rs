@@ -2,7 +2,9 @@
 //! leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
-use super::{Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Vehicle, bus, envelope, plant, sensors, start};
+use super::{
+    Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Switch, Vehicle, bus, envelope, plant, sensors, start,
+};
 use crate::error::{Error, quoted};
 use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
 use crate::input::recording::{ChannelTrace, Motion};
@@ -15,7 +17,7 @@ use toml::de::DeValue;
 const PROGRAM: Number = Number { key: "program", unit: "seconds and m/s", limits: 0.0..=86_400.0, default: 0.0 };
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 2.0..=86_400.0, default: 20.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
-const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.01 };
+const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.05 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 0.1..=1000.0, default: 10.0 };
 const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 0.0..=65.534, default: 11.0 };
 const POSITION: Number = Number { key: "position_m", unit: "metres", limits: -1e6..=1e6, default: 0.0 };
@@ -53,7 +55,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let rate = top.number(&RATE)?;
     let ego = top.whole("ego")?;
     let leader = leader(&document, top.section("leader")?, overrides)?;
-    let vehicles = vehicles(&document, &mut top, leader.motion.as_ref())?;
+    let vehicles = vehicles(&document, &mut top, leader.motion.as_ref(), overrides.range_sensors)?;
     let channel = top.section("channel")?;
     let ego = index_of_ego(&document, ego, vehicles.len())?;
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
@@ -158,7 +160,12 @@ fn recording(
     }
 }
 
-fn vehicles(document: &Document, top: &mut Section, motion: Option<&Motion>) -> Result<Vec<Vehicle>, Error> {
+fn vehicles(
+    document: &Document,
+    top: &mut Section,
+    motion: Option<&Motion>,
+    said: Option<Switch>,
+) -> Result<Vec<Vehicle>, Error> {
     let recorded_mps = motion.map(|motion| motion.rows()[0].speed_mps.max(0.0));
     let middle = recorded_mps.unwrap_or(SPEED.default);
     let spread =
@@ -180,7 +187,7 @@ fn vehicles(document: &Document, top: &mut Section, motion: Option<&Motion>) -> 
     let mut vehicles = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
         let drives = if index > 0 { Drives::Behind } else { Drives::first(motion.is_some()) };
-        vehicles.push(vehicle(document, section, drives, spread)?);
+        vehicles.push(vehicle(document, section, drives, spread, said)?);
     }
     start::check(&vehicles).map_err(|start::Misplaced { vehicle, cause, remedy }| {
         document.error_at(lines.get(vehicle).copied().flatten(), cause, remedy)
@@ -208,7 +215,13 @@ impl Drives {
     }
 }
 
-fn vehicle(document: &Document, mut section: Section, drives: Drives, speeds: Span) -> Result<Vehicle, Error> {
+fn vehicle(
+    document: &Document,
+    mut section: Section,
+    drives: Drives,
+    speeds: Span,
+    said: Option<Switch>,
+) -> Result<Vehicle, Error> {
     let position = section.span(&POSITION)?;
     let gap = section.span(&GAP)?;
     let start = match (position, gap) {
@@ -240,7 +253,7 @@ fn vehicle(document: &Document, mut section: Section, drives: Drives, speeds: Sp
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
         accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
-        range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind)?,
+        range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind, said)?,
     };
     section.finish()?;
     Ok(vehicle)

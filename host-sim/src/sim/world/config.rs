@@ -34,6 +34,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.law.catch_up = share(vehicle.catch_up);
     config.law.target_speed = speed(scenario.leader.target_speed_mps);
     config.link.period = duration(1.0 / scenario.message_rate_hz);
+    config.range_sensor = vehicle.range_sensor.is_some();
     config.prediction.step = duration(scenario.step_s);
     config.prediction.horizon = horizon(HORIZON_S, scenario.step_s);
     // No vehicle brakes harder than it publishes.
@@ -43,8 +44,8 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config
 }
 
-/// How far the units predict, in seconds.
-pub const HORIZON_S: f64 = 3.9;
+/// How far the units predict, in seconds: as far as those on an ECU.
+pub const HORIZON_S: f64 = 10.7;
 
 /// A horizon of at least this length in whole steps, within the capacity.
 #[must_use]
