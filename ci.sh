@@ -25,7 +25,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
             the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
-  firmware  the firmware in every form, without a panic, in the emulator: a replayed log bit for bit, and what it costs
+  firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
             a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; the first node, a
             program in Python, against the process and the Cortex-M4F; scripts/hil.sh runs parts

@@ -1,12 +1,18 @@
-//! What the programs for the emulated ECU share: a counter of instructions, the depth of the stack, and a road full of
-//! peers that talk.
+//! What the programs for the emulated ECU share: the calls, the files and the output of the emulator; and for the counts a counter of
+//! instructions, the depth of the stack, and a road full of peers that talk.
 #![no_std]
 
+#[cfg(machine = "netduinoplus2")]
 pub mod counter;
 pub mod file;
-#[cfg(target_abi = "eabihf")]
+#[cfg(machine = "netduinoplus2")]
 pub mod float;
-#[cfg(target_abi = "eabihf")]
+#[cfg(machine = "netduinoplus2")]
 pub mod kalman;
+pub mod output;
 pub mod road;
+pub mod semihosting;
+#[cfg(machine = "netduinoplus2")]
 pub mod stack;
+#[cfg(machine = "cortex_r5f")]
+mod start;

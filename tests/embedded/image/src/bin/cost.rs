@@ -4,8 +4,6 @@
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
-use cortex_m_semihosting::hprintln;
 use holdover::model::{Aim, State, Step};
 use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Seconds, Speed};
@@ -14,20 +12,15 @@ use holdover::{Config, OnboardUnit};
 use holdover_image::counter::Counter;
 use holdover_image::float::{double, single};
 use holdover_image::kalman::predict;
+use holdover_image::output::say;
 use holdover_image::road::{EGO, Road};
+use holdover_image::semihosting::end;
 use holdover_image::stack;
 
 const CAPACITY: usize = 400;
 const PERIOD: u64 = 10_000;
 /// How old the peers' samples are when they arrive, unless something else is measured.
 const AGE: Duration = Duration::from_millis(40);
-
-#[panic_handler]
-fn panicked(info: &core::panic::PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(EXIT_FAILURE);
-    loop {}
-}
 
 /// What a second of ticks is to show.
 #[derive(Clone, Copy, PartialEq)]
@@ -138,7 +131,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         stack::paint();
         let (started, count) = counter.count(|| unit.start(&config));
         assert!(started.is_ok());
-        hprintln!("start {} {} {}", PEERS, steps, count);
+        say(format_args!("start {} {} {}", PEERS, steps, count));
         let mut bench = Bench { unit, counter, road: Road::new(PEERS as u8), worst: Worst::default() };
         let seconds = [Second::Usual, Second::Usual, Second::One, Second::All, Second::Horizons];
         // Before the samples of 2 s ago it is quiet for that long: they are to be the newest.
@@ -160,7 +153,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
             ("receive-mean", worst.received / worst.frames),
             ("stack", stack::depth(worst.top) as u32),
         ] {
-            hprintln!("{} {} {} {}", name, PEERS, steps, count);
+            say(format_args!("{} {} {} {}", name, PEERS, steps, count));
         }
     }
     for (steps, size) in [
@@ -169,7 +162,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         (216, size_of::<OnboardUnit<PEERS, 8, 216>>()),
         (400, size_of::<OnboardUnit<PEERS, 8, 400>>()),
     ] {
-        hprintln!("unit {} {} {}", PEERS, steps, size);
+        say(format_args!("unit {} {} {}", PEERS, steps, size));
     }
 }
 
@@ -198,11 +191,12 @@ fn peer(name: &str, unit: &mut OnboardUnit<8, 8, CAPACITY>, config: &Config, cou
         let answer = unit.tick(at.plus(Duration::from_micros(3)));
         assert!(tick < 100 || answer.estimate.is_some_and(|estimate| estimate.link_on));
     }
-    hprintln!("{} 8 {} {}", name, CAPACITY, sum / messages);
+    say(format_args!("{} 8 {} {}", name, CAPACITY, sum / messages));
 }
 
 /// The same 400 steps of one follower in the core's fixed point, in `f32` and in `f64`; and as many predictions of a Kalman
 /// filter.
+#[allow(static_mut_refs)] // each is named once
 fn compare(counter: &Counter) {
     static mut FIXED: [[Step; CAPACITY]; 2] =
         [[Step { position: Position::ZERO.ring(), speed: Speed::ZERO }; CAPACITY]; 2];
@@ -219,7 +213,7 @@ fn compare(counter: &Counter) {
     let speed = Speed::from_mm_per_s(11_000);
     let start = State { position: Position::ZERO.ring(), speed, ..State::default() };
     // SAFETY: this function is called once, and nothing else names the static.
-    let [ahead, out] = unsafe { &mut *(&raw mut FIXED) };
+    let [ahead, out] = unsafe { &mut FIXED };
     for (step, way) in ahead.iter_mut().zip((18_110..).step_by(110)) {
         *step = Step { position: Position::from_mm(way).ring(), speed };
     }
@@ -232,7 +226,7 @@ fn compare(counter: &Counter) {
             static mut STEPS: [[$module::Step; CAPACITY]; 2] =
                 [[$module::Step { position: 0.0, speed: 0.0 }; CAPACITY]; 2];
             // SAFETY: as above.
-            let [ahead, out] = unsafe { &mut *(&raw mut STEPS) };
+            let [ahead, out] = unsafe { &mut STEPS };
             for (step, way) in ahead.iter_mut().zip((18_110u16..).step_by(110)) {
                 *step = $module::Step { position: $module::from(way) / 1000.0, speed: 11.0 };
             }
@@ -246,7 +240,7 @@ fn compare(counter: &Counter) {
     let (single, double) = (in_float!(single), in_float!(double));
     let (_, kalman) = counter.count(|| black_box(predict(black_box(CAPACITY))));
     for (name, count) in [("step-fixed", fixed), ("step-f32", single), ("step-f64", double), ("step-kalman", kalman)] {
-        hprintln!("{} 1 {} {}", name, CAPACITY, count);
+        say(format_args!("{} 1 {} {}", name, CAPACITY, count));
     }
 }
 
@@ -256,17 +250,17 @@ fn main() -> ! {
     static mut FOUR: OnboardUnit<4, 8, CAPACITY> = OnboardUnit::idle();
     static mut ONE: OnboardUnit<1, 8, CAPACITY> = OnboardUnit::idle();
     if let Some(counter) = Counter::start() {
-        if cfg!(feature = "fd") {
+        // The compiler does not know, so that it inlines the same in both programs.
+        if black_box(cfg!(feature = "fd")) {
             peer("peer-fd", EIGHT, &Config { transport: Transport::Fd, ..Config::car(EGO) }, &counter);
-            debug::exit(EXIT_SUCCESS);
+            end(true);
         }
         measure(ONE, &counter);
         measure(FOUR, &counter);
         measure(EIGHT, &counter);
         peer("peer", EIGHT, &Config::car(EGO), &counter);
         compare(&counter);
-        debug::exit(EXIT_SUCCESS);
+        end(true);
     }
-    debug::exit(EXIT_FAILURE);
-    loop {}
+    end(false)
 }

@@ -3,46 +3,31 @@
 #![no_std]
 #![no_main]
 
-use cortex_m_rt::entry;
-use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
-use cortex_m_semihosting::hprintln;
-use holdover::OnboardUnit;
 use holdover_image::file::File;
-use holdover_replay::{config, decode, live, refusals};
+use holdover_image::semihosting::end;
+use holdover_replay::{Head, Room, Unit, decode, live, refusals};
 
-/// As on the reference ECU.
-#[cfg(target_abi = "eabihf")]
-const CAPACITY: (usize, usize, usize) = (8, 8, 400);
-/// What fits the 16 KiB of the small one.
-#[cfg(not(target_abi = "eabihf"))]
-const CAPACITY: (usize, usize, usize) = (3, 4, 100);
+static mut UNIT: Unit = Unit::idle();
+static mut ROOM: Room = Room::new();
 
-type Unit = OnboardUnit<{ CAPACITY.0 }, { CAPACITY.1 }, { CAPACITY.2 }>;
-
-#[panic_handler]
-fn panicked(info: &core::panic::PanicInfo) -> ! {
-    hprintln!("{}", info);
-    debug::exit(EXIT_FAILURE);
-    loop {}
-}
-
-fn replay(unit: &mut Unit) -> Option<()> {
+fn replay(unit: &mut Unit, room: &'static mut Room) -> Option<()> {
     let mut log = File::open("log.bin\0")?;
     let mut sent = File::create("sent.bin\0")?;
-    unit.start(&config(CAPACITY.2)).ok()?;
+    Head::take(&mut || log.read().map(i64::from_le_bytes), room)?.start(unit)?;
     while let Some(record) = log.read() {
         let (at, event) = decode(&record)?;
-        live(unit, at, &event, |record| sent.write(&record));
+        let _ = live(unit, at, &event, |record| sent.write(&record)); // what it refuses is counted
     }
     refusals(unit).for_each(|record| sent.write(&record));
     sent.flush();
     Some(())
 }
 
-#[entry]
+#[allow(static_mut_refs)] // they are the only ones
+#[cfg_attr(machine = "cortex_r5f", unsafe(export_name = "main"))]
+#[cfg_attr(not(machine = "cortex_r5f"), cortex_m_rt::entry)]
 fn main() -> ! {
-    static mut UNIT: Unit = Unit::idle();
-    let done = replay(UNIT).is_some();
-    debug::exit(if done { EXIT_SUCCESS } else { EXIT_FAILURE });
-    loop {}
+    // SAFETY: the start-up code comes here once, and nothing else names the two.
+    let (unit, room) = unsafe { (&mut UNIT, &mut ROOM) };
+    end(replay(unit, room).is_some())
 }
