@@ -18,7 +18,12 @@ use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 
+/// A scenario by messages alone.
 fn setup(scenario: &str, faults: &[&str]) -> Setup {
+    setup_with(scenario, faults, &Overrides::MESSAGES_ALONE)
+}
+
+fn setup_with(scenario: &str, faults: &[&str], overrides: &Overrides) -> Setup {
     let scenario = Scenario::parse(Path::new("test"), scenario, overrides).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let faults = faults.iter().map(|fault| fault.parse().unwrap()).collect();
@@ -65,6 +70,15 @@ fn in_lock_step_device_and_twin_say_the_same_bit_for_bit() {
     assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
     assert_eq!((results.deviation.ticks, results.deviation.different_frames), (2100, 0));
     assert!(results.deviation.frames > 3 * 2100, "{}", results.deviation.frames);
+}
+
+#[test]
+fn with_range_sensors_and_the_envelope_too_device_and_twin_say_the_same_bit_for_bit() {
+    let setup = setup_with("", &[], &Overrides::default());
+    assert!(setup.config.envelope.is_some() && setup.config.range_sensor);
+    let results = step(&setup, |_| {});
+    assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
+    assert_eq!((results.deviation.ticks, results.deviation.different_frames), (2100, 0));
 }
 
 /// The same over CAN FD.

@@ -1,7 +1,6 @@
 //! The log of a vehicle in the corridor: the bus of the ego on its whole way through the intersections, with the ticks of `replay`.
 //!
-//! The vehicles have the envelope, and slots as many as the ECU has peers. So the unit on the ECU is the one of the simulation, and it has
-//! to send what that one sent.
+//! The units of the simulation are those of the ECU, so the unit on the ECU has to send what the one in the simulation sent.
 
 use std::collections::BTreeMap;
 use std::error::Error;
@@ -16,15 +15,12 @@ use holdover_sim::roads::conditions::Conditions;
 use holdover_sim::roads::experiment::Experiment;
 use holdover_sim::roads::journal::Journal;
 use holdover_sim::roads::{Corridor, read};
-use holdover_sim::sim::modem::ECU_PEERS;
 
 use crate::life::Life;
 use crate::{Log, heard, instant, is_of_the_unit};
 
 /// Which run it is.
 const SEED: u64 = 1;
-/// The prediction step of every vehicle. With it the scenario's horizon has room in the ECU.
-const STEP_S: f64 = 0.05;
 /// Vehicles arrive for so long, and from this time on the ego: there is traffic before it and behind it.
 const ARRIVALS_S: f64 = 100.0;
 const EGO_AFTER_S: f64 = 40.0;
@@ -64,12 +60,12 @@ pub fn record() -> Result<(Log, Life), Box<dyn Error>> {
     Ok((log, life))
 }
 
-/// The corridor of the library, with the envelope and as the ECU can be a part of it.
+/// The corridor of the library, with an ego that comes early.
 fn corridor() -> Result<Corridor, holdover_sim::error::Error> {
     let (file, text) = library::text("corridor".as_ref())?;
-    let overrides = Overrides { seed: Some(SEED), step_s: Some(STEP_S), envelope: true, ..Overrides::default() };
+    let overrides = Overrides { seed: Some(SEED), ..Overrides::default() };
     let corridor = read::corridor(&file, &text, &overrides)?;
-    Ok(Corridor { slots: ECU_PEERS, duration_s: ARRIVALS_S, ego_after_s: EGO_AFTER_S, ..corridor })
+    Ok(Corridor { duration_s: ARRIVALS_S, ego_after_s: EGO_AFTER_S, ..corridor })
 }
 
 /// Whether these records are of what the unit sent in this log, identifier by identifier: on the bus, frames of several identifiers change
