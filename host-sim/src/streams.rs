@@ -30,6 +30,8 @@ pub enum Purpose {
     Arrivals(u32),
     /// Whether the vehicle with that index makes an emergency stop, and where.
     Emergency(u32),
+    /// Whether the vehicle with that index has a fault, which one, and from when on.
+    Fault(u32),
 }
 
 /// The generator for that purpose under that seed.
@@ -44,6 +46,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::Arrivals(road) => (6, road),
         Purpose::RangeFaults(vehicle) => (7, vehicle),
         Purpose::Emergency(vehicle) => (8, vehicle),
+        Purpose::Fault(vehicle) => (9, vehicle),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

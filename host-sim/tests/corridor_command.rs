@@ -196,6 +196,7 @@ fn what_cannot_be_is_refused_with_its_line() {
     };
     assert!(line_of("rnge_m", &[("range_m = 400.0", "rnge_m = 400.0")]).contains("write `range_m`"));
     assert!(line_of("loss = 1.5", &[("loss = 0.1", "loss = 1.5")]).contains("from 0 to 1"));
+    assert!(line_of("faults = 1.5", &[("faults = 0.02", "faults = 1.5")]).contains("from 0 to 1"));
     assert!(
         line_of("ego_road", &[("ego_road = \"2nd Street, northwest\"", "ego_road = \"1st\"")]).contains("name one of")
     );

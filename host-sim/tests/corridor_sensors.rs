@@ -31,7 +31,11 @@ fn run(duration: &str, share: &str, engaged: bool) -> Outcome {
     let scenario = Conditions::of(&experiment.corridor);
     let conditions = Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario };
     let outcome = experiment.run(1, conditions, None).unwrap();
-    assert_eq!((outcome.collisions, outcome.violations, outcome.remains.unserved), ([0, 0], 0, 0), "{share} {engaged}");
+    assert_eq!(
+        (outcome.collisions, outcome.violations, outcome.remains.unserved),
+        ([0, 0], [0, 0], 0),
+        "{share} {engaged}"
+    );
     outcome
 }
 

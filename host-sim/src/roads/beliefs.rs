@@ -94,8 +94,9 @@ pub struct Beliefs<'a> {
     pub beyond: BTreeMap<(usize, usize), Worst>,
     /// Number of changes of association, of all units.
     pub changes: u64,
-    /// Number of ticks at which the bound did not contain the true motion, in both classes.
-    pub violations: u64,
+    /// Number of ticks at which the bound did not contain the true motion, in both classes. The second number is of
+    /// those where the clock of the unit or of its target is off, because assumption A3 is broken there.
+    pub violations: [u64; 2],
     /// Errors over time of the unit that is watched: `(time, error)`.
     pub watched: Vec<(f64, f64)>,
     watch: Option<usize>,
@@ -113,7 +114,7 @@ impl<'a> Beliefs<'a> {
             unheard: Class::default(),
             beyond: BTreeMap::new(),
             changes: 0,
-            violations: 0,
+            violations: [0, 0],
             watched: Vec::new(),
             watch,
             associations: BTreeMap::new(),
@@ -167,7 +168,7 @@ impl Watch for Beliefs<'_> {
             }
             let truth_m = truth_m + own.odometer_m;
             if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
-                self.violations += 1;
+                self.violations[usize::from(own.mistakes_time || target.mistakes_time)] += 1;
             }
             if self.watch == Some(own.trip) {
                 self.watched.push((at_s, error_m));
@@ -194,7 +195,8 @@ mod tests {
     /// Number of ticks at which the bound did not contain the true motion. The unit drives in one direction of a
     /// street. Its rear has just left the third intersection, and it takes the stop of this number for its next. Its
     /// target comes from the other direction, 10 m before the third intersection, and the estimate of it is right.
-    fn violations_with_next(stop: usize) -> u64 {
+    /// `is_off`: whether its clock is off, and that of the target.
+    fn violations_with_next(stop: usize, is_off: [bool; 2]) -> [u64; 2] {
         let network = Network::of(&example::corridor());
         let (own_lane, lane) = (&network.lanes[0], &network.lanes[1]);
         let left = own_lane.stops[2];
@@ -208,19 +210,29 @@ mod tests {
         };
         let own = Sighting {
             next: Some(own_lane.stops[stop].intersection),
+            mistakes_time: is_off[0],
             followed: Some(station(1)),
             belief: Some(TargetBelief { position_m, speed_mps: 10.0, age_s: 0.05, bound: Some(bound) }),
             ..sighting(0, 0, left.at_m + network.junctions[left.intersection].half_m + 4.9)
         };
         let mut beliefs = Beliefs::new(&network, None);
-        beliefs.tick(1.0, &[own, sighting(1, 1, met.at_m - 10.0)]);
+        beliefs.tick(1.0, &[own, Sighting { mistakes_time: is_off[1], ..sighting(1, 1, met.at_m - 10.0) }]);
         beliefs.violations
     }
 
     #[test]
     fn between_two_reviews_the_virtual_lane_is_that_of_the_intersection_just_left() {
-        assert_eq!(violations_with_next(2), 0);
-        assert_eq!(violations_with_next(3), 1);
+        let nobody = [false; 2];
+        assert_eq!(violations_with_next(2, nobody), [0, 0]);
+        assert_eq!(violations_with_next(3, nobody), [1, 0]);
+    }
+
+    #[test]
+    fn a_truth_outside_its_bound_is_told_apart_where_a_clock_is_off() {
+        for is_off in [[true, false], [false, true]] {
+            assert_eq!(violations_with_next(3, is_off), [0, 1]);
+            assert_eq!(violations_with_next(2, is_off), [0, 0]);
+        }
     }
 
     /// The classes of errors given as time, error in metres, and age of the newest sample. The unit drives on the same

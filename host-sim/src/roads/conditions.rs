@@ -35,12 +35,12 @@ pub struct Conditions {
     pub step_s: f64,
     /// Number of peer slots of a unit.
     pub slots: usize,
-    /// Emergency stops.
+    /// Emergency stops and faults.
     pub emergencies: Emergencies,
 }
 
 impl Conditions {
-    /// The conditions of the scenario, without emergency stops.
+    /// The conditions of the scenario, without emergency stops and faults.
     #[must_use]
     pub fn of(corridor: &Corridor) -> Self {
         Self {

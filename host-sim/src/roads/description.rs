@@ -37,7 +37,7 @@ pub struct Corridor {
     pub envelope: Envelope,
     /// The vehicles' range sensors.
     pub sensors: Fitted,
-    /// The emergency stops of the side with emergencies.
+    /// The emergency stops and faults of the side with emergencies.
     pub emergencies: Emergencies,
     /// Every vehicle's own bus.
     pub bus: VehicleBus,
@@ -140,19 +140,21 @@ impl Wrong {
     pub const NOTHING: Self = Self { mass_scale: 1.0, grade: 0.0, headwind_mps: 0.0, lag_scale: 1.0 };
 }
 
-/// Emergency stops. A vehicle brakes as hard as it has published, at a random place of its way and whatever its unit
-/// commands, until it stands. Its unit does not foresee it, and no other vehicle is told.
+/// Emergency stops and faults. In an emergency stop a vehicle brakes as hard as it has published, at a random place of its
+/// way and whatever its unit commands, until it stands. Its unit does not foresee it, and no other vehicle is told.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Emergencies {
     /// Share of the vehicles that make one, 0 to 1.
     pub share: f64,
     /// How long the vehicle stands after it, 0 to 60 s.
     pub stands_s: f64,
+    /// Share of the vehicles that have a fault, 0 to 1.
+    pub faults: f64,
 }
 
 impl Emergencies {
-    /// No vehicle makes one.
-    pub const NONE: Self = Self { share: 0.0, stands_s: 0.0 };
+    /// No vehicle makes a stop, and none has a fault.
+    pub const NONE: Self = Self { share: 0.0, stands_s: 0.0, faults: 0.0 };
 }
 
 /// Limits for the verdict. It also asks that no vehicles collide, that every vehicle is served, and that every bound

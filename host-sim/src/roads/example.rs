@@ -43,5 +43,6 @@ pub fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
         belief: None,
         limited: false,
         dark: false,
+        mistakes_time: false,
     }
 }

@@ -41,7 +41,7 @@ pub struct Sides {
     pub envelope: Side,
     /// The same with links without delay, loss and silence.
     pub envelope_perfect_link: Side,
-    /// The scenario, with the envelope and with vehicles that make emergency stops.
+    /// The scenario, with the envelope and with vehicles that make emergency stops or have a fault.
     pub emergencies: Side,
 }
 
@@ -262,6 +262,7 @@ mod tests {
             let is_alone = sides.map(|conditions| conditions.when_lost == WhenLost::Alone);
             assert_eq!(is_alone, [false, false, true, false, false, false]);
             assert_eq!(sides.map(|conditions| conditions.emergencies.share), [0.0, 0.0, 0.0, 0.0, 0.0, 0.05]);
+            assert_eq!(sides.map(|conditions| conditions.emergencies.faults), [0.0, 0.0, 0.0, 0.0, 0.0, 0.02]);
         }
     }
 }

@@ -32,8 +32,8 @@ pub struct Outcome {
     pub beyond: usize,
     /// Changes of association.
     pub changes: u64,
-    /// Ticks at which a target was outside its bound.
-    pub violations: u64,
+    /// Ticks at which a target was outside its bound; the second number is of those where a clock was off.
+    pub violations: [u64; 2],
     /// The counts at the end of the run.
     pub remains: Remains,
 }
@@ -93,6 +93,8 @@ pub struct Side {
     pub full_stops: usize,
     /// Emergency stops.
     pub emergency_stops: u64,
+    /// Vehicles with a fault.
+    pub faults: u64,
     /// Mean travel time, from the arrival on.
     pub mean_travel_time_s: Option<f64>,
     /// Longest travel time.
@@ -113,8 +115,10 @@ pub struct Side {
     pub pairs_beyond: usize,
     /// Changes of association.
     pub association_changes: u64,
-    /// Ticks at which a target was outside its bound.
+    /// Ticks at which a target was outside its bound, while neither its clock nor that of the unit was off.
     pub bound_violations: u64,
+    /// The same while one of the clocks was off.
+    pub bound_violations_by_clock: u64,
     /// Fraction of time in which an envelope changed the command.
     pub limited_share: f64,
     /// Number of times that a unit yielded to a vehicle that did not heed it.
@@ -142,6 +146,7 @@ impl Side {
             collisions_at_intersections: all().map(|outcome| outcome.collisions[1]).sum(),
             full_stops: all().map(|outcome| outcome.full_stops).sum(),
             emergency_stops: all().map(|outcome| outcome.remains.emergencies).sum(),
+            faults: all().map(|outcome| outcome.remains.faults).sum(),
             mean_travel_time_s: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
             longest_travel_time_s: times.iter().copied().reduce(f64::max),
             smallest_gap_m: least(|outcome| outcome.smallest_gap_m),
@@ -152,7 +157,8 @@ impl Side {
             position_error_unheard: class(2),
             pairs_beyond: all().map(|outcome| outcome.beyond).sum(),
             association_changes: all().map(|outcome| outcome.changes).sum(),
-            bound_violations: all().map(|outcome| outcome.violations).sum(),
+            bound_violations: all().map(|outcome| outcome.violations[0]).sum(),
+            bound_violations_by_clock: all().map(|outcome| outcome.violations[1]).sum(),
             limited_share: ticks[1] as f64 / ticks[0].max(1) as f64,
             order_disagreements: all().map(|outcome| outcome.remains.disagreements).sum(),
             refusals: all().map(|outcome| outcome.remains.refusals).sum(),
@@ -207,8 +213,8 @@ mod tests {
             errors: [settled, Class::default(), Class::default()],
             beyond: 3,
             changes: 4,
-            violations: 5,
-            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5 },
+            violations: [5, 6],
+            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5, faults: 6 },
         }
     }
 
@@ -230,7 +236,7 @@ mod tests {
             (side.full_stops, side.pairs_beyond, side.association_changes, side.bound_violations),
             (2, 6, 8, 10)
         );
-        assert_eq!(side.emergency_stops, 10);
+        assert_eq!((side.emergency_stops, side.faults, side.bound_violations_by_clock), (10, 12, 12));
         assert_eq!((side.limited_share, side.refusals, side.order_disagreements, side.turned_away), (0.5, 4, 6, 8));
     }
 

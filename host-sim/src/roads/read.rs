@@ -40,6 +40,7 @@ const WIND: Number = Number { key: "headwind_mps", unit: "m/s", limits: -30.0..=
 const LAG: Number = Number { key: "lag_scale", unit: "a factor", limits: 0.2..=4.0, default: 1.0 };
 const EMERGENCIES: Number = Number { key: "share", unit: "a share", limits: 0.0..=1.0, default: 0.05 };
 const STANDS: Number = Number { key: "stands_s", unit: "seconds", limits: 0.0..=60.0, default: 10.0 };
+const FAULTS: Number = Number { key: "faults", unit: "a share", limits: 0.0..=1.0, default: 0.02 };
 const RIGHT: Number = Number { key: "right_m", unit: "metres", limits: -8.0..=8.0, default: 0.0 };
 const PER_MINUTE: Number =
     Number { key: "vehicles_per_min", unit: "vehicles a minute", limits: 0.0..=30.0, default: 3.0 };
@@ -184,8 +185,11 @@ fn wrong(mut section: Section) -> Result<Wrong, Error> {
 }
 
 fn emergencies(mut section: Section) -> Result<Emergencies, Error> {
-    let emergencies =
-        Emergencies { share: section.number(&EMERGENCIES)?.value, stands_s: section.number(&STANDS)?.value };
+    let emergencies = Emergencies {
+        share: section.number(&EMERGENCIES)?.value,
+        stands_s: section.number(&STANDS)?.value,
+        faults: section.number(&FAULTS)?.value,
+    };
     section.finish()?;
     Ok(emergencies)
 }

@@ -11,7 +11,6 @@ use std::rc::Rc;
 
 use holdover::coordination::Itinerary;
 use holdover::health::Cause;
-use holdover::time::Instant;
 use holdover::wire::StationHash;
 
 use super::alone::{self, Lost};
@@ -22,14 +21,12 @@ use super::sight::{Body, Sights};
 use super::tally::Tally;
 use super::trips::Trip;
 use super::watch::{Sighting, Watch};
-use crate::bus::memory::MemoryNode;
-use crate::bus::{Bus, Frame};
-use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
+use crate::bus::Frame;
+use crate::input::impairment::{AppliesTo, ChannelModel, Impairment};
 use crate::sim::air::{Air, Arrived};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
 use crate::sim::modem::V2xMessage;
-use crate::sim::road::Ground;
 use crate::sim::sensors::Ahead;
 use crate::sim::stages::Stages;
 use crate::sim::station::station;
@@ -39,54 +36,13 @@ use crate::sim::world::TargetBelief;
 mod arrivals;
 mod departures;
 mod emergencies;
+mod faults;
 mod numbers;
+mod traveller;
 
 use arrivals::LISTENING_S;
-use emergencies::Emergency;
 use numbers::Numbers;
-
-/// A vehicle on the roads.
-struct Traveller {
-    trip: usize,
-    /// Time at which the vehicle left, if it has.
-    left_s: Option<f64>,
-    vehicle: Box<Vehicle>,
-    ground: Ground,
-    dark: Window,
-    log: Option<MemoryNode>,
-    /// Whether it has a range sensor.
-    sees: bool,
-    /// Its emergency stop, if it makes one.
-    emergency: Option<Emergency>,
-}
-
-impl Traveller {
-    fn way_m(&self) -> f64 {
-        self.vehicle.plant.position_m - self.ground.odometer_m
-    }
-
-    /// Appends the frames of its bus to the log, if its bus is logged.
-    fn hand_in(&mut self, log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
-        let Some(node) = &mut self.log else { return Ok(()) };
-        while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
-            log.push((self.vehicle.time_of(at), frame));
-        }
-        Ok(())
-    }
-
-    fn body(&self, road: usize) -> Body {
-        let vehicle = &self.vehicle;
-        Body { road, front_m: self.way_m(), length_m: vehicle.length_m, speed_mps: vehicle.plant.speed_mps }
-    }
-
-    fn has_left(&self) -> bool {
-        self.left_s.is_some()
-    }
-
-    fn is_dark(&self, at_s: f64) -> bool {
-        (self.dark.from_s..self.dark.to_s).contains(&at_s)
-    }
-}
+use traveller::Traveller;
 
 /// The world.
 pub struct Traffic<'a> {
@@ -123,6 +79,8 @@ pub struct Remains {
     pub turned_away: u64,
     /// Emergency stops.
     pub emergencies: u64,
+    /// Vehicles with a fault.
+    pub faults: u64,
 }
 
 impl Remains {
@@ -279,6 +237,7 @@ impl<'a> Traffic<'a> {
             belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
             limited: vehicle.limited,
             dark: traveller.is_dark(at_s),
+            mistakes_time: traveller.mistakes_time(),
         }
     }
 
@@ -288,7 +247,7 @@ impl<'a> Traffic<'a> {
         let bodies: Vec<Body> =
             self.travellers.values().map(|traveller| traveller.body(self.trips[traveller.trip].road)).collect();
         for (traveller, own) in self.travellers.values_mut().zip(&bodies) {
-            let ahead = traveller.sees.then(|| match self.sights.nearest(own, &bodies, range_m) {
+            let ahead = traveller.sees_at(at_s).then(|| match self.sights.nearest(own, &bodies, range_m) {
                 None => Ahead::NOBODY,
                 Some(seen) => {
                     let rear_m = traveller.vehicle.plant.position_m + seen.gap_m;
@@ -316,7 +275,7 @@ impl<'a> Traffic<'a> {
 impl Stages for Traffic<'_> {
     fn speak(&mut self, at_s: f64) -> io::Result<()> {
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
-            if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| !traveller.is_dark(at_s)) {
+            if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| traveller.hears(at_s)) {
                 self.tally.heard += u64::from(!traveller.has_left());
                 traveller.vehicle.hear(at_s, &message)?;
             }
@@ -339,7 +298,7 @@ impl Stages for Traffic<'_> {
         let mut broadcasts = Vec::new();
         for (index, traveller) in &mut self.travellers {
             traveller.vehicle.drive(at_s, self.corridor.period_s)?;
-            let sent = traveller.vehicle.broadcasts().into_iter().filter(|(sent_s, _)| !traveller.is_dark(*sent_s));
+            let sent = traveller.vehicle.broadcasts().into_iter().filter(|(sent_s, _)| traveller.sends(*sent_s));
             broadcasts.extend(sent.map(|(sent_s, message)| (sent_s, *index, message)));
         }
         self.broadcast(at_s, broadcasts);

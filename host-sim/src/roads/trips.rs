@@ -4,7 +4,7 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::description::{Corridor, Radio};
-use super::network::Network;
+use super::network::{Lane, Network};
 use crate::input::impairment::Window;
 use crate::input::kind::Kind;
 use crate::streams::{Purpose, stream, unit};
@@ -44,7 +44,6 @@ pub const HEARD_S: f64 = 2.0;
 pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
     let mut trips = Vec::new();
     for (road, (plan, lane)) in corridor.roads.iter().zip(&network.lanes).enumerate() {
-        let nominal_s = (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps;
         let mut generator = stream(seed, Purpose::Arrivals(u32::try_from(road).unwrap_or(u32::MAX)));
         let mut at_s = next_s(corridor, plan.vehicles_per_min, 0.0, &mut generator);
         while at_s < corridor.duration_s {
@@ -56,7 +55,7 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
                 at_s,
                 speed_mps: span.low + (span.high - span.low) * pace,
                 kind: kind(corridor, sort),
-                dark_after_s: HEARD_S + dark * (nominal_s - HEARD_S).max(0.0),
+                dark_after_s: moment_s(corridor, lane, HEARD_S, dark),
                 odometer_m: 10_000.0 * odometer,
             });
             at_s = next_s(corridor, plan.vehicles_per_min, at_s, &mut generator);
@@ -64,6 +63,13 @@ pub fn trips(corridor: &Corridor, network: &Network, seed: u64) -> Vec<Trip> {
     }
     trips.sort_by(|a, b| a.at_s.total_cmp(&b.at_s).then(a.road.cmp(&b.road)));
     trips
+}
+
+/// A moment on a vehicle's way, in seconds since it appeared: not before `first_s`, and uniform from there to the end
+/// of the way at the target speed. `draw` is uniform in [0, 1).
+pub fn moment_s(corridor: &Corridor, lane: &Lane, first_s: f64, draw: f64) -> f64 {
+    let nominal_s = (lane.exit_m - lane.entry_m) / corridor.traffic.target_speed_mps;
+    first_s + draw * (nominal_s - first_s).max(0.0)
 }
 
 /// The next arrival; infinite if there are none. Arrivals have no memory, except for the least headway. The mean rate

@@ -32,6 +32,8 @@ pub struct Sighting {
     pub limited: bool,
     /// Whether its radio is silent.
     pub dark: bool,
+    /// Whether what it takes for GNSS time is off.
+    pub mistakes_time: bool,
 }
 
 /// An observer of a run.

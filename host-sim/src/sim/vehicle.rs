@@ -24,7 +24,7 @@ use crate::sim::quantities::{acceleration, metres, speed};
 use crate::sim::road::Ground;
 use crate::sim::sensors::{Ahead, RANGE_EVERY_S, Sensors};
 use crate::sim::station::station;
-use crate::sim::time::{gnss, micros};
+use crate::sim::time::micros;
 use actuators::Actuators;
 use backlog::Backlog;
 use time_master::TimeMaster;
@@ -246,12 +246,12 @@ impl Vehicle {
     pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
         let now = self.instant(at_s);
         if is_due(at_s, SYNC_EVERY_S, period_s) || !self.master.is_awake() {
-            self.master.synchronise(&mut self.sender, now, gnss(at_s))?;
+            self.master.synchronise(&mut self.sender, now, at_s)?;
         }
         self.sense(at_s)?;
         if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
             let way_m = self.plant.position_m - ground.odometer_m;
-            let place = ground.road.said(way_m, self.tag, gnss(at_s).stamp());
+            let place = ground.road.said(way_m, self.tag, self.master.gnss(at_s).stamp());
             self.put(at_s, &Message::Ego(Said::Geo(place)))?;
         }
         if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
@@ -276,7 +276,7 @@ impl Vehicle {
     /// Sends the second message of the time base, once the first one has been on the bus.
     fn follow_up(&mut self) -> io::Result<()> {
         let began = Instant::from_micros(self.clock_offset_us);
-        self.master.follow_up(&mut self.sender, |at| gnss(at.since(began).as_micros() as f64 * 1e-6))
+        self.master.follow_up(&mut self.sender, |at| at.since(began).as_micros() as f64 * 1e-6)
     }
 
     /// Sends the vehicle's own motion, as its sensors measure it now.
@@ -288,7 +288,7 @@ impl Vehicle {
             speed: speed(self.plant.speed_mps),
             acceleration: acceleration(self.plant.acceleration_mps2),
             demand: acceleration(self.command_mps2),
-            stamp: gnss(at_s).stamp(),
+            stamp: self.master.gnss(at_s).stamp(),
             position_accuracy: Some(self.sensors.position_accuracy),
             speed_accuracy: Some(self.sensors.speed_accuracy),
             station: self.alias.of(station(self.index)),

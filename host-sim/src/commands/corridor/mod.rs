@@ -93,7 +93,7 @@ pub struct Results {
     pub seeds: usize,
     /// The range sensors.
     pub sensors: Sensors,
-    /// The emergency stops of the side with emergencies, as the scenario says.
+    /// The emergency stops and faults of the side with emergencies, as the scenario says.
     pub emergency: Emergencies,
     /// The figures of all seeds, beside the references.
     #[serde(flatten)]

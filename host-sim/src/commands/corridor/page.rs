@@ -29,7 +29,7 @@ pub fn render(
     let caption = "All seeds together. Beside what the scenario describes, without the envelope: the same trips with a link \
                    without delay, loss and silence; with vehicles that drive alone while the link to whoever is just ahead is lost \
                    (an ideal range sensor and adaptive cruise control on the same road, the stop line at an intersection); with \
-                   the envelope; with it over that perfect link; and with it and emergency stops.";
+                   the envelope; with it over that perfect link; and with it, emergency stops and faults.";
     page.table(caption, &header, &LINES.iter().map(row).collect::<Vec<Vec<Cell>>>());
     page.section("Scenario");
     page.facts(&facts(options, &results.sensors));

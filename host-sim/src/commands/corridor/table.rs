@@ -22,6 +22,7 @@ pub const LINES: &[Line] = &[
     ("collisions in conflict areas", |side| side.collisions_at_intersections.to_string()),
     ("full stops", |side| side.full_stops.to_string()),
     ("  emergency stops", |side| side.emergency_stops.to_string()),
+    ("vehicles with a fault", |side| side.faults.to_string()),
     ("mean travel time, s", |side| number(side.mean_travel_time_s, 2)),
     ("longest travel time, s", |side| number(side.longest_travel_time_s, 1)),
     ("smallest gap on a road, m", |side| number(side.smallest_gap_m, 2)),
@@ -35,6 +36,7 @@ pub const LINES: &[Line] = &[
     ("changes of association", |side| side.association_changes.to_string()),
     ("order disagreements", |side| side.order_disagreements.to_string()),
     ("outside the bound, ticks", |side| side.bound_violations.to_string()),
+    ("  by a clock that is off", |side| side.bound_violations_by_clock.to_string()),
     ("limited by the envelope, %", |side| format!("{:.1}", 100.0 * side.limited_share)),
 ];
 

@@ -33,7 +33,8 @@ pub(super) fn safety(how: &str, side: &Side) -> Vec<String> {
     if side.served == 0 {
         failures.push(format!("nobody got through{how}, so nothing was measured"));
     }
-    if side.unserved > 0 {
+    // Where a radio is dead, A13 does not hold: a unit may wait for ever for a vehicle that it will not hear (P12).
+    if side.unserved > 0 && side.faults == 0 {
         failures.push(format!("{} vehicle(s) did not get through{how}", side.unserved));
     }
     if side.bound_violations > 0 {
@@ -151,6 +152,26 @@ mod tests {
             ]
         );
         assert_eq!(failing(|sides| sides.emergencies.full_stops = 5), [""; 0]);
+    }
+
+    #[test]
+    fn with_faults_everyone_has_to_be_safe_but_may_wait_for_a_radio_that_is_dead() {
+        let faulty = |spoil: fn(&mut Side)| {
+            failing(|sides| {
+                sides.emergencies.faults = 1;
+                spoil(&mut sides.emergencies);
+            })
+        };
+        assert_eq!(faulty(|side| (side.unserved, side.bound_violations_by_clock) = (2, 3)), [""; 0]);
+        assert_eq!(
+            faulty(|side| side.collisions_on_roads = 1),
+            ["collisions with emergencies: 1 on roads, 0 in conflict areas"]
+        );
+        assert_eq!(
+            faulty(|side| side.bound_violations = 1),
+            ["1 tick(s) with emergencies at which a target was outside its bound"]
+        );
+        assert_eq!(faulty(|side| side.served = 0), ["nobody got through with emergencies, so nothing was measured"]);
     }
 
     #[test]

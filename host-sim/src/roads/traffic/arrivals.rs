@@ -8,6 +8,7 @@ use holdover::wire::Predecessor;
 use holdover::wire::driver_request::DriverRequest;
 
 use super::emergencies::Emergency;
+use super::faults::Fault;
 use super::{Traffic, Traveller};
 use crate::input::kind::Difference;
 use crate::input::scenario::Accuracy;
@@ -51,6 +52,7 @@ impl Traffic<'_> {
                 let Some(called) = self.numbers.take(at_s, index) else { continue };
                 self.waiting[road].pop_front();
                 let traveller = self.appear(at_s, index, called)?;
+                self.remains.faults += u64::from(traveller.fault.is_some());
                 self.travellers.insert(index, traveller);
             }
         }
@@ -66,7 +68,8 @@ impl Traffic<'_> {
         let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
         let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
         let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
-        let is_unheard = last.dark.from_s <= at_s + HEARD_S && last.dark.to_s > at_s - LISTENING_S;
+        let is_dark = last.dark.from_s <= at_s + HEARD_S && last.dark.to_s > at_s - LISTENING_S;
+        let is_unheard = is_dark || last.is_mute(at_s + HEARD_S);
         if is_unheard && gap_m < UNHEARD_M {
             return false;
         }
@@ -115,6 +118,10 @@ impl Traffic<'_> {
             Vehicle::new(called, &config, plant, length_m, request, offset_us, sensors)
                 .map_err(|cause| refused(&cause))?,
         );
+        let fault = self.fault_of(at_s, index, lane, sees);
+        if let Some(Fault::TimeAheadBy(ahead_s)) = fault {
+            vehicle.mistake_time(ahead_s);
+        }
         vehicle.limit_slots(self.conditions.slots);
         vehicle.acknowledge(self.corridor.bus.actuator_state);
         let ground = Ground { road: lane.road, odometer_m };
@@ -141,7 +148,7 @@ impl Traffic<'_> {
         }
         let dark = trip.dark(at_s, &self.conditions.radio);
         let emergency = Emergency::of(&self.conditions.emergencies, self.seed, index, lane);
-        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees, emergency })
+        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees, emergency, fault })
     }
 }
 

@@ -71,8 +71,8 @@ impl Traffic<'_> {
     }
 
     /// Whether every vehicle on its way to the last intersection of a vehicle that has left could hear that vehicle for
-    /// long enough since.
-    fn is_heard_of(&self, at_s: f64, gone: &Traveller) -> bool {
+    /// long enough since. A radio that is dead is not waited for.
+    pub(super) fn is_heard_of(&self, at_s: f64, gone: &Traveller) -> bool {
         let Some(left_s) = gone.left_s else { return false };
         let last = self.network.lanes[self.trips[gone.trip].road].stops.last().map(|stop| stop.intersection);
         let minds = |other: &&Traveller| {
@@ -80,7 +80,9 @@ impl Traffic<'_> {
             !other.has_left() && stops.iter().any(|stop| Some(stop.intersection) == last)
         };
         let since = Window { from_s: left_s, to_s: at_s };
-        self.travellers.values().filter(minds).all(|other| heard_s(&since, &gone.dark, &other.dark) >= HEARD_OF_S)
+        let is_cut_off = |other: &Traveller| gone.is_mute(at_s) || other.is_deaf(at_s);
+        let has_heard = |other: &Traveller| heard_s(&since, &gone.dark, &other.dark) >= HEARD_OF_S;
+        self.travellers.values().filter(minds).all(|other| is_cut_off(other) || has_heard(other))
     }
 }
 

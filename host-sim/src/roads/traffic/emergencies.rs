@@ -89,7 +89,7 @@ mod tests {
         let experiment = Experiment::new(example::corridor());
         let lane = &experiment.network.lanes[0];
         let of = |share: f64| {
-            let emergencies = Emergencies { share, stands_s: 10.0 };
+            let emergencies = Emergencies { share, stands_s: 10.0, faults: 0.0 };
             (0..2_000).filter_map(|index| Emergency::of(&emergencies, 1, index, lane)).collect::<Vec<_>>()
         };
         let (few, all) = (of(0.05), of(1.0));
@@ -117,7 +117,7 @@ mod tests {
         let experiment = Experiment::new(example::corridor());
         let Experiment { corridor, network, itineraries } = &experiment;
         let trips = [example::trip(2)];
-        let emergencies = Emergencies { share: 1.0, stands_s: 10.0 };
+        let emergencies = Emergencies { share: 1.0, stands_s: 10.0, faults: 0.0 };
         let conditions = Conditions { emergencies, ..Conditions::of(corridor) };
         let mut speeds = Speeds::default();
         let traffic = Traffic::new(corridor, network, itineraries, &trips, conditions, 1);
