@@ -289,7 +289,7 @@ impl Stages for Traffic<'_> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone(at_s);
         }
-        self.run_out();
+        self.run_out(at_s);
         self.brake_in_emergencies(at_s);
         Ok(())
     }

@@ -21,11 +21,13 @@ impl Traffic<'_> {
     /// Drives by sight the vehicles that have left and have lost their target. The target vanishes without a message,
     /// and as far as the unit knows it may stand there. So each such unit would wait for it, and all vehicles behind
     /// would wait too, back onto the way. With the envelope, all vehicles that have left drive by sight, because the
-    /// envelope goes by the bound of the vehicle ahead.
-    pub(super) fn run_out(&mut self) {
+    /// envelope goes by the bound of the vehicle ahead. A vehicle whose receiver is dead does so from its last conflict
+    /// area on: it would wait there for a vehicle that it heard before.
+    pub(super) fn run_out(&mut self, at_s: f64) {
         let is_lost = |vehicle: &Vehicle| matches!(vehicle.unit.mode(), Mode::Fallback { .. });
         let by_sight = |traveller: &Traveller| {
-            traveller.has_left() && (self.conditions.envelope.engaged || is_lost(&traveller.vehicle))
+            let has_left = traveller.has_left() && (self.conditions.envelope.engaged || is_lost(&traveller.vehicle));
+            has_left || traveller.is_deaf(at_s) && self.has_crossed(traveller)
         };
         let all: Vec<usize> =
             self.travellers.values().filter(|one| by_sight(one)).map(|traveller| traveller.trip).collect();
@@ -38,6 +40,14 @@ impl Traffic<'_> {
             let wanted = alone::demand(own, &sightings, self.network, &self.corridor.traffic, true);
             traveller.vehicle.override_with(alone::published(wanted, self.trips[own.trip].kind));
         }
+    }
+
+    /// Whether its last conflict area is behind it.
+    fn has_crossed(&self, traveller: &Traveller) -> bool {
+        self.network.lanes[self.trips[traveller.trip].road].stops.last().is_none_or(|stop| {
+            let half_m = self.network.junctions[stop.intersection].half_m;
+            traveller.way_m() > stop.at_m + half_m + traveller.vehicle.length_m
+        })
     }
 
     /// Marks the vehicles that have reached the end of their way as having left. Removes them a little later.
