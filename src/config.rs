@@ -200,8 +200,8 @@ impl Config {
         range_sensor: false,
     };
 
-    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, no range sensor. `δt` is 50 ms, and the horizon of
-    /// 10.7 s is what a message can say: two silences of 4 s in a row, and more. With the two that interpolation needs these are 216 steps.
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, no range sensor. `δt` is 30 ms, and the horizon of
+    /// 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation needs these are 359 steps.
     #[must_use]
     pub const fn car(station: StationHash) -> Self {
         Self {
@@ -232,8 +232,8 @@ impl Config {
                 max_speed: Speed::from_mm_per_s(50_000),
             },
             prediction: Prediction {
-                step: Duration::from_millis(50),
-                horizon: Duration::from_millis(10_700),
+                step: Duration::from_millis(30),
+                horizon: Duration::from_millis(10_710),
                 model: Model::HOLDOVER,
             },
             link: Link {

@@ -52,8 +52,8 @@ fn a_horizon_that_is_too_short_or_beyond_the_capacity_is_refused() {
         config.prediction.horizon = Duration::from_micros(micros);
     });
     let config = Config::car(StationHash(1));
-    for (capacity, expected) in [(216, Ok(())), (215, Err(ConfigError::Horizon)), (0, Err(ConfigError::Horizon))] {
-        assert_eq!((config.steps(), config.check(capacity)), (216, expected));
+    for (capacity, expected) in [(359, Ok(())), (358, Err(ConfigError::Horizon)), (0, Err(ConfigError::Horizon))] {
+        assert_eq!((config.steps(), config.check(capacity)), (359, expected));
     }
 }
 

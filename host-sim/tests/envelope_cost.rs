@@ -57,6 +57,17 @@ fn each_silence_is_a_row_without_and_with_the_envelope() {
 }
 
 #[test]
+fn with_range_sensors_the_envelope_costs_nothing() {
+    for row in rows("--silences 1,2,4,8 --seeds 20") {
+        let [off, on] = ["off", "on"].map(|side| row[side]["travel_time_s"].as_f64().unwrap());
+        // As docs/RESULTS.md says, to half of the last digit.
+        assert!((off - 18.41).abs() <= 0.005 && (on - 18.41).abs() <= 0.005, "{off} s, {on} s");
+        assert!(row["on"]["limited_share"].as_f64().unwrap() <= 0.00045, "{row}");
+        assert_eq!([&row["off"]["full_stops"], &row["on"]["full_stops"]], [&Value::from(0); 2]);
+    }
+}
+
+#[test]
 fn the_figures_of_twenty_seeds_without_range_sensors_are_the_documented_ones() {
     // As docs/RESULTS.md shows them: silence; percent of the time limited; travel time without and with the envelope; full stops per
     // run; smallest gap without and with it.

@@ -39,7 +39,7 @@ fn without_a_command_it_is_run_with_the_same_options() {
 #[test]
 fn the_defaults_are_the_papers_scenario_and_a_report() {
     let run = options("").unwrap();
-    assert_eq!((run.scenario.seed, run.scenario.step_s, run.destination.json), (1, 0.05, false));
+    assert_eq!((run.scenario.seed, run.scenario.step_s, run.destination.json), (1, 0.03, false));
     assert_eq!(run.destination.report.as_deref(), Some(Path::new("holdover-report")));
     assert_eq!((run.scenario_file, run.trace, run.candump), (None, None, None));
 }

@@ -26,7 +26,7 @@ fn the_papers_scenario_is_what_an_empty_file_means() {
 #[test]
 fn the_papers_scenario_is_pinned() {
     let paper = parse("").unwrap();
-    assert_eq!((paper.seed, paper.duration_s, paper.period_s, paper.step_s), (1, 20.0, 0.01, 0.05));
+    assert_eq!((paper.seed, paper.duration_s, paper.period_s, paper.step_s), (1, 20.0, 0.01, 0.03));
     assert_eq!((paper.message_rate_hz, paper.leader.target_speed_mps, paper.ego), (10.0, 11.0, 2));
     assert_eq!((paper.vehicles.len(), &paper.leader.motion), (5, &None));
     for (index, vehicle) in paper.vehicles.iter().enumerate() {

@@ -40,7 +40,7 @@ fn every_silence_is_compared_every_10_ms() {
 fn every_method_is_as_good_as_documented_in_fifty_silences_of_each_motion() {
     // Root of the mean square and largest magnitude of the position error in metres, as documented, in the order of the motions.
     const DOCUMENTED: [(&str, [[f64; 2]; 5]); 8] = [
-        ("holdover", [[0.003, 0.011], [0.003, 0.009], [6.72, 20.1], [3.78, 14.4], [12.4, 34.2]]),
+        ("holdover", [[0.004, 0.011], [0.003, 0.010], [6.72, 20.1], [3.78, 14.4], [12.4, 34.2]]),
         ("freeze", [[22.1, 50.2], [27.8, 58.4], [32.4, 57.8], [29.4, 52.3], [21.5, 34.2]]),
         ("constant_speed", [[2.21, 6.26], [1.27, 5.71], [5.59, 13.6], [3.78, 14.4], [12.4, 34.2]]),
         ("constant_acceleration", [[0.157, 0.639], [0.985, 8.61], [9.54, 32.6], [3.78, 14.4], [12.4, 34.2]]),

@@ -114,7 +114,7 @@ mod tests {
     fn whatever_a_file_may_say_the_units_take() {
         let extremes: [(&str, &[&str]); 13] = [
             ("period_s = 0.01 ", &["period_s = 0.001", "period_s = 0.1"]),
-            ("step_s = 0.05 ", &["step_s = 0.001", "step_s = 1"]),
+            ("step_s = 0.03 ", &["step_s = 0.001", "step_s = 1"]),
             ("horizon_s = 10.7", &["horizon_s = 0.5"]),
             ("message_rate_hz = 10.0", &["message_rate_hz = 1", "message_rate_hz = 100"]),
             ("target_speed_mps = 11.0", &["target_speed_mps = 1", "target_speed_mps = 50"]),
@@ -139,7 +139,7 @@ mod tests {
             }
         }
         // A coarse step and a short horizon at once.
-        let text = text.replacen("step_s = 0.05 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
+        let text = text.replacen("step_s = 0.03 ", "step_s = 1 ", 1).replacen("horizon_s = 10.7", "horizon_s = 0.5", 1);
         let corridor = example::of(&text);
         assert_eq!(config(&corridor, &Conditions::of(&corridor), FIRST, Kind::Car).check(STEPS), Ok(()));
     }

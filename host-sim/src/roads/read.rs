@@ -15,7 +15,7 @@ use crate::sim::modem::{ECU_PEERS, PEERS};
 
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 10.0..=86_400.0, default: 600.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
-const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.05 };
+const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.03 };
 const HORIZON: Number = Number { key: "horizon_s", unit: "seconds", limits: 0.5..=10.7, default: 10.7 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 1.0..=100.0, default: 10.0 };
 const EGO_AFTER: Number = Number { key: "ego_after_s", unit: "seconds", limits: 0.0..=86_400.0, default: 60.0 };

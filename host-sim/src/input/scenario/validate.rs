@@ -17,7 +17,7 @@ use toml::de::DeValue;
 const PROGRAM: Number = Number { key: "program", unit: "seconds and m/s", limits: 0.0..=86_400.0, default: 0.0 };
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 2.0..=86_400.0, default: 20.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
-const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.05 };
+const STEP: Number = Number { key: "step_s", unit: "seconds", limits: 0.001..=1.0, default: 0.03 };
 const RATE: Number = Number { key: "message_rate_hz", unit: "Hz", limits: 0.1..=1000.0, default: 10.0 };
 const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 0.0..=65.534, default: 11.0 };
 const POSITION: Number = Number { key: "position_m", unit: "metres", limits: -1e6..=1e6, default: 0.0 };

@@ -121,10 +121,10 @@ impl<const PEERS: usize> Bench<'_, PEERS> {
 /// All measurements with so many peers.
 #[inline(never)]
 fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, counter: &Counter) {
-    // A horizon of 216 steps is that of `Config::car`; the others have a step of 10 ms.
-    for steps in [50, 100, 216, 400] {
+    // A horizon of 359 steps is that of `Config::car`; the others have a step of 10 ms.
+    for steps in [50, 100, 359, 400] {
         let mut config = Config::car(EGO);
-        if steps != 216 {
+        if steps != 359 {
             config.prediction.step = Duration::from_millis(10);
             config.prediction.horizon = config.prediction.step.times(steps - 2);
         }
@@ -159,7 +159,7 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
     for (steps, size) in [
         (50, size_of::<OnboardUnit<PEERS, 8, 50>>()),
         (100, size_of::<OnboardUnit<PEERS, 8, 100>>()),
-        (216, size_of::<OnboardUnit<PEERS, 8, 216>>()),
+        (359, size_of::<OnboardUnit<PEERS, 8, 359>>()),
         (400, size_of::<OnboardUnit<PEERS, 8, 400>>()),
     ] {
         say(format_args!("unit {} {} {}", PEERS, steps, size));
