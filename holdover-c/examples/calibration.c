@@ -1,11 +1,12 @@
 /*
  * The configuration in a section of its own, which the linker script puts where a calibration tool can change it without
- * touching the program. It is that of holdover_default_config but for the station, the holdover and the envelope.
+ * touching the program. It is that of holdover_default_config but for the station and the holdover.
  */
 #include "calibration.h"
 
 __attribute__((section(".calibration"))) const volatile holdover_config_t calibration = {
     .station = 2,
+    .station_id = 2,
     .base_id = 0x480,
     .period_us = 10000,
     .length_mm = 4800,
@@ -36,8 +37,8 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .max_speed_mm_s = 50000,
     },
     .prediction = {
-        .step_us = 10000,
-        .horizon_us = 3900000,
+        .step_us = 30000,
+        .horizon_us = 10710000,
         .model = {
             .lag = 1,
             .limits = 1,
