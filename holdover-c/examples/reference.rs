@@ -8,12 +8,11 @@ use drive::Heard;
 use holdover::health::Cause;
 use holdover::time::Instant;
 use holdover::wire::StationHash;
-use holdover::{Config, OnboardUnit, config::Envelope, time::Duration};
+use holdover::{Config, OnboardUnit, time::Duration};
 
 fn main() {
     let mut config = Config::car(StationHash(2));
     config.link.holdover = Duration::from_millis(1000);
-    config.envelope = Some(Envelope::CAR);
     let mut unit = OnboardUnit::<8, 8, 400>::new(&config).unwrap();
 
     let rows = drive::parse(include_str!("drive.inc"));
