@@ -137,7 +137,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// What is wrong with the map; nothing is changed then.
     pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
-        self.scene.coordination.set_out(itinerary)
+        self.scene.coordination.set_out(itinerary)?;
+        self.scene.passes = const { scene::passes::Passes::NONE };
+        self.gate.begin();
+        Ok(())
     }
 
     /// A configuration that was checked has a period.
@@ -214,6 +217,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.
     fn review(&mut self, now: Instant, last: Last) -> Option<usize> {
         coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
+        self.scene.passes.turn_to(self.scene.coordination.next());
         self.scene.note_others(now);
         let target = self.scene.target();
         self.scene.note_named(target);

@@ -160,7 +160,8 @@ fn a_horizon_that_ends_is_kept_from_its_sample_on_and_never_extended() {
 
 #[test]
 fn a_follower_whose_predecessor_was_never_heard_fades() {
-    let config = Config::car(StationHash(9));
+    let mut config = Config::car(StationHash(9));
+    config.prediction.step = Duration::from_millis(10); // all times below are steps
     let mut estimator = Estimator::<2, STEPS>::idle();
     estimator.start(&config.prediction, STEPS, config.station, config.length);
     estimator.start_grid(GRID.origin);

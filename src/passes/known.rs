@@ -1,7 +1,7 @@
 //! The vehicles that are known to come to the next intersection by ways that cross the ego's. What was heard of them enters, and what is
 //! known of their claims leaves. A vehicle stays in this list without a slot, and whether it is heard or not, until it says that it has
-//! left, or for so long that it is [forgotten](super::Rules::is_forgotten). After that, its claims do not count any more, but as long as
-//! there is room it stays on record as one that keeps passes.
+//! left, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left stays on
+//! record as one that keeps passes, as long as there is room, until it is forgotten.
 
 use super::{Claim, Known, PIECES, Rules};
 use crate::coordination::Arrival;
@@ -26,7 +26,7 @@ pub struct Station {
     pub arrival: Arrival,
     claims: [Claim; PIECES],
     count: u8,
-    /// It has left, or is forgotten.
+    /// It has left.
     is_gone: bool,
 }
 
@@ -82,7 +82,7 @@ impl List {
         self.on_record().filter(|station| !station.is_gone)
     }
 
-    /// These, and vehicles that have left or are forgotten.
+    /// These, and vehicles that have left.
     pub fn on_record(&self) -> impl Iterator<Item = &Station> + Clone {
         self.stations.iter().filter_map(Held::as_ref)
     }
@@ -129,8 +129,8 @@ impl List {
             rules.is_forgotten(now, station.heard, exit)
         };
         for held in self.stations.iter_mut() {
-            if let Some(station) = held.get().filter(|station| !station.is_gone && is_forgotten(station)) {
-                held.set(Station { is_gone: true, ..station });
+            if held.as_ref().is_some_and(is_forgotten) {
+                held.clear();
             }
         }
         if self.missed.get().is_some_and(|missed| rules.is_forgotten(now, missed, None)) {

@@ -13,6 +13,9 @@ use crate::time::{Duration, GnssTime};
 /// Time beyond what is wanted that a vehicle does not give back, so that a claim does not follow every change of what is foreseen.
 const KEPT: Duration = Duration::from_millis(400);
 
+/// A vehicle that has said nothing for so long is not on air any more. It speaks every 200 ms.
+const SILENT: Duration = Duration::from_millis(500);
+
 /// When a vehicle foresees to be in the conflict area.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outlook {
@@ -99,6 +102,10 @@ impl Own {
             self.pieces = [Held::Nothing; PIECES];
             return;
         };
+        // Others may have come on air since, and have not heard what was claimed.
+        if !outlook.is_committed && self.said.get().is_some_and(|said| now > said.plus(SILENT)) {
+            self.begin();
+        }
         if !outlook.is_committed {
             self.give_way(rules, known.clone());
         }
@@ -235,7 +242,8 @@ impl Own {
     }
 
     /// Adds a window. Where there is no place for it, the two that are there become one, if that is firm: it counts from when the later of
-    /// them did, and all messages since have said as much. Otherwise the later one becomes part of the new one.
+    /// them did, and all messages since have said as much. Otherwise the later one becomes part of the new one, unless it is firm: then it
+    /// may be in use, and keeps its time.
     fn add(&mut self, claim: Claim, is_firm: impl Fn(&Claim) -> bool) {
         let [Held::Value(one), Held::Value(other)] = self.pieces else {
             if let Some(free) = self.pieces.iter_mut().find(|piece| piece.as_ref().is_none()) {
@@ -245,8 +253,10 @@ impl Own {
         };
         let (first, second) = if one.at <= other.at { (one, other) } else { (other, one) };
         let joined = joined(&first.window, &second.window).map(|window| Claim { window, ..second });
-        self.pieces = if let Some(joined) = joined.filter(is_firm) {
+        self.pieces = if let Some(joined) = joined.filter(&is_firm) {
             [Held::Value(joined), Held::Value(claim)]
+        } else if is_firm(&second) {
+            self.pieces
         } else {
             let window = joined_or(&second.window, &claim.window);
             [Held::Value(first), Held::Value(Claim { window, ..claim })]

@@ -22,6 +22,8 @@ pub(super) struct Gate {
     is_covered: bool,
     /// Whether it cannot stop before the area any more, and was covered then, or is in the area.
     is_committed: bool,
+    /// The index of that area's intersection on the ego's way.
+    crossing: usize,
 }
 
 /// The demand of the last tick, and its age. The age is longer than a period where ticks were missed.
@@ -34,12 +36,17 @@ pub(super) struct Last {
 impl Gate {
     /// Nothing is known of the ego: all zero.
     pub const fn new() -> Self {
-        Self { reckoning: Held::Nothing, is_covered: false, is_committed: false }
+        Self { reckoning: Held::Nothing, is_covered: false, is_committed: false, crossing: 0 }
     }
 
     /// Forgets the ego: nothing is known of commands that are not the unit's.
     pub fn forget(&mut self) {
         self.reckoning.clear();
+        self.begin();
+    }
+
+    /// Another way begins, for which no pass was used.
+    pub fn begin(&mut self) {
         (self.is_covered, self.is_committed) = (false, false);
     }
 
@@ -81,6 +88,10 @@ impl Gate {
         let wanted = demand;
         let demand = entrance.demand(scene, &range, demand);
         let view = Rearmost { scene, now, rearmost, entrance };
+        // At the limit of the braking the ego may be unable to stop for a tick. It does not go in for that, past what it stops for.
+        if view.entrance.can_stop && view.is_held() {
+            self.is_covered = false;
+        }
         let heard = match scene.coordination.itinerary() {
             None => scene.named_ahead(now).map(spare),
             // The driver may name a vehicle that the order does not know of.
@@ -109,8 +120,12 @@ impl Gate {
     ) -> Entrance {
         let Some(area) = Area::next(scene).filter(|_| scene.keeps_passes()) else {
             (self.is_covered, self.is_committed) = (false, false);
-            return Entrance { area: None, is_open: true, is_committed: false, opens_in: Duration::ZERO };
+            return Entrance::NONE;
         };
+        if self.crossing != scene.coordination.next() {
+            self.crossing = scene.coordination.next();
+            self.is_covered = false;
+        }
         let line = Obstacle::standing(area.begins);
         let is_before = range.rearmost <= area.begins;
         let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
@@ -121,7 +136,7 @@ impl Gate {
         let is_open = self.is_covered || !is_before;
         self.is_committed = is_open && !can_stop;
         let opens_in = pass::soonest(scene, &area, range);
-        Entrance { area: Some(area), is_open, is_committed: self.is_committed, opens_in }
+        Entrance { area: Some(area), is_open, is_committed: self.is_committed, can_stop, opens_in }
     }
 }
 
@@ -130,11 +145,17 @@ struct Entrance {
     area: Option<Area>,
     is_open: bool,
     is_committed: bool,
+    /// Whether it can stop before it.
+    can_stop: bool,
     /// The ego cannot be there sooner than this.
     opens_in: Duration,
 }
 
 impl Entrance {
+    /// No area comes.
+    const NONE: Self =
+        Self { area: None, is_open: true, is_committed: false, can_stop: false, opens_in: Duration::ZERO };
+
     fn demand<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         &self,
         scene: &Scene<PEERS, SAMPLES, STEPS>,
@@ -179,9 +200,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// the area all the same. The ego also stops before an area at which it has not arrived because it does not know the time: no vehicle
     /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
-        let seen = self.scene.ranging.crossing(self.now).filter(|_| !self.scene.is_crossing_heard(self.now));
         let others = (0..PEERS).filter_map(|index| self.stop_for(index));
-        others.chain(self.entrance.line(seen)).chain(self.stop_without_time()).chain(self.stop_before_later()).min()
+        others
+            .chain(self.entrance.line(self.seen()))
+            .chain(self.stop_without_time())
+            .chain(self.stop_before_later())
+            .min()
+    }
+
+    /// Where the range sensor sees a vehicle in the area that is not known by what it says.
+    fn seen(&self) -> Option<Position> {
+        self.scene.ranging.crossing(self.now).filter(|_| !self.scene.is_crossing_heard(self.now))
+    }
+
+    /// Whether the ego has to stop before the area although it has a pass.
+    fn is_held(&self) -> bool {
+        self.seen().is_some() || (0..PEERS).any(|index| self.stop_for(index).is_some())
     }
 
     /// Where the ego stops for a peer whose way crosses its own. A peer that keeps passes is out of the area when the ego's pass begins.

@@ -26,18 +26,28 @@ static EAST: [Segment; 1] = [Segment {
     across: Scale { north: -CM, east: 0 },
     heading: 7_200,
 }];
+static WEST: [Segment; 1] = [Segment {
+    latitude: 20_000,
+    longitude: 20_000,
+    along: Scale { north: 0, east: -CM },
+    across: Scale { north: CM, east: 0 },
+    heading: 21_600,
+    ..EAST[0]
+}];
+static WESTWARD: Path = Path { segments: &WEST };
 static FAR_EAST: [Segment; 1] =
     [Segment { latitude: 39_000, longitude: -40_000, length: Distance::from_mm(700_000), ..EAST[0] }];
 pub static NORTHWARD: Path = Path { segments: &NORTH };
-static EASTWARD: Path = Path { segments: &EAST };
+pub static EASTWARD: Path = Path { segments: &EAST };
 static FAR_EASTWARD: Path = Path { segments: &FAR_EAST };
 
 static FIRST: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b10 },
+        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b110 },
         Approach { leg: 1, path: &EASTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
+        Approach { leg: 2, path: &WESTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
     ],
 };
 static SECOND: Intersection = Intersection {
@@ -48,7 +58,7 @@ static SECOND: Intersection = Intersection {
         Approach { leg: 1, path: &FAR_EASTWARD, crossing: Position::from_mm(400_000), conflicts: 0b01 },
     ],
 };
-pub static WAYS: [Itinerary; 3] = [
+pub static WAYS: [Itinerary; 4] = [
     Itinerary {
         path: &NORTHWARD,
         crossings: &[
@@ -64,12 +74,24 @@ pub static WAYS: [Itinerary; 3] = [
         path: &FAR_EASTWARD,
         crossings: &[Crossing { intersection: &SECOND, leg: 1, at: Position::from_mm(400_000) }],
     },
+    Itinerary {
+        path: &WESTWARD,
+        crossings: &[Crossing { intersection: &FIRST, leg: 2, at: Position::from_mm(200_000) }],
+    },
 ];
 
 /// Where both streets cross, along each.
 pub const CROSSING: f64 = 200.0;
 /// Half of the conflict area.
 pub const HALF: f64 = 4.0;
+
+/// How wide vehicles are.
+pub const WIDTH: f64 = 1.8;
+
+/// Whether a body is where the streets cross.
+pub fn is_on_point(body: &plant::Plant) -> bool {
+    body.position > CROSSING - WIDTH / 2.0 && body.position - LENGTH < CROSSING + WIDTH / 2.0
+}
 
 /// A vehicle with its unit.
 pub struct Driver {
@@ -87,6 +109,16 @@ pub struct Driver {
     pub says_route: bool,
     /// Whether its range sensor sees the nearest vehicle ahead on its street.
     pub sees: bool,
+    /// Whether its range sensor also sees vehicles of the other street that stand or drive across its way at the first crossing.
+    pub sees_across: bool,
+    /// Whether its own motion is measured.
+    pub is_measured: bool,
+    /// The published accuracy of its position.
+    pub accuracy: f64,
+    /// What its driver commands instead of the unit.
+    pub by_hand: Option<f64>,
+    /// How much later than true its position is measured to be.
+    pub off: f64,
     /// Whether it is told the time.
     pub is_timed: bool,
     /// Whether its driver's request comes.
@@ -120,6 +152,11 @@ impl Driver {
             hears: true,
             says_route: true,
             sees: false,
+            sees_across: false,
+            is_measured: true,
+            accuracy: 0.05,
+            by_hand: None,
+            off: 0.0,
             is_timed: true,
             asks: true,
             last: None,
@@ -133,6 +170,7 @@ impl Driver {
         match self.way {
             0 => GeoPosition { tag, latitude: cm, longitude: 0, heading: 0, stamp },
             1 => eastward(20_000, -20_000),
+            3 => GeoPosition { tag, latitude: 20_000, longitude: 20_000 - cm, heading: 21_600, stamp },
             _ => eastward(39_000, -40_000),
         }
     }
@@ -205,9 +243,12 @@ impl Junction {
             let plant::Plant { position, speed, acceleration, .. } = driver.body;
             let demand = driver.command();
             let station = driver.rig.unit.config().station;
-            let at = position + driver.axis;
-            let motion = driver.rig.motion(station, now, at, speed, acceleration, demand, Some((0.05, 0.02)));
-            let _ = driver.rig.put(now, &Message::Ego(Said::Motion(motion)));
+            let at = position + driver.axis + driver.off;
+            let motion =
+                driver.rig.motion(station, now, at, speed, acceleration, demand, Some((driver.accuracy, 0.02)));
+            if driver.is_measured {
+                let _ = driver.rig.put(now, &Message::Ego(Said::Motion(motion)));
+            }
             if now % 100_000 == 0 {
                 let geo = driver.geo(now);
                 let _ = driver.rig.put(now, &Message::Ego(Said::Geo(geo)));
@@ -223,6 +264,17 @@ impl Junction {
             }
             if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);
+            }
+            if driver.sees_across && now % 20_000 == 0 {
+                let own = driver.body;
+                let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > own.position);
+                let ahead = ahead.map(|(_, body)| (body.position - LENGTH, body.speed));
+                let across = places.iter().filter(|(way, body)| (*way == 0) != (driver.way == 0) && is_on_point(body));
+                let across = across.map(|_| (CROSSING - WIDTH / 2.0, 0.0));
+                let seen = ahead.chain(across).filter(|(rear, _)| *rear >= own.position);
+                if let Some((rear, speed)) = seen.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                    let _ = driver.rig.range(now, rear - own.position, speed - own.speed, 0);
+                }
             }
             let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > driver.body.position);
             if driver.sees
@@ -246,7 +298,7 @@ impl Junction {
                 }
             }
             driver.last = Some(heard);
-            let command = driver.command();
+            let command = driver.by_hand.unwrap_or_else(|| driver.command());
             driver.body.drive(command, PERIOD as f64 * 1e-6);
         }
         for (from, pass) in passes {

@@ -39,9 +39,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         is_inside && self.near_rear(index, then).is_none_or(|(rear, _)| rear < ends)
     }
 
-    /// Whether a peer that was heard just now explains that a vehicle is seen in the next conflict area.
+    /// Whether a peer that was heard just now explains that a vehicle is seen in the next conflict area: it is in there for certain. One
+    /// that may be waiting at its line does not.
     pub fn is_crossing_heard(&self, now: Instant) -> bool {
-        (0..PEERS).any(|index| self.was_heard(index, now) && self.may_be_in_area(index, now))
+        let is_inside = |index| {
+            let ends = self.area_begins().zip(self.bound(index, now));
+            ends.is_some_and(|(begins, bound)| bound.lowest_position() >= begins)
+        };
+        (0..PEERS).any(|index| self.was_heard(index, now) && is_inside(index) && self.may_be_in_area(index, now))
     }
 
     fn was_heard(&self, index: usize, now: Instant) -> bool {

@@ -101,7 +101,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.passes.known.iter().map(Station::known)
     }
 
-    /// Whether the vehicle in a slot keeps passes at the next intersection, by what was heard of it at any time.
+    /// Whether the vehicle in a slot keeps passes at the next intersection. One that is forgotten is not trusted any more: the ego's claims
+    /// do not wait for it, nor do its claims for the ego.
     pub fn has_pass(&self, index: usize) -> bool {
         let Some((station, approach)) =
             self.peers.get(index).and_then(|track| track.station()).zip(self.coordination.approach(index))

@@ -34,8 +34,8 @@ const STANDING: Duration = Duration::from_millis(10_000);
 /// A vehicle that may be slower than this stands or crawls. At the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
-/// A vehicle that was seen to cross may still be there for this long, which is longer than views are missing one by one.
-const CROSSING: Duration = Duration::from_millis(300);
+/// A vehicle that was seen to cross may still be there for this long, which is longer than a dropout of half a second.
+const CROSSING: Duration = Duration::from_millis(600);
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
 

@@ -1,0 +1,70 @@
+//! A vehicle makes an emergency stop in the conflict area, and its radio dies. The ego has a pass for later, and its range sensor sees the
+//! vehicle: it does not go in.
+
+#[allow(dead_code)] // shared with the tests of the order
+mod rig;
+
+use holdover::Config;
+use rig::config;
+use rig::junction::{CROSSING, Driver, Junction, is_on_point};
+
+fn sees(station: u8, way: usize, at: f64, speed: f64) -> Driver {
+    let mut driver = Driver::of(Config { range_sensor: true, ..config() }, station, way, at, speed, true);
+    driver.sees_across = true;
+    driver
+}
+
+/// Stops the second vehicle on the crossing point, and silences it.
+fn strand(junction: &mut Junction) {
+    let stranded = &mut junction.drivers[1];
+    if stranded.body.position > CROSSING - 1.0 {
+        (stranded.speaks, stranded.hears) = (false, false);
+    }
+    if !stranded.speaks {
+        let is_at_rest = stranded.body.speed <= 0.1 || stranded.body.position > CROSSING + 2.0;
+        (stranded.body.speed, stranded.body.acceleration) =
+            if is_at_rest { (0.0, 0.0) } else { (stranded.body.speed, -8.0) };
+    }
+}
+
+#[test]
+fn one_that_waits_at_its_line_and_is_heard_does_not_explain_a_view_of_another_one_in_the_area() {
+    let mut waits = sees(4, 3, 195.0, 0.0);
+    waits.accuracy = 0.5;
+    let mut junction = Junction::new(vec![sees(3, 0, 30.0, 10.0), sees(2, 1, 60.0, 10.0), waits]);
+    junction.run(40.0, |junction| {
+        strand(junction);
+        let [ego, stranded, _] = &junction.drivers[..] else { panic!("three") };
+        assert!(!(is_on_point(&ego.body) && is_on_point(&stranded.body)), "{:.2} s", junction.now as f64 * 1e-6);
+    });
+}
+
+/// Whether both were in the area, when the sensor drops out for half a second from then on and the ego's position is noisy.
+fn meets(dropout: i64, noise: f64, speed: f64) -> bool {
+    let mut ego = sees(3, 0, 30.0, speed);
+    ego.body.position = (CROSSING - 17.0 * speed).max(-280.0);
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    let (mut both, mut seed) = (false, 12_345_u64 ^ dropout.unsigned_abs());
+    junction.run(40.0, |junction| {
+        strand(junction);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let now = junction.now;
+        let ego = &mut junction.drivers[0];
+        ego.off = noise * (((seed >> 33) % 2001) as f64 / 1000.0 - 1.0);
+        ego.accuracy = 0.05_f64.max(noise / 2.0);
+        ego.sees_across = !(dropout..dropout + 500_000).contains(&now);
+        both |= junction.drivers.iter().all(Driver::is_inside);
+    });
+    both
+}
+
+#[test]
+fn the_ego_does_not_commit_itself_past_one_that_it_sees_in_the_area_not_even_in_a_dropout() {
+    for speed in [8.0, 10.0, 13.0] {
+        for noise in [0.0, 0.3] {
+            for dropout in (14_200_000..20_200_000).step_by(300_000) {
+                assert!(!meets(dropout, noise, speed), "{speed} m/s, {noise} m, {dropout} µs");
+            }
+        }
+    }
+}
