@@ -93,8 +93,7 @@ fn one_that_crosses_and_is_heard_neither_contradicts_the_one_ahead_nor_is_rememb
     let (without, _) = behind_one_that_crosses(false);
     let (with, disagreed) = behind_one_that_crosses(true);
     // When it has crossed, nobody is in the sensor's range, so no view shows that it has gone.
-    // A vehicle that was seen in the area is minded for 0.6 s, and until the next view and tick.
-    assert!(with < without + 0.63, "{with} {without}");
+    assert!(with < without + 0.3, "{with} {without}");
     assert_eq!(disagreed, 0);
 }
 

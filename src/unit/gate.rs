@@ -208,9 +208,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
             .min()
     }
 
-    /// Where the range sensor sees a vehicle in the area that is not known by what it says.
+    /// Where the range sensor has just seen a vehicle in the area that is not one that was heard in there.
     fn seen(&self) -> Option<Position> {
-        self.scene.ranging.crossing(self.now).filter(|_| !self.scene.is_crossing_heard(self.now))
+        self.scene.ranging.crossing(self.now)
     }
 
     /// Whether the ego has to stop before the area although it has a pass.

@@ -62,7 +62,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.raise(index, &sight);
         }
         if self.is_of_one_that_crosses(at, front, rear) {
-            self.ranging.see_crossing(sight);
+            if !self.is_crossing_heard(at) {
+                self.ranging.see_crossing(sight);
+            }
             return Ok(());
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {

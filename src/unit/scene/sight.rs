@@ -34,8 +34,8 @@ const STANDING: Duration = Duration::from_millis(10_000);
 /// A vehicle that may be slower than this stands or crawls. At the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
-/// A vehicle that was seen to cross may still be there for this long, which is longer than a dropout of half a second.
-const CROSSING: Duration = Duration::from_millis(600);
+/// A vehicle that was seen to cross may still be there for this long, which is longer than views are missing one by one.
+const CROSSING: Duration = Duration::from_millis(300);
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
 
@@ -166,8 +166,8 @@ impl Ranging {
         self.newest.set(sight);
     }
 
-    /// Takes in a view of a vehicle that crosses the ego's way in the next conflict area. It is not remembered like others: it drives out
-    /// of the way.
+    /// Takes in a view of a vehicle that crosses the ego's way in the next conflict area, and is not one that was heard in there. It is not
+    /// remembered like others: it drives out of the way.
     pub(in crate::unit) fn see_crossing(&mut self, sight: Sight) {
         self.crossing.set(sight);
     }
