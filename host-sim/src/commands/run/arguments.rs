@@ -65,7 +65,14 @@ pub struct RunSettings {
     /// Whether the envelope is engaged, instead of what the scenario says. It is the last stage of every unit: stay able to
     /// stop behind the bound of the vehicle ahead. A corridor is always run without and with it; with this option its
     /// excerpts and figures are those with it
-    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on")]
+    #[arg(
+        long,
+        value_name = "on|off",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "on",
+        hide_possible_values = true
+    )]
     pub envelope: Option<Switch>,
 
     /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says

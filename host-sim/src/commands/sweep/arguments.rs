@@ -33,7 +33,15 @@ pub struct SweepArguments {
     pub seed: Option<u64>,
 
     /// Whether the envelope is engaged. Nobody can foresee the commands that it changes
-    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", default_value = "off")]
+    #[arg(
+        long,
+        value_name = "on|off",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "on",
+        default_value = "off",
+        hide_possible_values = true
+    )]
     pub envelope: Switch,
 
     /// Whether every vehicle that follows another has a range sensor
