@@ -1,7 +1,6 @@
 //! Passes on the way: two vehicles cross, and the one that goes first falls silent before the crossing. It keeps its pass, so nobody who
 //! sees the area has to wait for it.
 
-#[allow(dead_code)] // shared with the tests of the order
 mod rig;
 
 use rig::config;

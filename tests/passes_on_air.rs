@@ -1,7 +1,6 @@
 //! When a unit is on air: who was silent, who was given another way and who comes to another intersection uses nothing before all can have
 //! heard its claims. In an outage of the radio for everybody nobody takes anybody for gone.
 
-#[allow(dead_code)] // shared with the tests of the order
 mod rig;
 
 use holdover::Config;

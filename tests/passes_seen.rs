@@ -1,7 +1,6 @@
 //! A vehicle makes an emergency stop in the conflict area, and its radio dies. The ego has a pass for later, and its range sensor sees the
 //! vehicle: it does not go in.
 
-#[allow(dead_code)] // shared with the tests of the order
 mod rig;
 
 use holdover::Config;
