@@ -60,6 +60,7 @@ fn run(seed: u64) -> u64 {
                 distance_accuracy: metres(near),
                 speed_accuracy: mps(slow),
                 age: Duration::from_millis(age),
+                nobody: false,
             };
             let _ = road.rig.put(now, &Message::Range(sample));
         }
@@ -119,6 +120,7 @@ fn view(distance: f64, difference: f64, age_ms: i64) -> Message {
         distance_accuracy: metres(0.0),
         speed_accuracy: mps(0.0),
         age: Duration::from_millis(age_ms),
+        nobody: false,
     })
 }
 

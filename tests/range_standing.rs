@@ -39,6 +39,7 @@ impl World {
             distance_accuracy: metres(accuracy),
             speed_accuracy: mps(0.1),
             age: Duration::ZERO,
+            nobody: false,
         };
         assert!(view.distance >= Distance::ZERO);
         let _ = self.rig.put(self.now, &Message::Range(view));

@@ -127,6 +127,7 @@ fn every_message_has_these_bytes() {
         distance_accuracy: m(250),
         speed_accuracy: v(300),
         age: Duration::from_millis(17),
+        nobody: true,
     };
     let command = |effort| {
         Message::Command(Command {

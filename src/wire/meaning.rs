@@ -51,11 +51,12 @@ macro_rules! meaning {
     (engaged) => { "Whether the unit shall drive. Send 0 as soon as the driver takes over. 300 ms without a DriverRequest and the unit hands back (Detail request lost)." };
     (request_target_speed) => { "Set speed: a cap. The unit exceeds it only by the share that is configured to catch up, 0 by default." };
     (request_time_gap) => { "Time gap to keep to the rear bumper ahead, beside the configured distance at standstill. Less than 0.1 s is reserved: 0 is refused. So is more than 3.995 s but for the code." };
-    (range_distance) => { "Own front bumper to the rear bumper of the nearest vehicle on the own path." };
+    (range_distance) => { "Own front bumper to the rear bumper of the nearest vehicle on the own path; with Nobody, as far as the sensor sees that none is there." };
     (speed_difference) => { "Speed of that vehicle less the own speed: negative where the own vehicle closes in." };
     (distance_accuracy) => { "95 % of the errors of Distance are below this. Do not send a view that is worse than can be said." };
     (range_speed_accuracy) => { "95 % of the errors of SpeedDifference are below this. Do not send a view that is worse than can be said." };
     (range_age) => { "How old the measurement was when the frame was handed to the CAN controller, rounded up. Do not send a measurement older than 63 ms. The frame has to have ended on the bus 3 ms after that." };
+    (range_nobody) => { "Whether no vehicle is nearer than Distance on the own path, the next conflict area included. Send it only for an instant since which several views have shown none, and not while the sensor may be blind." };
     (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
     (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to the crossing point of that leg at Intersection, which is the next one on the own way: any other is ignored. Negative beyond the crossing point." };
     (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };
@@ -162,6 +163,7 @@ fn field(content: Content, name: &str) -> &'static str {
             "DistanceAccuracy" => meaning!(distance_accuracy),
             "SpeedAccuracy" => meaning!(range_speed_accuracy),
             "Age" => meaning!(range_age),
+            "Nobody" => meaning!(range_nobody),
             _ => "",
         },
         Content::Unserved => match name {

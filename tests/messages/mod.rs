@@ -135,8 +135,9 @@ prop_compose! {
     pub fn range_sample()(
         distance in steps(0..=262_143, 1000), speed_difference in steps(-32_767..=32_767, 500),
         distance_accuracy in steps(0..=31, 20), speed_accuracy in steps(0..=15, 10), age in 0i64..64,
+        nobody: bool,
     ) -> RangeSample {
-        RangeSample { distance, speed_difference, distance_accuracy, speed_accuracy, age: Duration::from_millis(age) }
+        RangeSample { distance, speed_difference, distance_accuracy, speed_accuracy, age: Duration::from_millis(age), nobody }
     }
 }
 

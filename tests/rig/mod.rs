@@ -172,6 +172,20 @@ impl Rig {
             distance_accuracy: metres(0.2),
             speed_accuracy: mps(0.2),
             age: holdover::time::Duration::from_millis(age_ms),
+            nobody: false,
+        };
+        self.put(at, &Message::Range(sample))
+    }
+
+    /// The range sensor sees that no vehicle is nearer than that.
+    pub fn nobody(&mut self, at: i64, distance: f64, age_ms: i64) -> Result<(), Cause> {
+        let sample = RangeSample {
+            distance: metres(distance),
+            speed_difference: mps(0.0),
+            distance_accuracy: metres(0.2),
+            speed_accuracy: mps(0.2),
+            age: holdover::time::Duration::from_millis(age_ms),
+            nobody: true,
         };
         self.put(at, &Message::Range(sample))
     }

@@ -3,6 +3,8 @@
 
 pub mod faults;
 
+use std::collections::VecDeque;
+
 use holdover::time::Duration;
 use holdover::units::{Distance, Speed};
 use holdover::wire::range_sensor::RangeSample;
@@ -15,6 +17,10 @@ use faults::{Faulty, Shows};
 
 /// Cycle of the range sensor, in seconds.
 pub const RANGE_EVERY_S: f64 = 0.02;
+
+/// So many views in a row have to show nobody before the sensor says so. Three that are missing by chance are rare, and
+/// the first of them is no older than a view may be.
+pub const EMPTY: usize = 4;
 
 /// A vehicle as a sensor behind it sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +52,8 @@ struct Range {
     sensor: RangeSensor,
     errors: ChaCha8Rng,
     faults: Faulty,
+    /// The last views in a row that showed nobody: when they were.
+    empty: VecDeque<f64>,
 }
 
 impl Sensors {
@@ -64,6 +72,7 @@ impl Sensors {
             sensor,
             errors: stream(seed, Purpose::RangeSensor(index)),
             faults: Faulty::new(sensor.faults, seed, index),
+            empty: VecDeque::new(),
         };
         Self {
             position_accuracy: distance(accuracy.position_m),
@@ -72,10 +81,10 @@ impl Sensors {
         }
     }
 
-    /// The measurement of the range sensor at a time, a front bumper and a speed. `None` without a sensor, and if no
-    /// vehicle is in its range.
+    /// The measurement of the range sensor at a time, a front bumper and a speed. `None` without a sensor, and if it sees
+    /// nothing. When [`EMPTY`] views in a row have shown nobody, it says so of the first of these.
     pub fn look(&mut self, at_s: f64, front_m: f64, speed_mps: f64, ahead: Ahead) -> Option<RangeSample> {
-        let Range { sensor, errors, faults } = self.range.as_mut()?;
+        let Range { sensor, errors, faults, empty } = self.range.as_mut()?;
         // Drawn whether or not a vehicle is there, so that later draws do not depend on how often there is one.
         let mut within = |accuracy: f64| (2.0 * unit(errors) - 1.0) * accuracy;
         let (off_m, off_mps) = (within(sensor.distance_m), within(sensor.speed_mps));
@@ -83,18 +92,42 @@ impl Sensors {
         let shown = match faults.at(at_s) {
             Shows::What => nearest,
             Shows::Nothing => None,
+            Shows::Blind => {
+                empty.clear();
+                return None;
+            }
             // On the way before all that is there, or within the range.
             Shows::Ghost(share) => {
                 let free_m = nearest.map_or(sensor.sees_up_to_m, |ahead| ahead.rear_m - front_m);
                 Some(Ahead { rear_m: front_m + share * free_m, speed_mps: 0.0 })
             }
-        }?;
-        Some(RangeSample {
-            distance: distance((shown.rear_m - front_m + off_m).max(0.0)),
-            speed_difference: difference(shown.speed_mps - speed_mps + off_mps),
+        };
+        let sample = RangeSample {
+            distance: distance(sensor.sees_up_to_m),
+            speed_difference: Speed::ZERO,
             distance_accuracy: distance(sensor.distance_m),
             speed_accuracy: speed(sensor.speed_mps),
             age: Duration::ZERO,
+            nobody: true,
+        };
+        let Some(shown) = shown else {
+            if empty.back().is_some_and(|last_s| at_s > last_s + 1.5 * RANGE_EVERY_S) {
+                empty.clear();
+            }
+            empty.push_back(at_s);
+            if empty.len() < EMPTY {
+                return None;
+            }
+            let first_s = empty.pop_front()?;
+            let age = Duration::from_micros(((at_s - first_s) * 1e6).round() as i64);
+            return Some(RangeSample { age, ..sample });
+        };
+        empty.clear();
+        Some(RangeSample {
+            distance: distance((shown.rear_m - front_m + off_m).max(0.0)),
+            speed_difference: difference(shown.speed_mps - speed_mps + off_mps),
+            nobody: false,
+            ..sample
         })
     }
 }

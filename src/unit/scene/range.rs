@@ -2,7 +2,7 @@
 //! corrected by it; whether the two agree leaves.
 //!
 //! The view shows the nearest vehicle on the ego's path. So no vehicle whose place is on that path is nearer, and the near ends of these
-//! vehicles are raised to it. A view from before the driver named the target is not of the target. While view and messages contradict one
+//! vehicles are raised to it. A sensor that says that nobody is near raises them likewise, as far as it sees. A view from before the driver named the target is not of the target. While view and messages contradict one
 //! another, neither changes the other, and the unit drives by what it sees.
 //!
 //! Where the estimated speed may be right, a view moves the horizon by a part of the way: the target goes on as it said. Where that
@@ -57,6 +57,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
         let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
         let mut sight = Sight { at, rear, speed, uncertainty, excess, whose: None };
+        self.ranging.note_alive(at);
+        if seen.nobody {
+            self.take_nobody(received, &sight, health);
+            return Ok(());
+        }
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);
@@ -72,6 +77,23 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
         self.ranging.see(sight);
         Ok(())
+    }
+
+    /// Takes in that no vehicle is nearer than a place.
+    fn take_nobody(&mut self, now: Instant, free: &Sight, health: &mut Health) {
+        let (visible, leading) = (self.visible(), self.coordination.choice().leading);
+        for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
+            self.raise(index, free);
+        }
+        if let Some((index, whose)) = visible.and_then(|index| Some((index, self.whose(index)?))) {
+            let heard = self.heard_of(index).and_then(|(_, heard)| heard);
+            let verdict = if self.raise(index, free) { Verdict::Agrees } else { Verdict::SeesPast };
+            let is_named = self.ranging.is_of_named(free.at.minus(ON_BUS));
+            if is_named && self.ranging.judge(whose, now, verdict, heard) {
+                health.count(Cause::RangeDisagrees);
+            }
+        }
+        self.ranging.see_nobody(free);
     }
 
     /// Raises the near end of a peer: no vehicle on the ego's path is nearer than what is seen. Returns whether the peer may be farther

@@ -1,7 +1,7 @@
 //! What the range sensor has seen. Views enter; what the unit remembers of them, and whether they contradict what is heard, leave.
 //!
-//! A view shows the nearest vehicle on the ego's path: no vehicle is between the ego and what the sensor sees. This is an assumption of
-//! use, and all conclusions here rest on it.
+//! A view shows the nearest vehicle on the ego's path, or that none is nearer than a place: no vehicle is between the ego and that. This is
+//! an assumption of use, and all conclusions here rest on it.
 //!
 //! *Memory.* A vehicle that was seen is remembered after the view has ended. Its near end is carried on like that of an unknown vehicle,
 //! which may brake as hard as any vehicle. A vehicle that was driving is remembered for [`MOVING`], and a vehicle that stood or crawled
@@ -28,14 +28,19 @@ const RANGE_TIMEOUT: Duration = Duration::from_millis(200);
 const MOVING: Duration = Duration::from_millis(1_000);
 
 /// A vehicle that stood or crawled is remembered for this long, which is longer than a sensor takes to start anew. The memory ends,
-/// because a sensor that sees nothing says nothing: without an end, a vehicle that leaves unseen would hold the ego for ever.
+/// because a sensor may say nothing when it sees nobody: without an end, a vehicle that leaves unseen would hold the ego for ever.
 const STANDING: Duration = Duration::from_millis(10_000);
 
 /// A vehicle that may be slower than this stands or crawls. At the hardest braking it stands within 0.1 s and 4 cm.
 const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 
-/// A vehicle that was seen to cross may still be there for this long, which is longer than views are missing one by one.
-const CROSSING: Duration = Duration::from_millis(300);
+/// A vehicle that was seen to cross may still be there for this long, unless the sensor has seen since then that it is not: longer than a
+/// dropout of half a second.
+const CROSSING: Duration = Duration::from_millis(1_000);
+
+/// A sensor that has said nothing for this long is not relied on to see who crosses.
+const BLIND: Duration = Duration::from_millis(1_000);
+
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
 
@@ -94,6 +99,8 @@ struct Contradiction {
 #[derive(Clone, Debug, Default)]
 pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
+    /// The instant of the newest view, or of the newest that shows nobody.
+    alive: Held<Instant>,
     /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
     hidden: [Held<Sight>; HIDDEN],
     /// The last view of a vehicle in the next conflict area, on a way that crosses the ego's.
@@ -113,6 +120,7 @@ impl Ranging {
     pub(in crate::unit) const fn new() -> Self {
         Self {
             newest: Held::Nothing,
+            alive: Held::Nothing,
             hidden: [Held::Nothing; HIDDEN],
             crossing: Held::Nothing,
             judged: Held::Nothing,
@@ -132,6 +140,29 @@ impl Ranging {
     /// path, when the view did not hide it.
     pub(in crate::unit) fn is_of_named(&self, seen: Instant) -> bool {
         seen >= self.named
+    }
+
+    /// Notes that the sensor sees, at this instant.
+    pub(in crate::unit) fn note_alive(&mut self, at: Instant) {
+        self.alive.set(self.alive.get().unwrap_or(at).max(at));
+    }
+
+    /// Whether the sensor sees.
+    pub(in crate::unit) fn is_alive(&self, now: Instant) -> bool {
+        self.alive.as_ref().is_some_and(|alive| now.since(*alive) <= BLIND)
+    }
+
+    /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.
+    pub(in crate::unit) fn see_nobody(&mut self, free: &Sight) {
+        let near = free.bound().lowest_position();
+        let is_gone = |held: &Sight| {
+            let then = held.bound().after(free.at, &AccelerationRange::WORST);
+            held.at <= free.at && then.highest_position() < near
+        };
+        let held = self.hidden.iter_mut().chain([&mut self.newest, &mut self.crossing]);
+        for held in held.filter(|held| held.as_ref().is_some_and(is_gone)) {
+            held.clear();
+        }
     }
 
     /// Takes in a view. One that comes late says nothing: since it was taken, a nearer vehicle was seen, or a farther one.

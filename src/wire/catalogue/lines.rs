@@ -54,8 +54,8 @@ pub static CATALOGUE: [Line; LINES] = [
         .says("Its Stamp has to be within 50 ms of that of the newest EgoMotion: else it is refused (stale)."),
     Line::new("RangeSensor", 0x08, Content::Range, Vehicle, range_sensor::FIELDS)
         .every(20, 200)
-        .only("while a vehicle ahead is measured, no worse than the accuracies can say")
-        .says("What a sensor on board sees of the nearest vehicle ahead."),
+        .only("while a sensor sees, no worse than the accuracies can say")
+        .says("What a sensor on board sees of the nearest vehicle ahead, or how far it sees that none is there."),
     Line::new("PeersUnserved", 0x09, Content::Unserved, Modem, unserved::FIELDS)
         .every(200, 600)
         .only("on a route; without an itinerary the unit ignores it")

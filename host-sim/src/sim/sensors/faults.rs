@@ -18,6 +18,8 @@ pub enum Shows {
     What,
     /// No vehicle.
     Nothing,
+    /// It does not see, and does not say anything.
+    Blind,
     /// A vehicle that stands at this share of the free way ahead, where none is.
     Ghost(f64),
 }
@@ -59,12 +61,12 @@ impl Faulty {
         let since_s = self.last_s.map_or(0.0, |last_s| at_s - last_s);
         self.last_s = Some(at_s);
         if at_s < self.blind_until_s - 1e-9 {
-            return Shows::Nothing;
+            return Shows::Blind;
         }
         let begins = |per_min: f64, share: f64| share < 1.0 - (-per_min / 60.0 * since_s).exp();
         if begins(self.faults.dropouts_per_min, dropout) {
             self.blind_until_s = at_s + self.faults.dropout_s;
-            return Shows::Nothing;
+            return Shows::Blind;
         }
         if at_s >= self.ghost.0 - 1e-9 && begins(self.faults.ghosts_per_min, ghost) {
             self.ghost = (at_s + GHOST_S, place);
