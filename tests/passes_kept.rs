@@ -8,7 +8,8 @@ use rig::junction::{CROSSING, Driver, HALF, Junction};
 
 /// Where the ego is after half a minute, and how slow it was. It is silent for the other one too: that is deaf.
 fn behind_a_silent_one(range_sensor: bool) -> (f64, f64) {
-    let ego = Driver::of(holdover::Config { range_sensor, ..config() }, 3, 0, 20.0, 10.0, true);
+    let mut ego = Driver::of(holdover::Config { range_sensor, ..config() }, 3, 0, 20.0, 10.0, true);
+    ego.sees_across = range_sensor;
     // Both come at once, so the smaller station is ahead in the order.
     let other = Driver::new(2, 1, 50.0, 10.0, true);
     let mut junction = Junction::new(vec![ego, other]);

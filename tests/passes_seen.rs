@@ -1,5 +1,5 @@
 //! A vehicle makes an emergency stop in the conflict area, and its radio dies. The ego has a pass for later, and its range sensor sees the
-//! vehicle: it does not go in.
+//! vehicle: it does not go in, also if the sensor sees nothing for a moment then. A sensor that says nothing is not relied on.
 
 mod rig;
 
@@ -64,4 +64,52 @@ fn the_ego_does_not_commit_itself_past_one_that_it_sees_in_the_area() {
             }
         }
     }
+}
+
+/// Whether both were in the area, when the ego's sensor is blind for half a second.
+fn meets_when_blind(from: f64) -> bool {
+    let mut ego = sees(3, 0, 30.0, 10.0);
+    ego.body.position = CROSSING - 170.0;
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    let mut both = false;
+    junction.run(40.0, |junction| {
+        strand(junction);
+        let seconds = junction.now as f64 * 1e-6;
+        junction.drivers[0].is_blind = (from..from + 0.5).contains(&seconds);
+        both |= junction.drivers.iter().all(Driver::is_inside);
+    });
+    both
+}
+
+#[test]
+fn half_a_second_without_a_view_does_not_let_the_ego_in() {
+    for tenths in 100..200 {
+        let from = f64::from(tenths) * 0.1;
+        assert!(!meets_when_blind(from), "blind from {from} s");
+    }
+}
+
+/// How far the ego gets in 60 s behind one that has stopped before its line, with a dead radio, after its pass.
+fn gets(is_blind: bool) -> f64 {
+    let mut ego = sees(3, 0, 30.0, 10.0);
+    ego.is_blind = is_blind;
+    ego.body.position = CROSSING - 190.0;
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    junction.run(60.0, |junction| {
+        let stranded = &mut junction.drivers[1];
+        if stranded.body.position > CROSSING - 20.0 {
+            (stranded.speaks, stranded.hears) = (false, false);
+        }
+        if !stranded.speaks {
+            let speed = stranded.body.speed;
+            (stranded.body.speed, stranded.body.acceleration) = if speed <= 0.1 { (0.0, 0.0) } else { (speed, -8.0) };
+        }
+    });
+    junction.drivers[0].body.position
+}
+
+#[test]
+fn a_pass_of_another_is_trusted_only_while_the_own_sensor_says_something() {
+    assert!(gets(false) > CROSSING + 50.0, "{}", gets(false));
+    assert!(gets(true) < CROSSING, "{}", gets(true));
 }

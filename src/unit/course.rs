@@ -106,8 +106,8 @@ fn hand_back<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 }
 
 /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it, or the near
-/// end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees that it is not there.
-/// Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the one that is nearer.
+/// end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees that it is not there, or the
+/// end of what it sees to be free. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the one that is nearer.
 fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -125,7 +125,9 @@ fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         let (rear, bound) = scene.near_rear(index, now)?;
         near(scene, rear, bound.lowest_speed())
     });
-    [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position)
+    let known = [seen.or(stood), certain].into_iter().flatten().min_by_key(|rear| rear.position);
+    // Beyond what is seen to be free a vehicle may stand.
+    known.or_else(|| near(scene, scene.ranging.free(now)?, Speed::ZERO))
 }
 
 /// `None` if it is too far away. The law takes positions modulo 4096 m, so that a vehicle left far behind must not turn up ahead.

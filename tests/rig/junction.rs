@@ -111,6 +111,8 @@ pub struct Driver {
     pub sees: bool,
     /// Whether its range sensor also sees vehicles of the other street that stand or drive across its way at the first crossing.
     pub sees_across: bool,
+    /// Whether its range sensor says nothing.
+    pub is_blind: bool,
     /// Whether its own motion is measured.
     pub is_measured: bool,
     /// The published accuracy of its position.
@@ -153,6 +155,7 @@ impl Driver {
             says_route: true,
             sees: false,
             sees_across: false,
+            is_blind: false,
             is_measured: true,
             accuracy: 0.05,
             by_hand: None,
@@ -265,16 +268,17 @@ impl Junction {
             if driver.is_timed && now % 500_000 == 0 {
                 driver.rig.synchronise(now, 0);
             }
-            if driver.sees_across && now % 20_000 == 0 {
+            if driver.sees_across && !driver.is_blind && now % 20_000 == 0 {
                 let own = driver.body;
                 let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > own.position);
                 let ahead = ahead.map(|(_, body)| (body.position - LENGTH, body.speed));
                 let across = places.iter().filter(|(way, body)| (*way == 0) != (driver.way == 0) && is_on_point(body));
                 let across = across.map(|_| (CROSSING - WIDTH / 2.0, 0.0));
                 let seen = ahead.chain(across).filter(|(rear, _)| *rear >= own.position);
-                if let Some((rear, speed)) = seen.min_by(|a, b| a.0.total_cmp(&b.0)) {
-                    let _ = driver.rig.range(now, rear - own.position, speed - own.speed, 0);
-                }
+                let _ = match seen.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                    Some((rear, speed)) => driver.rig.range(now, rear - own.position, speed - own.speed, 0),
+                    None => driver.rig.nobody(now, 100.0, 0),
+                };
             }
             let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > driver.body.position);
             if driver.sees

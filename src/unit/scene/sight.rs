@@ -101,6 +101,8 @@ pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
     /// The instant of the newest view, or of the newest that shows nobody.
     alive: Held<Instant>,
+    /// No vehicle is nearer than this place, by the newest view that shows nobody.
+    free: Held<(Instant, Position)>,
     /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
     hidden: [Held<Sight>; HIDDEN],
     /// The last view of a vehicle in the next conflict area, on a way that crosses the ego's.
@@ -121,6 +123,7 @@ impl Ranging {
         Self {
             newest: Held::Nothing,
             alive: Held::Nothing,
+            free: Held::Nothing,
             hidden: [Held::Nothing; HIDDEN],
             crossing: Held::Nothing,
             judged: Held::Nothing,
@@ -155,6 +158,7 @@ impl Ranging {
     /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.
     pub(in crate::unit) fn see_nobody(&mut self, free: &Sight) {
         let near = free.bound().lowest_position();
+        self.free.set((free.at, near));
         let is_gone = |held: &Sight| {
             let then = held.bound().after(free.at, &AccelerationRange::WORST);
             held.at <= free.at && then.highest_position() < near
@@ -163,6 +167,12 @@ impl Ranging {
         for held in held.filter(|held| held.as_ref().is_some_and(is_gone)) {
             held.clear();
         }
+    }
+
+    /// No vehicle is nearer than this place. `None` if that was seen too long ago.
+    pub(in crate::unit) fn free(&self, now: Instant) -> Option<Position> {
+        let (at, near) = self.free.get()?;
+        (now.since(at) <= RANGE_TIMEOUT).then_some(near)
     }
 
     /// Takes in a view. One that comes late says nothing: since it was taken, a nearer vehicle was seen, or a farther one.
@@ -310,54 +320,4 @@ pub(in crate::unit) enum Verdict {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn at(millis: i64) -> Instant {
-        Instant::ZERO.plus(Duration::from_millis(millis))
-    }
-
-    fn sight(millis: i64, metres: i64, mm_per_s: i32) -> Sight {
-        let (rear, speed) = (Position::from_mm(metres * 1_000), Speed::from_mm_per_s(mm_per_s));
-        let uncertainty = Uncertainty::default();
-        Sight { at: at(millis), rear, speed, uncertainty, excess: Distance::ZERO, whose: None }
-    }
-
-    /// The rears, in metres, of what is remembered.
-    fn remembered(ranging: &Ranging, millis: i64) -> Vec<i64> {
-        let mut rears: Vec<_> = ranging.remembered(at(millis)).map(|sight| sight.rear.to_mm() / 1_000).collect();
-        rears.sort_unstable();
-        rears
-    }
-
-    #[test]
-    fn a_vehicle_that_a_nearer_one_hides_is_remembered_until_a_view_shows_that_it_is_gone() {
-        let mut ranging = Ranging::new();
-        for view in [sight(0, 60, 11_000), sight(20, 20, 30_000), sight(40, 21, 30_000)] {
-            ranging.see(view);
-        }
-        assert_eq!(remembered(&ranging, 900), [21, 60]);
-        assert_eq!(remembered(&ranging, 1_030), [21], "one that drove is remembered for a second");
-        ranging.see(sight(100, 90, 11_000));
-        assert_eq!(remembered(&ranging, 110), [90], "nobody is nearer than what is seen");
-    }
-
-    #[test]
-    fn one_that_stands_is_remembered_behind_one_that_crawled_and_drove_off() {
-        let mut ranging = Ranging::new();
-        ranging.see(sight(0, 60, 0));
-        for (millis, metres, speed) in [(1_000, 20, 500), (2_000, 21, 500), (3_000, 30, 8_000)] {
-            ranging.see(sight(millis, metres, speed));
-        }
-        assert_eq!(remembered(&ranging, 9_900), [60]);
-        assert!(remembered(&ranging, 10_100).is_empty());
-    }
-
-    #[test]
-    fn a_view_that_comes_late_does_not_undo_a_newer_one() {
-        let mut ranging = Ranging::new();
-        ranging.see(sight(60, 15, 5_000));
-        ranging.see(sight(5, 80, 15_000));
-        assert_eq!(remembered(&ranging, 70), [15]);
-    }
-}
+mod tests;

@@ -1,0 +1,82 @@
+//! What is remembered of views.
+
+use super::*;
+
+fn at(millis: i64) -> Instant {
+    Instant::ZERO.plus(Duration::from_millis(millis))
+}
+
+fn sight(millis: i64, metres: i64, mm_per_s: i32) -> Sight {
+    let (rear, speed) = (Position::from_mm(metres * 1_000), Speed::from_mm_per_s(mm_per_s));
+    let uncertainty = Uncertainty::default();
+    Sight { at: at(millis), rear, speed, uncertainty, excess: Distance::ZERO, whose: None }
+}
+
+/// The rears, in metres, of what is remembered.
+fn remembered(ranging: &Ranging, millis: i64) -> Vec<i64> {
+    let mut rears: Vec<_> = ranging.remembered(at(millis)).map(|sight| sight.rear.to_mm() / 1_000).collect();
+    rears.sort_unstable();
+    rears
+}
+
+#[test]
+fn a_vehicle_that_a_nearer_one_hides_is_remembered_until_a_view_shows_that_it_is_gone() {
+    let mut ranging = Ranging::new();
+    for view in [sight(0, 60, 11_000), sight(20, 20, 30_000), sight(40, 21, 30_000)] {
+        ranging.see(view);
+    }
+    assert_eq!(remembered(&ranging, 900), [21, 60]);
+    assert_eq!(remembered(&ranging, 1_030), [21], "one that drove is remembered for a second");
+    ranging.see(sight(100, 90, 11_000));
+    assert_eq!(remembered(&ranging, 110), [90], "nobody is nearer than what is seen");
+}
+
+#[test]
+fn one_that_stands_is_remembered_behind_one_that_crawled_and_drove_off() {
+    let mut ranging = Ranging::new();
+    ranging.see(sight(0, 60, 0));
+    for (millis, metres, speed) in [(1_000, 20, 500), (2_000, 21, 500), (3_000, 30, 8_000)] {
+        ranging.see(sight(millis, metres, speed));
+    }
+    assert_eq!(remembered(&ranging, 9_900), [60]);
+    assert!(remembered(&ranging, 10_100).is_empty());
+}
+
+#[test]
+fn who_would_be_nearer_than_where_nobody_is_has_gone_and_who_may_be_farther_is_remembered() {
+    let mut ranging = Ranging::new();
+    ranging.see(sight(0, 60, 0));
+    ranging.see(sight(20, 20, 0));
+    ranging.see_crossing(sight(40, 30, 0));
+    ranging.see_nobody(&sight(60, 40, 0));
+    assert_eq!((remembered(&ranging, 80), ranging.crossing(at(80))), (vec![60], None));
+    ranging.see_nobody(&sight(80, 60, 0));
+    assert_eq!(remembered(&ranging, 100), [60]);
+    ranging.see_nobody(&sight(100, 61, 0));
+    assert!(remembered(&ranging, 120).is_empty());
+}
+
+#[test]
+fn what_was_seen_since_then_has_not_gone() {
+    let mut ranging = Ranging::new();
+    ranging.see(sight(80, 20, 0));
+    ranging.see_nobody(&sight(60, 40, 0));
+    assert_eq!(remembered(&ranging, 100), [20]);
+}
+
+#[test]
+fn a_sensor_sees_for_a_second_after_its_last_word() {
+    let mut ranging = Ranging::new();
+    assert!(!ranging.is_alive(at(0)));
+    ranging.note_alive(at(100));
+    ranging.note_alive(at(60));
+    assert!(ranging.is_alive(at(1_100)) && !ranging.is_alive(at(1_101)));
+}
+
+#[test]
+fn a_view_that_comes_late_does_not_undo_a_newer_one() {
+    let mut ranging = Ranging::new();
+    ranging.see(sight(60, 15, 5_000));
+    ranging.see(sight(5, 80, 15_000));
+    assert_eq!(remembered(&ranging, 70), [15]);
+}
