@@ -66,26 +66,28 @@ fn the_ego_does_not_commit_itself_past_one_that_it_sees_in_the_area() {
     }
 }
 
-/// Whether both were in the area, when the ego's sensor is blind for half a second.
-fn meets_when_blind(from: f64) -> bool {
+/// Whether both were in the area, when the ego's sensor is blind for some time.
+fn meets_when_blind(from: f64, seconds: f64) -> bool {
     let mut ego = sees(3, 0, 30.0, 10.0);
     ego.body.position = CROSSING - 170.0;
     let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
     let mut both = false;
     junction.run(40.0, |junction| {
         strand(junction);
-        let seconds = junction.now as f64 * 1e-6;
-        junction.drivers[0].is_blind = (from..from + 0.5).contains(&seconds);
+        let now = junction.now as f64 * 1e-6;
+        junction.drivers[0].is_blind = (from..from + seconds).contains(&now);
         both |= junction.drivers.iter().all(Driver::is_inside);
     });
     both
 }
 
 #[test]
-fn half_a_second_without_a_view_does_not_let_the_ego_in() {
-    for tenths in 100..200 {
-        let from = f64::from(tenths) * 0.1;
-        assert!(!meets_when_blind(from), "blind from {from} s");
+fn a_time_without_views_does_not_let_the_ego_in() {
+    for seconds in [0.5, 1.5, 20.0] {
+        for tenths in 110..190 {
+            let from = f64::from(tenths) * 0.1;
+            assert!(!meets_when_blind(from, seconds), "blind from {from} s for {seconds} s");
+        }
     }
 }
 

@@ -224,7 +224,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     fn stop_for(&self, index: usize) -> Option<Position> {
         let (scene, now) = (self.scene, self.now);
         let stop = scene.stop_before_area(index, now, self.rearmost)?;
-        let sees = scene.config.range_sensor && scene.ranging.is_alive(now);
+        // Once it is committed, it does not stop because the sensor falls silent.
+        let sees = scene.config.range_sensor && (self.entrance.is_committed || scene.ranging.is_alive(now));
         let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && sees;
         let then = now.plus(self.entrance.opens_in);
         (!is_trusted || !scene.has_pass(index) || scene.is_in_area_until(index, now, then)).then_some(stop)

@@ -38,8 +38,9 @@ const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 /// dropout of half a second.
 const CROSSING: Duration = Duration::from_millis(1_000);
 
-/// A sensor that has said nothing for this long is not relied on to see who crosses.
-const BLIND: Duration = Duration::from_millis(1_000);
+/// A sensor of which no view is younger than this is not relied on to see who crosses. What it says of nobody is up to 63 ms old, and it says
+/// so only some views after it has seen somebody.
+const BLIND: Duration = Duration::from_millis(250);
 
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;

@@ -65,12 +65,12 @@ fn what_was_seen_since_then_has_not_gone() {
 }
 
 #[test]
-fn a_sensor_sees_for_a_second_after_its_last_word() {
+fn a_sensor_is_relied_on_for_a_quarter_of_a_second_after_its_last_view() {
     let mut ranging = Ranging::new();
     assert!(!ranging.is_alive(at(0)));
     ranging.note_alive(at(100));
     ranging.note_alive(at(60));
-    assert!(ranging.is_alive(at(1_100)) && !ranging.is_alive(at(1_101)));
+    assert!(ranging.is_alive(at(350)) && !ranging.is_alive(at(351)));
 }
 
 #[test]
