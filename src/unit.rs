@@ -137,7 +137,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// # Errors
     /// What is wrong with the map; nothing is changed then.
     pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
-        self.scene.coordination.set_out(itinerary)?;
+        self.scene.coordination.set_out(itinerary, self.scene.config.length)?;
         self.scene.passes = const { scene::passes::Passes::NONE };
         self.gate.begin();
         Ok(())

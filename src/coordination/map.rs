@@ -7,6 +7,9 @@ use crate::units::{Distance, Position};
 /// Legs that an intersection can have.
 pub const LEGS: u8 = 8;
 
+/// An ego that waits between two conflict areas needs so much more room than its length.
+const ROOM: Distance = Distance::from_mm(3_000);
+
 /// A leg of an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -36,6 +39,8 @@ pub enum MapError {
     Area,
     /// A path has no segment.
     Path,
+    /// Between two conflict areas there is no room for the ego, which waits before each of them.
+    Close,
 }
 
 /// An intersection.
@@ -85,11 +90,11 @@ pub struct Itinerary {
 }
 
 impl Itinerary {
-    /// Checks that the ego can drive by it.
+    /// Checks that an ego of this length can drive by it.
     ///
     /// # Errors
     /// The first thing that is wrong with it.
-    pub fn check(&self) -> Result<(), MapError> {
+    pub fn check(&self, length: Distance) -> Result<(), MapError> {
         const AREA_MAX: Distance = Distance::from_mm(5_115);
         if self.crossings.is_empty() || u16::try_from(self.crossings.len()).is_err() {
             return Err(MapError::Crossings);
@@ -111,6 +116,12 @@ impl Itinerary {
             let is_last = |other: &Crossing| other.intersection.id != *id && other.at > crossing.at;
             if !self.crossings.iter().skip(place.saturating_add(1)).all(is_last) {
                 return Err(MapError::Order);
+            }
+            if let Some(next) = self.crossings.get(place.saturating_add(1)) {
+                let apart = next.at.ahead_of(crossing.at).minus(*half).minus(next.intersection.half);
+                if apart < length.plus(ROOM) {
+                    return Err(MapError::Close);
+                }
             }
         }
         Ok(())
@@ -157,8 +168,11 @@ mod tests {
             intersection(1, 4_000, &[Approach { leg: 8, path: &PATH, crossing: Position::ZERO, conflicts: 0 }]);
         static PATHLESS: Intersection =
             intersection(1, 4_000, &[Approach { leg: 7, path: &NO_PATH, crossing: Position::ZERO, conflicts: 0 }]);
-        let check = |crossings: &'static [Crossing]| Itinerary { path: &PATH, crossings }.check();
-        assert_eq!(check(&[const { crossing(&GOOD, 7, 5) }, const { crossing(&OTHER, 0, 6) }]), Ok(()));
+        let check =
+            |crossings: &'static [Crossing]| Itinerary { path: &PATH, crossings }.check(Distance::from_mm(4_500));
+        assert_eq!(check(&[const { crossing(&GOOD, 7, 0) }, const { crossing(&OTHER, 0, 12_615) }]), Ok(()));
+        let close = check(&[const { crossing(&GOOD, 7, 0) }, const { crossing(&OTHER, 0, 12_614) }]);
+        assert_eq!(close, Err(MapError::Close));
         assert_eq!(check(&[]), Err(MapError::Crossings));
         assert_eq!(check(&[const { crossing(&GOOD, 8, 5) }]), Err(MapError::Leg));
         assert_eq!(check(&[const { crossing(&LEGLESS, 0, 5) }]), Err(MapError::Leg));
@@ -167,7 +181,7 @@ mod tests {
         assert_eq!(check(&[const { crossing(&GOOD, 0, 5) }, const { crossing(&GOOD, 0, 6) }]), Err(MapError::Order));
         assert_eq!(check(&[const { crossing(&GOOD, 0, 5) }, const { crossing(&OTHER, 0, 5) }]), Err(MapError::Order));
         let lost = Itinerary { path: &NO_PATH, crossings: &[const { crossing(&GOOD, 0, 5) }] };
-        assert_eq!(lost.check(), Err(MapError::Path));
+        assert_eq!(lost.check(Distance::ZERO), Err(MapError::Path));
     }
 
     #[test]

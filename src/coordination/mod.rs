@@ -116,8 +116,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
     ///
     /// # Errors
     /// The error in the map. Nothing is changed then.
-    pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
-        itinerary.check()?;
+    pub(crate) fn set_out(&mut self, itinerary: &'static Itinerary, length: Distance) -> Result<(), MapError> {
+        itinerary.check(length)?;
         self.reset();
         self.itinerary = Some(itinerary);
         Ok(())

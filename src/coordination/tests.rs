@@ -92,7 +92,7 @@ impl Meeting {
         static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
         let stations = arrivals.iter().enumerate().map(|(index, arrival)| {
             let mut coordination = Coordination::idle();
-            coordination.set_out(&ITINERARY).unwrap();
+            coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
             coordination.locate(Position::ZERO, Position::ZERO);
             coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(*arrival));
             (entry(index as u8 + 1, *arrival, None), coordination)
@@ -251,7 +251,7 @@ fn one_whose_claim_is_of_a_stranger_for_longer_than_a_silence_lasts_is_given_way
 #[test]
 fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gentle_stop_is_left() {
     let mut coordination: Coordination<8> = Coordination::idle();
-    coordination.set_out(&ITINERARY).unwrap();
+    coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
     coordination.locate(Position::ZERO, Position::ZERO);
     // At 10 m/s, 10 m and v²/(2 · 1.5 m/s²) before the conflict area.
     let gentle_until = 196_000 - 10_000 - 33_333;
@@ -272,7 +272,7 @@ fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gen
 #[test]
 fn a_review_at_once_does_not_move_the_times_of_the_others() {
     let mut coordination: Coordination<8> = Coordination::idle();
-    coordination.set_out(&ITINERARY).unwrap();
+    coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
     let after = |ms| at(0).plus(Duration::from_millis(ms));
     let mut review = |ms| {
         coordination.review_at_once();
@@ -294,7 +294,7 @@ fn a_review_at_once_does_not_move_the_times_of_the_others() {
 /// its claim.
 fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
     let mut coordination: Coordination<8> = Coordination::idle();
-    coordination.set_out(&ITINERARY).unwrap();
+    coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
     coordination.locate(Position::ZERO, Position::ZERO);
     coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
     for tick in 1..=times {

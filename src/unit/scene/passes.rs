@@ -176,12 +176,31 @@ fn claim(claimed: &Claimed, station: u32, now: GnssTime) -> Claim {
     Claim { at: claimed.at.near(now), window, station }
 }
 
-/// A claim as it is said: its window is in whole steps already.
+/// A claim as it is said: its window is in whole steps already. Of one that is longer than can be said, the beginning is left out: nobody
+/// claims so far ahead, so that it is over.
 fn claimed(claim: &Claim) -> Option<Claimed> {
     let Window { entry, exit } = claim.window;
     let steps = exit.as_micros().saturating_sub(entry.as_micros()).checked_div(STEP.as_micros().unsigned_abs())?;
     let length = u16::try_from(steps).unwrap_or(LONGEST).min(LONGEST);
+    let entry = entry.max(exit.plus(Duration::ZERO.minus(STEP.times(i64::from(length)))));
     Some(Claimed { at: PassTime::down(claim.at), entry: PassTime::down(entry), length })
 }
 
 const _: () = assert!(PIECES == 2, "a message has room for two");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_window_that_is_longer_than_can_be_said_the_end_is_said() {
+        let time = |millis: u64| GnssTime::from_micros(1_000_000_000 + millis * 1_000);
+        for seconds in [1, 40, 41, 60] {
+            let window = Window { entry: time(0), exit: time(seconds * 1_000) };
+            let own = Claim { at: time(0), window, station: 7 };
+            let heard = claim(&claimed(&own).unwrap(), 7, time(seconds * 1_000 - 20_000.min(seconds * 1_000)));
+            assert_eq!(heard.window.exit, window.exit, "{seconds} s");
+            assert!(heard.window.entry >= window.entry && (seconds > 40 || heard.window.entry == window.entry));
+        }
+    }
+}
