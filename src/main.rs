@@ -46,7 +46,7 @@ mod firmware {
                 let Ok(()) = board.busy.set_low();
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.send(frame);
+                    board.send(now, frame);
                 }
                 board.watchdog.feed();
             }
@@ -62,7 +62,7 @@ mod firmware {
         let mut steps = holdover::LockStep::new();
         let mut has_begun = false;
         loop {
-            while let Some((_, frame)) = board.receive() {
+            while let Some((at, frame)) = board.receive() {
                 let Ok(()) = board.busy.set_high();
                 let answer = steps.receive(unit, &frame);
                 let Ok(()) = board.busy.set_low();
@@ -70,7 +70,7 @@ mod firmware {
                 has_begun = true;
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.send(frame);
+                    board.send(at, frame);
                 }
             }
             if board.tick().is_some() {

@@ -34,15 +34,18 @@ pub const USART1_CR1: Register = Register(0x4001_100c);
 pub const IWDG_KR: Register = Register(0x4000_3000);
 pub const IWDG_PR: Register = Register(0x4000_3004);
 pub const IWDG_RLR: Register = Register(0x4000_3008);
-/// The CAN controller, as far as its driver does not know it, and its pins on port B.
-pub const CAN1_MCR: Register = Register(0x4000_6400);
+/// The pins of the CAN controller, on port B.
 pub const GPIOB_MODER: Register = Register(0x4002_0400);
 pub const GPIOB_AFRH: Register = Register(0x4002_0424);
-pub const CAN1_ESR: Register = Register(0x4000_6418);
 
 impl Register {
+    /// One of the CAN controller's, by its offset.
+    pub const fn of_can1(offset: usize) -> Self {
+        Self(0x4000_6400 + (offset & 0x3fc))
+    }
+
     pub fn read(self) -> u32 {
-        // SAFETY: the field is private, so the address is one of the constants above: aligned words of peripherals
+        // SAFETY: the field is private, so the address is one of the constants above, or one of CAN1's: aligned words of peripherals
         // that are mapped on this chip whatever the state of the clocks, and that no Rust object overlaps.
         unsafe { (self.0 as *const u32).read_volatile() }
     }

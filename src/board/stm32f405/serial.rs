@@ -4,6 +4,7 @@ use super::clocks::Clocks;
 use super::registers::{
     GPIOA_AFRH, GPIOA_MODER, RCC_AHB1ENR, RCC_APB2ENR, USART1_BRR, USART1_CR1, USART1_DR, USART1_SR,
 };
+use crate::board::port::Overrun;
 
 const BAUD: u32 = 460_800;
 const OVERRUN: u32 = 1 << 3;
@@ -11,10 +12,6 @@ const RECEIVED: u32 = 1 << 5;
 const TRANSMIT_EMPTY: u32 = 1 << 7;
 /// USART1's place in the chip's vector table.
 pub const INTERRUPT: i16 = 37;
-
-/// A byte came before the one before it was taken, and is lost.
-#[derive(Clone, Copy, Debug)]
-pub struct Overrun;
 
 /// USART1: `PA9` transmits, `PA10` receives.
 pub struct Serial(());
