@@ -85,7 +85,7 @@ impl<P: Port> Rig<P> {
             for frame in &frames {
                 self.push(tick, CanFrame::new(frame.id(), frame.data()).unwrap());
             }
-            if number % 10 == 0 {
+            if number.is_multiple_of(10) {
                 (0..5).for_each(|part| self.push(tick, standard(PARTS, &[part, number as u8, (number >> 8) as u8])));
             }
             for quarter in 0..40 {

@@ -11,6 +11,8 @@ mod outbox;
 mod port;
 #[cfg(any(board = "zynqmp_r5", feature = "bxcan"))]
 mod registers;
+#[cfg(board = "stm32f405")]
+mod restarts;
 
 #[cfg(board = "stm32f405")]
 mod stm32f405;

@@ -197,7 +197,7 @@ impl Registers for Mock {
                 let mailbox = &mut chip.mailboxes[at / 16];
                 assert!(!mailbox.pending, "a mailbox that waits is written");
                 mailbox.words[at % 16 / 4] = word;
-                if at % 16 == 0 {
+                if at.is_multiple_of(16) {
                     mailbox.pending = word & mailbox::REQUEST != 0;
                     (mailbox.done, mailbox.sent) = (false, false);
                 }
