@@ -157,7 +157,7 @@ enum holdover_status_t
   HOLDOVER_REFUSED_RECEIVE_OVERFLOW = -84,
   // Likewise: the bus controller lost a frame.
   HOLDOVER_REFUSED_OVERRUN = -85,
-  // Likewise: the platform's transmit queue was full.
+  // Likewise: frames to be sent were lost before the bus.
   HOLDOVER_REFUSED_TRANSMIT_OVERFLOW = -86,
   // Likewise: the bus controller left the bus.
   HOLDOVER_REFUSED_BUS_OFF = -87,
@@ -187,6 +187,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_COMMAND_UNHEEDED = -99,
   // Not a refusal of a frame: no room for the passes of one more station.
   HOLDOVER_REFUSED_PASSES_FULL = -100,
+  // Not a refusal of a frame: the platform did not tick the unit for a period.
+  HOLDOVER_REFUSED_MISSED_PERIOD = -101,
+  // Not a refusal of a frame: the platform's crystal did not start.
+  HOLDOVER_REFUSED_CLOCK_FAILED = -102,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

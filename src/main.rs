@@ -55,7 +55,8 @@ mod firmware {
     }
 
     /// For hardware in the loop: the bus's time synchronisation ticks the unit, and the timer only feeds the watchdog, since
-    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's.
+    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's, and the timer's
+    /// periods never are.
     #[cfg(feature = "lock-step")]
     fn drive(unit: &mut Unit, mut board: Board) -> ! {
         let mut log = crate::log::Log::new();
@@ -75,7 +76,8 @@ mod firmware {
             }
             if board.tick().is_some() {
                 for (incident, times) in board.incidents() {
-                    unit.note(incident, if has_begun { times } else { 0 });
+                    let is_its_own = has_begun && incident != Incident::MissedPeriod;
+                    unit.note(incident, if is_its_own { times } else { 0 });
                 }
                 board.watchdog.feed();
             }

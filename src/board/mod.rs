@@ -8,6 +8,7 @@
 
 mod frame;
 mod outbox;
+mod periods;
 mod port;
 #[cfg(any(board = "zynqmp_r5", feature = "bxcan"))]
 mod registers;

@@ -1,11 +1,12 @@
-//! The chip's own CAN controller as the port of the board: `PB9` transmits, `PB8` receives, over a transceiver. The
+//! The chip's own CAN controller as the port of the board, over a transceiver. The
 //! [driver](super::can) has run against a model of its registers; the emulator has none of the controller, and it has run on
 //! no chip.
 
 use super::can::Controller;
 use super::clocks::Clocks;
 use super::port::Select;
-use super::registers::{GPIOB_AFRH, GPIOB_MODER, RCC_AHB1ENR, RCC_APB1ENR, Register};
+use super::registers::{RCC_APB1ENR, Register};
+use super::wiring::CAN;
 use crate::board::registers::Registers;
 
 /// The registers of CAN1.
@@ -27,10 +28,10 @@ impl Select for Controller<Can1> {
     const TELLS_WHEN_SENT: bool = true;
 
     fn start(clocks: &Clocks) -> Self {
-        RCC_AHB1ENR.set(0, 1 << 1); // port B
-        RCC_APB1ENR.set(0, 1 << 25); // CAN1
-        GPIOB_MODER.set(0b11_11 << 16, 0b10_10 << 16); // pins 8 and 9: alternate function
-        GPIOB_AFRH.set(0xff, 0x99); // which is number 9
-        Self::start(Can1, clocks.slow_bus_hz)
+        let (pins, function) = CAN;
+        pins.into_iter().for_each(|pin| pin.start_function(function));
+        RCC_APB1ENR.enable(1 << 25); // CAN1
+        // Without the crystal the bit rate would be off by more than a bus bears.
+        Self::start(Can1, if clocks.is_by_crystal { clocks.slow_bus_hz } else { 0 })
     }
 }

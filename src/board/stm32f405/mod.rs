@@ -10,6 +10,7 @@ mod bxcan;
 mod can;
 mod clock;
 mod clocks;
+mod gpio;
 #[cfg(not(feature = "bxcan"))]
 mod line;
 #[cfg(feature = "bxcan")]
@@ -22,6 +23,7 @@ mod serial;
 #[cfg(not(feature = "bxcan"))]
 mod slcan;
 mod watchdog;
+mod wiring;
 
 #[cfg(feature = "log")]
 pub use clock::now;
@@ -55,6 +57,8 @@ pub struct Board {
     pub watchdog: Watchdog,
     /// How often the watchdog has restarted the unit.
     pub restarts: u32,
+    /// The crystal did not start, and nobody has been told.
+    has_failed: bool,
     inbox: Inbox,
     ticks: Ticks,
 }
@@ -72,15 +76,18 @@ impl Board {
     fn start(arrivals: &'static mut Arrivals) -> Option<Self> {
         let peripherals = Peripherals::take()?;
         let restarts = watchdog::restarts()?;
-        let clocks = Clocks::start();
+        // It watches over the start as well.
+        let mut watchdog = Watchdog::start();
+        let clocks = Clocks::start(&mut watchdog);
         let inbox = port::start(&clocks, arrivals);
         clock::start(peripherals.SYST, &clocks);
         for number in Selected::INTERRUPTS {
             // SAFETY: the port's interrupts have their handler, below, and nothing relies on their being off.
             unsafe { NVIC::unmask(Number(*number)) };
         }
-        let (busy, watchdog) = (Pin::start(), Watchdog::start());
-        Some(Self { busy, watchdog, restarts, inbox, ticks: Ticks::new() })
+        watchdog.feed();
+        let has_failed = !clocks.is_by_crystal;
+        Some(Self { busy: Pin::start(), watchdog, restarts, has_failed, inbox, ticks: Ticks::new() })
     }
 
     /// The next frame, and when it arrived.
@@ -99,8 +106,11 @@ impl Board {
     }
 
     /// What was lost since the last call, and how often; to be called every period.
-    pub fn incidents(&mut self) -> [(Incident, u32); 4] {
-        port::lost()
+    pub fn incidents(&mut self) -> [(Incident, u32); 6] {
+        let [overrun, receive, transmit, bus_off] = port::lost();
+        let missed = (Incident::MissedPeriod, self.ticks.missed());
+        let clock = (Incident::ClockFailed, u32::from(core::mem::take(&mut self.has_failed)));
+        [overrun, receive, transmit, bus_off, missed, clock]
     }
 
     /// Sends what can be sent, and sleeps if there is nothing else to do.

@@ -92,10 +92,10 @@ impl Board {
     }
 
     /// What was lost since the last call, and how often; to be called every period.
-    pub fn incidents(&mut self) -> [(Incident, u32); 3] {
+    pub fn incidents(&mut self) -> [(Incident, u32); 4] {
         let overruns = core::mem::take(&mut self.overruns);
         let [transmit, bus_off] = self.outbox.lost(&mut self.port);
-        [(Incident::Overrun, overruns), transmit, bus_off]
+        [(Incident::Overrun, overruns), transmit, bus_off, (Incident::MissedPeriod, self.clock.missed())]
     }
 
     /// Sends what can be sent. Then, in the emulator, it sleeps until there is something to do; on the chip, and while frames
