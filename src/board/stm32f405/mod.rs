@@ -28,7 +28,7 @@ mod wiring;
 #[cfg(feature = "log")]
 pub use clock::now;
 
-use crate::board::outbox::Pass;
+use crate::board::outbox::{self, Outbox, Pass};
 use crate::firmware::{self, Unit};
 use clock::Ticks;
 use clocks::Clocks;
@@ -68,18 +68,19 @@ fn start() -> ! {
     // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
     static mut UNIT: Unit = Unit::idle();
     static mut ARRIVALS: Arrivals = Arrivals::new();
-    firmware::run(UNIT, Board::start(ARRIVALS))
+    static mut OUTBOX: Outbox = outbox::of_the_shell();
+    firmware::run(UNIT, Board::start(ARRIVALS, OUTBOX))
 }
 
 impl Board {
     /// Starts everything. `None` if it was started before, or restarted too often to be trusted.
-    fn start(arrivals: &'static mut Arrivals) -> Option<Self> {
+    fn start(arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Option<Self> {
         let peripherals = Peripherals::take()?;
         let restarts = watchdog::restarts()?;
         // It watches over the start as well.
         let mut watchdog = Watchdog::start();
         let clocks = Clocks::start(&mut watchdog);
-        let inbox = port::start(&clocks, arrivals);
+        let inbox = port::start(&clocks, arrivals, outbox);
         clock::start(peripherals.SYST, &clocks);
         for number in Selected::INTERRUPTS {
             // SAFETY: the port's interrupts have their handler, below, and nothing relies on their being off.

@@ -5,7 +5,7 @@
 use super::clocks::Clocks;
 use super::{Selected, clock};
 use crate::board::frame::CanFrame;
-use crate::board::outbox::{self, Outbox, Pass};
+use crate::board::outbox::{Outbox, Pass};
 use crate::board::port::{Overrun, Port};
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -34,7 +34,7 @@ pub type Arrivals = Queue<(Instant, CanFrame), WAITING>;
 struct Line {
     port: Selected,
     arrivals: Producer<'static, (Instant, CanFrame)>,
-    outbox: Outbox,
+    outbox: &'static mut Outbox,
 }
 
 static LINE: Mutex<RefCell<Option<Line>>> = Mutex::new(RefCell::new(None));
@@ -93,12 +93,12 @@ pub fn pass() -> Pass {
 pub struct Inbox(Consumer<'static, (Instant, CanFrame)>);
 
 /// Starts the port.
-pub fn start(clocks: &Clocks, arrivals: &'static mut Arrivals) -> Inbox {
+pub fn start(clocks: &Clocks, arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Inbox {
     let (producer, consumer) = arrivals.split();
     let port = <Selected as Select>::start(clocks);
     interrupt::free(|token| {
         if let Ok(mut line) = LINE.borrow(token).try_borrow_mut() {
-            *line = Some(Line { port, arrivals: producer, outbox: outbox::of_the_shell() });
+            *line = Some(Line { port, arrivals: producer, outbox });
         }
     });
     Inbox(consumer)
