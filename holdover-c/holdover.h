@@ -157,7 +157,7 @@ enum holdover_status_t
   HOLDOVER_REFUSED_RECEIVE_OVERFLOW = -84,
   // Likewise: the bus controller lost a frame.
   HOLDOVER_REFUSED_OVERRUN = -85,
-  // Likewise: the platform's transmit queue was full.
+  // Likewise: frames to be sent were lost before the bus.
   HOLDOVER_REFUSED_TRANSMIT_OVERFLOW = -86,
   // Likewise: the bus controller left the bus.
   HOLDOVER_REFUSED_BUS_OFF = -87,
@@ -187,6 +187,10 @@ enum holdover_status_t
   HOLDOVER_REFUSED_COMMAND_UNHEEDED = -99,
   // Not a refusal of a frame: no room for the passes of one more station.
   HOLDOVER_REFUSED_PASSES_FULL = -100,
+  // Not a refusal of a frame: the platform did not tick the unit for a period.
+  HOLDOVER_REFUSED_MISSED_PERIOD = -101,
+  // Not a refusal of a frame: the platform's crystal did not start.
+  HOLDOVER_REFUSED_CLOCK_FAILED = -102,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -595,7 +599,7 @@ holdover_status_t holdover_default_config(struct holdover_config_t *config);
 // of `HOLDOVER_UNIT_ALIGN`. The configuration is copied. What is refused leaves the memory as it was.
 //
 // The memory should be zero; if it may still hold the unit of a program that ran before (a section that a reset does not
-// clear), call `holdover_release` before.
+// clear), call `holdover_after_reset` before.
 //
 // # Safety
 // `memory` has to be the caller's for as long as the unit is used, and nobody else may write to it. `config` has to
@@ -607,6 +611,14 @@ holdover_status_t holdover_init(void *memory, size_t size, const struct holdover
 // # Safety
 // As `holdover_tick`.
 holdover_status_t holdover_release(void *unit);
+
+// Takes out of memory that a reset does not clear what the program before the reset has left there, also a unit that it was in the
+// middle of a call into, which every other function would refuse as busy for ever. To be called once after a reset, before
+// `holdover_init` and before anything calls into the unit. There need not be a unit.
+//
+// # Safety
+// `memory` has to be memory as in `holdover_init`, and no call into a unit there may be under way.
+holdover_status_t holdover_after_reset(void *memory);
 
 // Takes in one frame, received at `at_us` microseconds of a clock that never goes back. Frames may come in any order and at
 // any time. Positive or zero: what became of it; else the cause for which it was refused.

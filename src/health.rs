@@ -65,7 +65,7 @@ causes! {
     /// ([`Incident::Overrun`])
     Overrun = 21, "overrun", "No refusal: frames that the bus controller lost before they were taken.";
     ///
-    /// The platform's transmit queue had no room for them ([`Incident::TransmitOverflow`]), or the unit's own answer had none.
+    /// They waited too long on the platform, or it had no room for them ([`Incident::TransmitOverflow`]); or the unit's own answer had none.
     TransmitOverflow = 22, "transmit_overflow", "No refusal: frames of the unit that are lost before the bus.";
     ///
     /// ([`Incident::BusOff`])
@@ -91,6 +91,12 @@ causes! {
     DriverOverride = 34, "driver_override", "No refusal: the driver took over by a pedal while the unit was asked to drive; once for each time.";
     CommandUnheeded = 35, "command_unheeded", "No refusal: for 200 ms ActuatorState has acknowledged no command of the last 50 ms while the unit drove; once for each time.";
     PassesFull = 36, "passes_full", "No refusal: a station comes to the next intersection, and the unit knows so many that there is no room for it. No pass is firm then.";
+    ///
+    /// ([`Incident::MissedPeriod`])
+    MissedPeriod = 37, "missed_period", "No refusal: periods in which the platform did not tick the unit; all of a gap are counted.";
+    ///
+    /// ([`Incident::ClockFailed`])
+    ClockFailed = 38, "clock_failed", "No refusal: the platform's crystal did not start, and a less accurate clock is in its place.";
 }
 
 /// What the platform around the unit has met with. It tells the unit ([`OnboardUnit::note`](crate::OnboardUnit::note)), so
@@ -102,12 +108,16 @@ pub enum Incident {
     ReceiveOverflow,
     /// The bus controller lost a frame.
     Overrun,
-    /// The transmit queue was full.
+    /// A frame was lost before the bus: the transmit queue was full, or it waited until it was too old or a newer one was there.
     TransmitOverflow,
     /// The bus controller left the bus, or could not be put onto it.
     BusOff,
     /// The watchdog restarted the unit.
     Restart,
+    /// A period has passed without a tick; one for each, so that the count has the length of a gap.
+    MissedPeriod,
+    /// The crystal did not start, and a less accurate clock is in its place.
+    ClockFailed,
 }
 
 impl Incident {
@@ -120,6 +130,8 @@ impl Incident {
             Self::TransmitOverflow => Cause::TransmitOverflow,
             Self::BusOff => Cause::BusOff,
             Self::Restart => Cause::Restart,
+            Self::MissedPeriod => Cause::MissedPeriod,
+            Self::ClockFailed => Cause::ClockFailed,
         }
     }
 }

@@ -46,7 +46,7 @@ mod firmware {
                 let Ok(()) = board.busy.set_low();
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.send(frame);
+                    board.send(now, frame);
                 }
                 board.watchdog.feed();
             }
@@ -55,14 +55,15 @@ mod firmware {
     }
 
     /// For hardware in the loop: the bus's time synchronisation ticks the unit, and the timer only feeds the watchdog, since
-    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's.
+    /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's, and the timer's
+    /// periods never are.
     #[cfg(feature = "lock-step")]
     fn drive(unit: &mut Unit, mut board: Board) -> ! {
         let mut log = crate::log::Log::new();
         let mut steps = holdover::LockStep::new();
         let mut has_begun = false;
         loop {
-            while let Some((_, frame)) = board.receive() {
+            while let Some((at, frame)) = board.receive() {
                 let Ok(()) = board.busy.set_high();
                 let answer = steps.receive(unit, &frame);
                 let Ok(()) = board.busy.set_low();
@@ -70,12 +71,13 @@ mod firmware {
                 has_begun = true;
                 log.ticked(answer.mode);
                 for frame in &answer.frames {
-                    board.send(frame);
+                    board.send(at, frame);
                 }
             }
             if board.tick().is_some() {
                 for (incident, times) in board.incidents() {
-                    unit.note(incident, if has_begun { times } else { 0 });
+                    let is_its_own = has_begun && incident != Incident::MissedPeriod;
+                    unit.note(incident, if is_its_own { times } else { 0 });
                 }
                 board.watchdog.feed();
             }

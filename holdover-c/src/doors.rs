@@ -52,7 +52,7 @@ pub unsafe extern "C" fn holdover_default_config(config: *mut Config) -> Status 
 /// of `HOLDOVER_UNIT_ALIGN`. The configuration is copied. What is refused leaves the memory as it was.
 ///
 /// The memory should be zero; if it may still hold the unit of a program that ran before (a section that a reset does not
-/// clear), call `holdover_release` before.
+/// clear), call `holdover_after_reset` before.
 ///
 /// # Safety
 /// `memory` has to be the caller's for as long as the unit is used, and nobody else may write to it. `config` has to
@@ -75,6 +75,18 @@ pub unsafe extern "C" fn holdover_init(memory: *mut c_void, size: usize, config:
 pub unsafe extern "C" fn holdover_release(unit: *mut c_void) -> Status {
     // SAFETY: checked there, and the caller vouches for the rest.
     unsafe { memory::vacate(unit) }.map_or_else(|cause| cause, |()| Status::Ok)
+}
+
+/// Takes out of memory that a reset does not clear what the program before the reset has left there, also a unit that it was in the
+/// middle of a call into, which every other function would refuse as busy for ever. To be called once after a reset, before
+/// `holdover_init` and before anything calls into the unit. There need not be a unit.
+///
+/// # Safety
+/// `memory` has to be memory as in [`holdover_init`], and no call into a unit there may be under way.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_after_reset(memory: *mut c_void) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    unsafe { memory::clear(memory) }.map_or_else(|cause| cause, |()| Status::Ok)
 }
 
 /// Takes in one frame, received at `at_us` microseconds of a clock that never goes back. Frames may come in any order and at

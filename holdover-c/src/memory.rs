@@ -100,6 +100,22 @@ pub unsafe fn vacate(memory: *mut c_void) -> Result<(), Status> {
     unsafe { with(memory, |held| (&raw mut (*held).head).write_volatile(0)) }
 }
 
+/// Takes out of the memory whatever a program that ran before has left in it: a unit, one with somebody in it too, or none.
+///
+/// # Errors
+/// [`Status::Null`], [`Status::Misaligned`].
+///
+/// # Safety
+/// As [`occupy`]; and no call into a unit there may be under way.
+pub unsafe fn clear(memory: *mut c_void) -> Result<(), Status> {
+    let held = memory.cast::<Held>();
+    pointer::check(memory.cast::<u64>())?;
+    pointer::check(held)?;
+    // SAFETY: not null, aligned, and the caller vouches for the rest.
+    unsafe { (&raw mut (*held).head).write_volatile(0) };
+    Ok(())
+}
+
 /// Does something with what lies there, of which there is a whole one that nobody else is in.
 ///
 /// # Safety

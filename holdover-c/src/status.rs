@@ -128,7 +128,7 @@ pub enum Status {
     RefusedReceiveOverflow = -84,
     /// Likewise: the bus controller lost a frame.
     RefusedOverrun = -85,
-    /// Likewise: the platform's transmit queue was full.
+    /// Likewise: frames to be sent were lost before the bus.
     RefusedTransmitOverflow = -86,
     /// Likewise: the bus controller left the bus.
     RefusedBusOff = -87,
@@ -158,6 +158,10 @@ pub enum Status {
     RefusedCommandUnheeded = -99,
     /// Not a refusal of a frame: no room for the passes of one more station.
     RefusedPassesFull = -100,
+    /// Not a refusal of a frame: the platform did not tick the unit for a period.
+    RefusedMissedPeriod = -101,
+    /// Not a refusal of a frame: the platform's crystal did not start.
+    RefusedClockFailed = -102,
 }
 
 impl From<ConfigError> for Status {
@@ -226,6 +230,8 @@ impl From<Cause> for Status {
             Cause::DriverOverride => Self::RefusedDriverOverride,
             Cause::CommandUnheeded => Self::RefusedCommandUnheeded,
             Cause::PassesFull => Self::RefusedPassesFull,
+            Cause::MissedPeriod => Self::RefusedMissedPeriod,
+            Cause::ClockFailed => Self::RefusedClockFailed,
         }
     }
 }
@@ -303,6 +309,8 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::RefusedDriverOverride, c"counted: driver_override"),
     (Status::RefusedCommandUnheeded, c"counted: command_unheeded"),
     (Status::RefusedPassesFull, c"counted: passes_full"),
+    (Status::RefusedMissedPeriod, c"counted: missed_period"),
+    (Status::RefusedClockFailed, c"counted: clock_failed"),
 ];
 
 /// The name of a code in ASCII; `"unknown"` if there is no such code.

@@ -51,6 +51,11 @@ fn release(unit: *mut c_void) -> Status {
     unsafe { holdover_release(unit) }
 }
 
+fn after_reset(memory: *mut c_void) -> Status {
+    // SAFETY: as above; no call is under way.
+    unsafe { holdover_after_reset(memory) }
+}
+
 fn count(unit: *mut c_void, cause: i32) -> (Status, u32) {
     let mut count = 0xAAAA;
     // SAFETY: as above.
@@ -162,6 +167,31 @@ fn a_second_call_into_the_same_unit_is_turned_away() {
     memory.0[1] = 0;
     assert_eq!(tick(memory.at(0)).0, Status::Ok);
     assert_eq!(tick(memory.at(0)).0, Status::Ok, "a call that is over does not stand in the way");
+}
+
+#[test]
+fn a_reset_in_the_middle_of_a_tick_with_memory_that_keeps_its_contents_leaves_a_unit_that_can_be_made_anew() {
+    let mut memory = Memory::filled(0);
+    assert_eq!(memory.init(), Status::Ok);
+    assert_eq!(receive(memory.at(0), &FRAME), Status::RefusedChecksum);
+    memory.0[1] = u64::from_ne_bytes([1; 8]); // the flag, as a call that a reset ended leaves it
+    assert_eq!((memory.init(), release(memory.at(0))), (Status::AlreadyInitialised, Status::Busy));
+    assert_eq!(after_reset(memory.at(0)), Status::Ok);
+    assert_eq!(tick(memory.at(0)).0, Status::NotInitialised);
+    assert_eq!(memory.init(), Status::Ok);
+    assert_eq!(tick(memory.at(0)).0, Status::Ok);
+    assert_eq!(count(memory.at(0), Status::RefusedChecksum as i32), (Status::Ok, 0));
+}
+
+#[test]
+fn after_a_reset_any_memory_is_free_for_a_unit() {
+    for byte in [0, 1, 0x5A, 0xFF] {
+        let mut memory = Memory::filled(byte);
+        assert_eq!(after_reset(memory.at(0)), Status::Ok, "{byte}");
+        assert_eq!(memory.init(), Status::Ok, "{byte}");
+    }
+    assert_eq!(after_reset(null_mut()), Status::Null);
+    assert_eq!(after_reset(Memory::filled(0).at(4)), Status::Misaligned);
 }
 
 #[test]

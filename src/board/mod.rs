@@ -6,10 +6,14 @@
 //! A board calls `firmware::run` once, with the unit's memory and itself: `Board` has `receive`, `send`, `tick`,
 //! `incidents` and `idle`, a pin `busy` and a `watchdog`.
 
-#[cfg(any(board = "zynqmp_r5", not(feature = "bxcan")))]
 mod frame;
 mod outbox;
+mod periods;
 mod port;
+#[cfg(any(board = "zynqmp_r5", feature = "bxcan"))]
+mod registers;
+#[cfg(board = "stm32f405")]
+mod restarts;
 
 #[cfg(board = "stm32f405")]
 mod stm32f405;

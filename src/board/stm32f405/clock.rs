@@ -7,6 +7,7 @@
 
 use super::clocks::Clocks;
 use super::registers::{RCC_APB1ENR, TIM2_CNT, TIM2_CR1, TIM2_EGR, TIM2_PSC};
+use crate::board::periods::{PERIOD_MICROS, Periods};
 use core::cell::Cell;
 use cortex_m::interrupt::{self, Mutex};
 use cortex_m::peripheral::SYST;
@@ -14,25 +15,26 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
 use holdover::time::Instant;
 
-const TICK_HZ: u32 = 100;
+/// Both timers have the same clock and start together, so an interrupt comes a moment after a period has begun.
+const TICK_HZ: u32 = (1_000_000 / PERIOD_MICROS) as u32;
 
 /// The counter's last reading, and how often it had begun anew: every 71 minutes.
 static COUNT: Mutex<Cell<(u32, u32)>> = Mutex::new(Cell::new((0, 0)));
 /// Interrupts of the core's timer.
-static PERIODS: Mutex<Cell<u32>> = Mutex::new(Cell::new(0));
+static INTERRUPTS: Mutex<Cell<u32>> = Mutex::new(Cell::new(0));
 
 #[exception]
 fn SysTick() {
     now(); // often enough to see that the counter has begun anew
     interrupt::free(|token| {
-        let periods = PERIODS.borrow(token);
-        periods.set(periods.get().wrapping_add(1));
+        let interrupts = INTERRUPTS.borrow(token);
+        interrupts.set(interrupts.get().wrapping_add(1));
     });
 }
 
 /// Starts both. A core clock of up to 1.6 GHz fits the 24 bits of the core's timer.
 pub fn start(mut timer: SYST, clocks: &Clocks) {
-    RCC_APB1ENR.set(0, 1); // TIM2
+    RCC_APB1ENR.enable(1); // TIM2
     TIM2_PSC.write((clocks.counter_hz / 1_000_000).saturating_sub(1));
     TIM2_EGR.write(1); // takes the prescaler over
     TIM2_CR1.write(1); // on
@@ -60,29 +62,37 @@ pub fn now() -> Instant {
 /// The ticks, each handed out once.
 pub struct Ticks {
     seen: u32,
+    periods: Periods,
 }
 
 impl Ticks {
     pub const fn new() -> Self {
-        Self { seen: 0 }
+        Self { seen: 0, periods: Periods::new() }
     }
 
     /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up
-    /// for.
+    /// for, and counted.
     pub fn next(&mut self) -> Option<Instant> {
-        let periods = periods();
-        (periods != self.seen).then(|| {
-            self.seen = periods;
-            now()
+        let interrupts = interrupts();
+        (interrupts != self.seen).then(|| {
+            self.seen = interrupts;
+            let now = now();
+            self.periods.tick(now);
+            now
         })
+    }
+
+    /// How many passed unseen since the last call.
+    pub fn missed(&mut self) -> u32 {
+        self.periods.missed()
     }
 
     /// Whether there is one to hand out.
     pub fn is_due(&self) -> bool {
-        periods() != self.seen
+        interrupts() != self.seen
     }
 }
 
-fn periods() -> u32 {
-    interrupt::free(|token| PERIODS.borrow(token).get())
+fn interrupts() -> u32 {
+    interrupt::free(|token| INTERRUPTS.borrow(token).get())
 }

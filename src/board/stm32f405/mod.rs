@@ -2,12 +2,19 @@
 //! ticks leave.
 //!
 //! Its CAN traffic goes over a serial CAN adapter on USART1 ([`slcan`]), or with the feature `bxcan` over the chip's own
-//! controller; both are `embedded-can`'s trait to the rest.
+//! controller; both are a [`Port`](crate::board::port::Port) to the rest.
 
 #[cfg(feature = "bxcan")]
 mod bxcan;
+#[cfg(feature = "bxcan")]
+mod can;
 mod clock;
 mod clocks;
+mod gpio;
+#[cfg(not(feature = "bxcan"))]
+mod line;
+#[cfg(feature = "bxcan")]
+mod mailbox;
 mod pin;
 mod port;
 mod registers;
@@ -16,12 +23,12 @@ mod serial;
 #[cfg(not(feature = "bxcan"))]
 mod slcan;
 mod watchdog;
+mod wiring;
 
 #[cfg(feature = "log")]
 pub use clock::now;
 
-use crate::board::outbox::{Outbox, Pass};
-use crate::board::port::Port;
+use crate::board::outbox::{self, Outbox, Pass};
 use crate::firmware::{self, Unit};
 use clock::Ticks;
 use clocks::Clocks;
@@ -34,11 +41,11 @@ use embedded_can::Frame;
 use holdover::health::Incident;
 use holdover::time::Instant;
 use pin::Pin;
-use port::{Arrivals, Inbox, PortFrame, Select};
+use port::{Arrivals, Inbox, Select};
 use watchdog::Watchdog;
 
 #[cfg(feature = "bxcan")]
-type Selected = bxcan::Bxcan;
+type Selected = can::Controller<bxcan::Can1>;
 #[cfg(not(feature = "bxcan"))]
 type Selected = slcan::Slcan;
 
@@ -50,8 +57,9 @@ pub struct Board {
     pub watchdog: Watchdog,
     /// How often the watchdog has restarted the unit.
     pub restarts: u32,
+    /// The crystal did not start, and nobody has been told.
+    has_failed: bool,
     inbox: Inbox,
-    outbox: Outbox<PortFrame>,
     ticks: Ticks,
 }
 
@@ -60,21 +68,27 @@ fn start() -> ! {
     // The entry attribute hands the statics out as `&'static mut`, once. `ci.sh` finds the unit by its name.
     static mut UNIT: Unit = Unit::idle();
     static mut ARRIVALS: Arrivals = Arrivals::new();
-    firmware::run(UNIT, Board::start(ARRIVALS))
+    static mut OUTBOX: Outbox = outbox::of_the_shell();
+    firmware::run(UNIT, Board::start(ARRIVALS, OUTBOX))
 }
 
 impl Board {
     /// Starts everything. `None` if it was started before, or restarted too often to be trusted.
-    fn start(arrivals: &'static mut Arrivals) -> Option<Self> {
+    fn start(arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Option<Self> {
         let peripherals = Peripherals::take()?;
         let restarts = watchdog::restarts()?;
-        let clocks = Clocks::start();
-        let inbox = port::start(&clocks, arrivals);
+        // It watches over the start as well.
+        let mut watchdog = Watchdog::start();
+        let clocks = Clocks::start(&mut watchdog);
+        let inbox = port::start(&clocks, arrivals, outbox);
         clock::start(peripherals.SYST, &clocks);
-        // SAFETY: the port's interrupt has its handler, below, and nothing relies on its being off.
-        unsafe { NVIC::unmask(Number(Selected::INTERRUPT)) };
-        let (busy, watchdog) = (Pin::start(), Watchdog::start());
-        Some(Self { busy, watchdog, restarts, inbox, outbox: Outbox::new(), ticks: Ticks::new() })
+        for number in Selected::INTERRUPTS {
+            // SAFETY: the port's interrupts have their handler, below, and nothing relies on their being off.
+            unsafe { NVIC::unmask(Number(*number)) };
+        }
+        watchdog.feed();
+        let has_failed = !clocks.is_by_crystal;
+        Some(Self { busy: Pin::start(), watchdog, restarts, has_failed, inbox, ticks: Ticks::new() })
     }
 
     /// The next frame, and when it arrived.
@@ -82,9 +96,9 @@ impl Board {
         self.inbox.next()
     }
 
-    /// Takes a frame to be sent.
-    pub fn send(&mut self, frame: &impl Frame) {
-        self.outbox.push(frame);
+    /// Takes a frame of the tick at this time to be sent.
+    pub fn send(&mut self, tick: Instant, frame: &impl Frame) {
+        port::send(tick, frame);
     }
 
     /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
@@ -93,22 +107,20 @@ impl Board {
     }
 
     /// What was lost since the last call, and how often; to be called every period.
-    pub fn incidents(&mut self) -> [(Incident, u32); 4] {
-        let [overrun, receive] = port::lost();
-        let [transmit, bus_off] = self.outbox.lost(port::with(Port::left_bus) == Some(true));
-        [overrun, receive, transmit, bus_off]
+    pub fn incidents(&mut self) -> [(Incident, u32); 6] {
+        let [overrun, receive, transmit, bus_off] = port::lost();
+        let missed = (Incident::MissedPeriod, self.ticks.missed());
+        let clock = (Incident::ClockFailed, u32::from(core::mem::take(&mut self.has_failed)));
+        [overrun, receive, transmit, bus_off, missed, clock]
     }
 
     /// Sends what can be sent, and sleeps if there is nothing else to do.
     pub fn idle(&mut self) {
-        // One frame at a time, so that interrupts are off for no longer than one takes.
-        let full = loop {
-            match port::with(|port| self.outbox.pass(port)) {
-                Some(Pass::Taken) => {}
-                other => break other == Some(Pass::Full),
-            }
-        };
-        if full || port::with(Select::pump) == Some(true) {
+        let mut pass = Pass::Taken;
+        while pass == Pass::Taken {
+            pass = port::pass();
+        }
+        if pass == Pass::Full && !Selected::TELLS_WHEN_SENT {
             return;
         }
         // With interrupts off nothing can arrive between the question and the sleep, and what arrives in it ends it.
@@ -124,7 +136,7 @@ impl Board {
 #[derive(Clone, Copy)]
 struct Number(i16);
 
-// SAFETY: the only one is the port's, which is a number of this chip's vector table and does not change.
+// SAFETY: the only ones are the port's, which are numbers of this chip's vector table and do not change.
 unsafe impl interrupt::InterruptNumber for Number {
     fn number(self) -> u16 {
         self.0 as u16
@@ -134,7 +146,7 @@ unsafe impl interrupt::InterruptNumber for Number {
 /// All interrupts and exceptions without a handler of their own: the port's, and what must never happen.
 #[exception]
 unsafe fn DefaultHandler(number: i16) {
-    if number == Selected::INTERRUPT {
+    if Selected::INTERRUPTS.contains(&number) {
         port::interrupted();
     } else {
         stop();

@@ -1,87 +1,104 @@
-//! The CAN port between its interrupt and the shell: frames that the interrupt takes in enter a lock-free queue with their
-//! time of arrival and leave by [`Inbox`]; the shell comes to the port by [`with`], to send.
+//! The CAN port between its interrupts and the shell: frames that an interrupt takes in enter a lock-free queue with their
+//! time of arrival and leave by [`Inbox`]; what the shell sends waits in the [`Outbox`], out of which the shell and the interrupts
+//! give it to the port. So what a tick has sent leaves while the next one runs.
 
 use super::clocks::Clocks;
 use super::{Selected, clock};
-use crate::board::port::Port;
+use crate::board::frame::CanFrame;
+use crate::board::outbox::{Outbox, Pass};
+use crate::board::port::{Overrun, Port};
 use core::cell::RefCell;
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::interrupt::{self, Mutex};
 use embedded_can::Frame;
-use embedded_can::nb::Can;
 use heapless::spsc::{Consumer, Producer, Queue};
 use holdover::health::Incident;
 use holdover::time::Instant;
 
 /// A port that can be selected.
 pub trait Select: Port + Sized {
-    /// The number of its interrupt.
-    const INTERRUPT: i16;
+    /// The numbers of its interrupts.
+    const INTERRUPTS: &'static [i16];
+    /// Whether one comes when a frame has been sent.
+    const TELLS_WHEN_SENT: bool;
     /// Puts it into operation.
     fn start(clocks: &Clocks) -> Self;
-    /// Moves on what is being sent; whether something is left of it.
-    fn pump(&mut self) -> bool;
 }
 
-/// A frame of the port that was selected.
-pub type PortFrame = <Selected as Can>::Frame;
 /// Frames that may wait for the shell: 8 ms of a full bus at 500 kbit/s bring 36, and the longest tick takes less.
 const WAITING: usize = 64;
 
 /// The queue's memory.
-pub type Arrivals = Queue<(Instant, PortFrame), WAITING>;
+pub type Arrivals = Queue<(Instant, CanFrame), WAITING>;
 
-struct Receiver {
+struct Line {
     port: Selected,
-    arrivals: Producer<'static, (Instant, PortFrame)>,
+    arrivals: Producer<'static, (Instant, CanFrame)>,
+    outbox: &'static mut Outbox,
 }
 
-static RECEIVER: Mutex<RefCell<Option<Receiver>>> = Mutex::new(RefCell::new(None));
+static LINE: Mutex<RefCell<Option<Line>>> = Mutex::new(RefCell::new(None));
 
 /// What was lost since the shell asked last.
 static OVERRUNS: AtomicU32 = AtomicU32::new(0);
 static OVERFLOWS: AtomicU32 = AtomicU32::new(0);
 
-/// Calls this with the receiver. The interrupt and the shell take turns, so nobody ever finds it borrowed.
-fn with_receiver<R>(work: impl FnOnce(&mut Receiver) -> R) -> Option<R> {
-    interrupt::free(|token| RECEIVER.borrow(token).try_borrow_mut().ok()?.as_mut().map(work))
+/// Calls this with the port and its queues, interrupts off. The interrupts and the shell take turns, so nobody ever finds them
+/// borrowed.
+fn with<R>(work: impl FnOnce(&mut Line) -> R) -> Option<R> {
+    interrupt::free(|token| LINE.borrow(token).try_borrow_mut().ok()?.as_mut().map(work))
 }
 
-/// Calls this with the port, interrupts off.
-pub fn with<R>(work: impl FnOnce(&mut Selected) -> R) -> Option<R> {
-    with_receiver(|receiver| work(&mut receiver.port))
-}
-
-/// The port's interrupt: takes in all that has arrived.
+/// The port's interrupts: takes in all that has arrived, and gives the port what it has room for.
 pub fn interrupted() {
-    with_receiver(|Receiver { port, arrivals }| {
-        loop {
-            match port.receive() {
-                Ok(frame) => {
-                    // The first half is never so; it is what shows the compiler that no length is divided by 0.
-                    if arrivals.capacity() == usize::MAX || arrivals.enqueue((clock::now(), frame)).is_err() {
-                        OVERFLOWS.fetch_add(1, Ordering::Relaxed);
-                    }
-                }
-                Err(nb::Error::WouldBlock) => return,
-                Err(nb::Error::Other(_)) => {
-                    OVERRUNS.fetch_add(1, Ordering::Relaxed);
-                }
-            }
+    with(|line| {
+        line.take_in();
+        if Selected::TELLS_WHEN_SENT {
+            // It has room for a few frames, so this ends.
+            while line.outbox.pass(clock::now(), &mut line.port) == Pass::Taken {}
         }
     });
 }
 
+impl Line {
+    fn take_in(&mut self) {
+        loop {
+            match self.port.receive() {
+                Ok(Some(frame)) => {
+                    // The first half is never so; it is what shows the compiler that no length is divided by 0.
+                    if self.arrivals.capacity() == usize::MAX || self.arrivals.enqueue((clock::now(), frame)).is_err() {
+                        OVERFLOWS.fetch_add(1, Ordering::Relaxed);
+                    }
+                }
+                Ok(None) => return,
+                Err(Overrun) => {
+                    OVERRUNS.fetch_add(1, Ordering::Relaxed);
+                }
+            }
+        }
+    }
+}
+
+/// Queues a frame of the tick at this time.
+pub fn send(tick: Instant, frame: &impl Frame) {
+    with(|line| line.outbox.push(tick, frame));
+}
+
+/// Gives the port the most urgent frame that waits. One at a time, so that interrupts are off for no longer than one takes.
+pub fn pass() -> Pass {
+    with(|line| line.outbox.pass(clock::now(), &mut line.port)).unwrap_or(Pass::Nothing)
+}
+
 /// The shell's end of what arrives.
-pub struct Inbox(Consumer<'static, (Instant, PortFrame)>);
+pub struct Inbox(Consumer<'static, (Instant, CanFrame)>);
 
 /// Starts the port.
-pub fn start(clocks: &Clocks, arrivals: &'static mut Arrivals) -> Inbox {
+pub fn start(clocks: &Clocks, arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Inbox {
     let (producer, consumer) = arrivals.split();
-    let port = Selected::start(clocks);
+    let port = <Selected as Select>::start(clocks);
     interrupt::free(|token| {
-        if let Ok(mut receiver) = RECEIVER.borrow(token).try_borrow_mut() {
-            *receiver = Some(Receiver { port, arrivals: producer });
+        if let Ok(mut line) = LINE.borrow(token).try_borrow_mut() {
+            *line = Some(Line { port, arrivals: producer, outbox });
         }
     });
     Inbox(consumer)
@@ -98,10 +115,14 @@ impl Inbox {
     }
 }
 
-/// Received frames that were lost since the last call: by the port, and by the queue.
-pub fn lost() -> [(Incident, u32); 2] {
+/// What was lost since the last call, and how often: received frames by the port and by the queue, frames to be sent, and the bus.
+pub fn lost() -> [(Incident, u32); 4] {
+    let [transmit, bus_off] = with(|line| line.outbox.lost(&mut line.port))
+        .unwrap_or([(Incident::TransmitOverflow, 0), (Incident::BusOff, 0)]);
     [
         (Incident::Overrun, OVERRUNS.swap(0, Ordering::Relaxed)),
         (Incident::ReceiveOverflow, OVERFLOWS.swap(0, Ordering::Relaxed)),
+        transmit,
+        bus_off,
     ]
 }

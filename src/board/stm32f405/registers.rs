@@ -16,10 +16,6 @@ pub const RCC_APB2ENR: Register = Register(0x4002_3844);
 pub const RCC_CSR: Register = Register(0x4002_3874);
 /// Wait states of the flash.
 pub const FLASH_ACR: Register = Register(0x4002_3c00);
-/// Port A: mode of each pin, alternate function of pins 8 to 15, and the word that sets and resets outputs.
-pub const GPIOA_MODER: Register = Register(0x4002_0000);
-pub const GPIOA_BSRR: Register = Register(0x4002_0018);
-pub const GPIOA_AFRH: Register = Register(0x4002_0024);
 /// The counter of microseconds.
 pub const TIM2_CR1: Register = Register(0x4000_0000);
 pub const TIM2_EGR: Register = Register(0x4000_0014);
@@ -34,15 +30,20 @@ pub const USART1_CR1: Register = Register(0x4001_100c);
 pub const IWDG_KR: Register = Register(0x4000_3000);
 pub const IWDG_PR: Register = Register(0x4000_3004);
 pub const IWDG_RLR: Register = Register(0x4000_3008);
-/// The CAN controller, as far as its driver does not know it, and its pins on port B.
-pub const CAN1_MCR: Register = Register(0x4000_6400);
-pub const GPIOB_MODER: Register = Register(0x4002_0400);
-pub const GPIOB_AFRH: Register = Register(0x4002_0424);
-pub const CAN1_ESR: Register = Register(0x4000_6418);
 
 impl Register {
+    /// One of a port's, by its number from port A on, and its offset.
+    pub const fn of_port(number: usize, offset: usize) -> Self {
+        Self(0x4002_0000 + 0x400 * (number & 0x7) + (offset & 0x3fc))
+    }
+
+    /// One of the CAN controller's, by its offset.
+    pub const fn of_can1(offset: usize) -> Self {
+        Self(0x4000_6400 + (offset & 0x3fc))
+    }
+
     pub fn read(self) -> u32 {
-        // SAFETY: the field is private, so the address is one of the constants above: aligned words of peripherals
+        // SAFETY: the field is private, so the address is one of the constants above, of a port or of CAN1: aligned words of peripherals
         // that are mapped on this chip whatever the state of the clocks, and that no Rust object overlaps.
         unsafe { (self.0 as *const u32).read_volatile() }
     }
@@ -54,6 +55,13 @@ impl Register {
 
     pub fn set(self, mask: u32, bits: u32) {
         self.write(self.read() & !mask | bits);
+    }
+
+    /// Turns the clock of peripherals on. They have it some cycles later (an erratum in ES0182): to read the register back takes
+    /// as long as that.
+    pub fn enable(self, bits: u32) {
+        self.set(0, bits);
+        self.read();
     }
 
     /// Waits until all of these bits are set, but not for ever; whether they are.

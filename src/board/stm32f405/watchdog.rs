@@ -2,32 +2,31 @@
 //! happened since power came on.
 
 use super::registers::{IWDG_KR, IWDG_PR, IWDG_RLR, RCC_CSR};
+use crate::board::restarts::{self, Kept};
 use core::mem::MaybeUninit;
 
 /// By the watchdog's own oscillator, which is 47 % slow or 60 % fast at worst: 30 to 95 ms.
 const TIMEOUT_MS: u32 = 50;
-/// After so many restarts the unit stays down: a reset loop would look alive.
-const MOST_RESTARTS: u32 = 3;
 
 const RESET_BY_WATCHDOG: u32 = 1 << 29;
 const CLEAR_CAUSES: u32 = 1 << 24;
 
-/// The count and its complement. The start-up code leaves this section alone, so that it outlives a reset.
+/// What outlives a reset: the start-up code leaves this section alone.
 #[unsafe(link_section = ".uninit.RESTARTS")]
-static mut RESTARTS: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
+static mut RESTARTS: MaybeUninit<Kept> = MaybeUninit::uninit();
 
 /// How often the watchdog has restarted the unit since power came on; `None` if that was too often. To be called once.
 pub fn restarts() -> Option<u32> {
     let by_watchdog = RCC_CSR.read() & RESET_BY_WATCHDOG != 0;
     RCC_CSR.set(0, CLEAR_CAUSES);
-    let place = (&raw mut RESTARTS).cast::<[u32; 2]>();
+    let place = (&raw mut RESTARTS).cast::<Kept>();
     // SAFETY: only this function accesses the static, and it runs once, before any interrupt is enabled. The read is
     // volatile, so the memory holds some words, whatever they are: any are valid, and chance ones are told by the complement.
-    let [count, complement] = unsafe { place.read_volatile() };
-    let count = if by_watchdog && count == !complement { count.wrapping_add(1) } else { u32::from(by_watchdog) };
+    let before = unsafe { place.read_volatile() };
+    let (kept, count) = restarts::count(by_watchdog, before);
     // SAFETY: as above.
-    unsafe { place.write_volatile([count, !count]) };
-    (count <= MOST_RESTARTS).then_some(count)
+    unsafe { place.write_volatile(kept) };
+    count
 }
 
 /// The watchdog, running: nothing stops it any more.

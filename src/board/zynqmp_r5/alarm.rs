@@ -1,7 +1,7 @@
 //! Sleep: when the next period begins enters; the core is halted until then, or until a frame has come.
 
-use super::can::Registers;
 use super::registers::{self, Block};
+use crate::board::registers::Registers;
 
 /// A counter of the emulator's that interrupts, to sleep by. Its interrupt is wired to the core as IRQ and the CAN
 /// controller's as FIQ, by who starts the emulator. Both stay masked: a halted core is woken by them all the same, and then

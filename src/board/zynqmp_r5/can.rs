@@ -1,22 +1,16 @@
 //! The CAN controller of the ZynqMP: its registers enter, a CAN port leaves. It is polled. What is there to
 //! receive interrupts, for a core that sleeps until then. The controller sends again by itself what lost arbitration or was not
 //! acknowledged.
+//!
+//! Its transmit queue would hold 64 frames, sends them in their order, and gives none back. So it gets one at a time: the next
+//! one is chosen when the bus is there for it. A frame that is too old comes back by a reset of the whole controller.
 
 use super::layout::Layout;
 use crate::board::frame::CanFrame;
-use crate::board::port::Port;
-use embedded_can::nb::Can;
-use embedded_can::{Error, ErrorKind};
+use crate::board::port::{Fate, Overrun, Port};
+use crate::board::registers::Registers;
 
-/// The controller's registers, or what a test puts in their place.
-pub trait Registers {
-    /// The word at a byte offset.
-    fn read(&self, offset: usize) -> u32;
-    /// Writes one.
-    fn write(&mut self, offset: usize, word: u32);
-}
-
-/// Their byte offsets.
+/// Byte offsets.
 pub mod offset {
     /// Reset and enable.
     pub const CONTROL: usize = 0x00;
@@ -47,13 +41,13 @@ pub const RESET: u32 = 1 << 0;
 pub const ENABLE: u32 = 1 << 1;
 /// The status register's: the reset is over, and the controller can be set up.
 pub const CONFIGURING: u32 = 1 << 0;
-/// The transmit queue (64 frames) is full.
-pub const TRANSMIT_FULL: u32 = 1 << 10;
 /// The events'.
 pub const RECEIVED: u32 = 1 << 4;
 pub const OVERRUN: u32 = 1 << 6;
 pub const NOT_EMPTY: u32 = 1 << 7;
 pub const BUS_OFF: u32 = 1 << 9;
+/// The last frame of the transmit queue has been sent.
+pub const EMPTIED: u32 = 1 << 14;
 
 /// 500 kbit/s from the 100 MHz that the boot loader gives the controller: quanta of 0.1 µs, 20 a bit, sampled after 17 (85 %).
 const QUANTUM: u32 = 10 - 1;
@@ -64,16 +58,6 @@ const BIT: u32 = (16 - 1) | (3 - 1) << 4 | (3 - 1) << 7;
 /// be closer together than that, if the first one is late; those of three cannot.
 const ABSENCE: u32 = 2;
 
-/// A frame came before there was room for it, and is lost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Overrun;
-
-impl Error for Overrun {
-    fn kind(&self) -> ErrorKind {
-        ErrorKind::Overrun
-    }
-}
-
 /// The controller as a port.
 pub struct Controller<R> {
     registers: R,
@@ -82,12 +66,14 @@ pub struct Controller<R> {
     absent: u32,
     /// A reset did not end, and nobody has been told.
     is_stuck: bool,
+    /// What became of the frame in the transmit queue, if it has not been told.
+    sending: Option<Fate>,
 }
 
 impl<R: Registers> Controller<R> {
     /// Puts it into operation.
     pub fn start(registers: R, layout: Layout) -> Self {
-        let mut controller = Self { registers, layout, absent: 0, is_stuck: false };
+        let mut controller = Self { registers, layout, absent: 0, is_stuck: false, sending: None };
         controller.leave();
         controller.join();
         controller
@@ -95,6 +81,8 @@ impl<R: Registers> Controller<R> {
 
     /// Resets the controller: it is off the bus, and its queues are empty.
     fn leave(&mut self) {
+        self.settle();
+        self.sending = self.sending.map(|fate| if fate == Fate::Underway { Fate::Back } else { fate });
         self.registers.write(offset::CONTROL, RESET);
         self.absent = ABSENCE;
     }
@@ -118,42 +106,71 @@ impl<R: Registers> Controller<R> {
     }
 }
 
-impl<R: Registers> Can for Controller<R> {
-    type Frame = CanFrame;
-    type Error = Overrun;
-
-    /// Queues a frame, behind those that were queued before it, whatever their identifiers.
-    fn transmit(&mut self, frame: &CanFrame) -> nb::Result<Option<CanFrame>, Overrun> {
-        if self.absent > 0 || self.registers.read(offset::STATUS) & TRANSMIT_FULL != 0 {
-            return Err(nb::Error::WouldBlock);
-        }
-        for (place, word) in offset::TRANSMIT.into_iter().zip(self.layout.words(frame)) {
-            self.registers.write(place, word);
-        }
-        Ok(None)
-    }
-
-    fn receive(&mut self) -> nb::Result<CanFrame, Overrun> {
-        loop {
-            let events = self.registers.read(offset::EVENTS);
-            if events & OVERRUN != 0 {
-                self.registers.write(offset::CLEAR, OVERRUN);
-                return Err(nb::Error::Other(Overrun));
-            }
-            if events & NOT_EMPTY == 0 {
-                return Err(nb::Error::WouldBlock);
-            }
-            let words = offset::RECEIVE.map(|place| self.registers.read(place));
-            // It is set again at once if there are more.
-            self.registers.write(offset::CLEAR, NOT_EMPTY | RECEIVED);
-            if let Some(frame) = self.layout.frame(words) {
-                return Ok(frame);
-            }
+impl<R: Registers> Controller<R> {
+    /// Takes note that the frame in the transmit queue has been sent.
+    fn settle(&mut self) {
+        if self.sending == Some(Fate::Underway) && self.registers.read(offset::EVENTS) & EMPTIED != 0 {
+            self.sending = Some(Fate::Sent);
         }
     }
 }
 
 impl<R: Registers> Port for Controller<R> {
+    const TAKES_BACK: bool = false;
+
+    fn receive(&mut self) -> Result<Option<CanFrame>, Overrun> {
+        loop {
+            let events = self.registers.read(offset::EVENTS);
+            if events & OVERRUN != 0 {
+                self.registers.write(offset::CLEAR, OVERRUN);
+                return Err(Overrun);
+            }
+            if events & NOT_EMPTY == 0 {
+                return Ok(None);
+            }
+            let words = offset::RECEIVE.map(|place| self.registers.read(place));
+            // It is set again at once if there are more.
+            self.registers.write(offset::CLEAR, NOT_EMPTY | RECEIVED);
+            if let Some(frame) = self.layout.frame(words) {
+                return Ok(Some(frame));
+            }
+        }
+    }
+
+    fn load(&mut self, frame: &CanFrame) -> Option<usize> {
+        if self.absent > 0 || self.sending.is_some() {
+            return None;
+        }
+        // Before the frame is there: cleared behind it, the event that it has been sent could be lost.
+        self.registers.write(offset::CLEAR, EMPTIED);
+        for (place, word) in offset::TRANSMIT.into_iter().zip(self.layout.words(frame)) {
+            self.registers.write(place, word);
+        }
+        self.sending = Some(Fate::Underway);
+        Some(0)
+    }
+
+    fn fate(&mut self, _: usize) -> Fate {
+        self.settle();
+        match self.sending {
+            Some(fate @ (Fate::Sent | Fate::Back)) => {
+                self.sending = None;
+                fate
+            }
+            _ => Fate::Underway,
+        }
+    }
+
+    /// Resets the controller, so what it received in this moment is lost; a frame that blocked the bus until it was too old is worth
+    /// it. After a bus-off it keeps away, and [`Port::left_bus`] resets it.
+    fn recall(&mut self, _: usize) {
+        let is_off = self.registers.read(offset::EVENTS) & BUS_OFF != 0;
+        if self.sending == Some(Fate::Underway) && self.absent == 0 && !is_off {
+            self.leave();
+            self.join();
+        }
+    }
+
     /// After a bus-off the controller has to be reset, and then it would join at once; so it is kept away for as long as a
     /// node has to be. Its own queue is empty then, since what waited there has been overtaken. A reset that does not end is
     /// told likewise, each time that it is tried.

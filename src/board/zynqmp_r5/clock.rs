@@ -1,9 +1,8 @@
 //! The time: the core's cycles enter, instants and ticks leave.
 
 use super::registers;
+use crate::board::periods::{PERIOD_MICROS, Periods};
 use holdover::time::Instant;
-
-const TICK_MICROS: u64 = 10_000;
 
 /// A frame takes 94 µs at least (47 bits at 500 kbit/s), so nothing is missed by asking every 50 µs whether one has come. To
 /// ask all the time would keep the bus to the controller busy, and the emulator from everything else.
@@ -18,12 +17,20 @@ pub struct Clock {
     micros: u64,
     /// When the next period begins.
     next: u64,
+    periods: Periods,
 }
 
 impl Clock {
     pub fn start(cycles_per_micro: u32) -> Self {
         registers::start_cycles();
-        Self { cycles_per_micro, seen: registers::cycles(), rest: 0, micros: 0, next: TICK_MICROS }
+        Self {
+            cycles_per_micro,
+            seen: registers::cycles(),
+            rest: 0,
+            micros: 0,
+            next: PERIOD_MICROS,
+            periods: Periods::new(),
+        }
     }
 
     /// The time since the start, to a microsecond. To be called more often than the counter wraps (4 s), which the shell's
@@ -58,12 +65,18 @@ impl Clock {
     }
 
     /// The time, if a period has begun since the last call that returned one. Periods that passed unseen are not made up
-    /// for.
+    /// for, and counted.
     pub fn tick(&mut self) -> Option<Instant> {
         let now = self.now();
         (self.micros >= self.next).then(|| {
-            self.next = (self.micros / TICK_MICROS + 1) * TICK_MICROS;
+            self.periods.tick(now);
+            self.next = (self.micros / PERIOD_MICROS + 1) * PERIOD_MICROS;
             now
         })
+    }
+
+    /// How many passed unseen since the last call.
+    pub fn missed(&mut self) -> u32 {
+        self.periods.missed()
     }
 }

@@ -13,14 +13,12 @@ mod pin;
 mod registers;
 mod start;
 
-use super::frame::CanFrame;
-use super::outbox::{Outbox, Pass};
-use super::port::Port;
+use super::outbox::{self, Outbox, Pass};
+use super::port::{Overrun, Port};
 use alarm::Alarm;
 use can::Controller;
 use clock::Clock;
 use embedded_can::Frame;
-use embedded_can::nb::Can;
 use holdover::health::Incident;
 use holdover::time::Instant;
 use layout::Layout;
@@ -39,7 +37,7 @@ pub struct Board {
     /// How often the watchdog has restarted the unit.
     pub restarts: u32,
     port: Controller<Block>,
-    outbox: Outbox<CanFrame>,
+    outbox: Outbox,
     overruns: u32,
     clock: Clock,
     alarm: Option<Alarm>,
@@ -61,7 +59,7 @@ impl Board {
             watchdog: Watchdog,
             restarts: 0,
             port: Controller::start(Block::CAN0, layout),
-            outbox: Outbox::new(),
+            outbox: outbox::of_the_shell(),
             overruns: 0,
             clock,
             alarm,
@@ -72,16 +70,16 @@ impl Board {
     pub fn receive(&mut self) -> Option<(Instant, impl Frame + use<>)> {
         loop {
             match self.port.receive() {
-                Ok(frame) => return Some((self.clock.now(), frame)),
-                Err(nb::Error::WouldBlock) => return None,
-                Err(nb::Error::Other(can::Overrun)) => self.overruns = self.overruns.saturating_add(1),
+                Ok(Some(frame)) => return Some((self.clock.now(), frame)),
+                Ok(None) => return None,
+                Err(Overrun) => self.overruns = self.overruns.saturating_add(1),
             }
         }
     }
 
-    /// Takes a frame to be sent.
-    pub fn send(&mut self, frame: &impl Frame) {
-        self.outbox.push(frame);
+    /// Takes a frame of the tick at this time to be sent.
+    pub fn send(&mut self, tick: Instant, frame: &impl Frame) {
+        self.outbox.push(tick, frame);
     }
 
     /// The time, once in each period of 10 ms; periods that passed unseen are not made up for.
@@ -94,10 +92,10 @@ impl Board {
     }
 
     /// What was lost since the last call, and how often; to be called every period.
-    pub fn incidents(&mut self) -> [(Incident, u32); 3] {
+    pub fn incidents(&mut self) -> [(Incident, u32); 4] {
         let overruns = core::mem::take(&mut self.overruns);
-        let [transmit, bus_off] = self.outbox.lost(self.port.left_bus());
-        [(Incident::Overrun, overruns), transmit, bus_off]
+        let [transmit, bus_off] = self.outbox.lost(&mut self.port);
+        [(Incident::Overrun, overruns), transmit, bus_off, (Incident::MissedPeriod, self.clock.missed())]
     }
 
     /// Sends what can be sent. Then, in the emulator, it sleeps until there is something to do; on the chip, and while frames
@@ -105,7 +103,7 @@ impl Board {
     pub fn idle(&mut self) {
         let mut pass = Pass::Taken;
         while pass == Pass::Taken {
-            pass = self.outbox.pass(&mut self.port);
+            pass = self.outbox.pass(self.clock.now(), &mut self.port);
         }
         match &self.alarm {
             Some(alarm) if pass == Pass::Nothing && !self.clock.is_due() => alarm.sleep(),

@@ -1,7 +1,7 @@
 //! One output pin: levels enter by `embedded-hal`'s trait, and stand at the pin.
 
-use super::can::Registers;
 use super::registers::Block;
+use crate::board::registers::Registers;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
 

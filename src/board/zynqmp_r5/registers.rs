@@ -1,7 +1,7 @@
 //! The registers of the chip that the board uses: words enter, words leave. Addresses and bits are those of AMD's reference
 //! manuals UG1085 and UG1087, and of Arm's for the core.
 
-use super::can::Registers;
+use crate::board::registers::Registers;
 use core::arch::asm;
 
 /// A block of 32-bit registers.

@@ -250,6 +250,7 @@ fn main() -> ! {
     static mut FOUR: OnboardUnit<4, 8, CAPACITY> = OnboardUnit::idle();
     static mut ONE: OnboardUnit<1, 8, CAPACITY> = OnboardUnit::idle();
     if let Some(counter) = Counter::start() {
+        counter.check();
         // The compiler does not know, so that it inlines the same in both programs.
         if black_box(cfg!(feature = "fd")) {
             peer("peer-fd", EIGHT, &Config { transport: Transport::Fd, ..Config::car(EGO) }, &counter);
