@@ -41,7 +41,6 @@ pub struct Slack {
 impl Slack {
     /// What a unit claims beyond the stay that it foresees.
     pub const UNIT: Self = Self { before: Duration::from_millis(800), after: Duration::from_millis(800) };
-
     const KEPT: Self = Self { before: KEPT, after: KEPT };
 
     /// A window with this before and after it.
