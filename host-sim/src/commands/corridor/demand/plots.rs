@@ -7,8 +7,17 @@ use crate::commands::corridor::plots::{Plot, plot};
 use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
 
 /// Sides that are drawn beside one another; the silences have a figure of their own.
-const SIDES: [Which; 6] =
-    [Which::Holdover, Which::PerfectLink, Which::Alone, Which::FirstCome, Which::Envelope, Which::EnvelopePerfectLink];
+const SIDES: [(Which, Tone); 6] = [
+    (Which::Holdover, Tone::Other(0)),
+    (Which::PerfectLink, Tone::Other(1)),
+    (Which::Alone, Tone::Other(2)),
+    (Which::FirstCome, Tone::Other(3)),
+    (Which::Envelope, Tone::Ours),
+    (Which::EnvelopePerfectLink, Tone::Other(6)),
+];
+
+/// The colours of the silences, which no reader takes for that of ours.
+const LENGTHS: [Tone; 6] = [Tone::Other(0), Tone::Other(1), Tone::Other(2), Tone::Other(3), Tone::Other(6), Tone::Calm];
 
 const DEMAND: &str = "demand";
 const PER_MIN: &str = "vehicles a minute";
@@ -26,11 +35,8 @@ fn series<'a>(rows: &[&'a Row], which: Which, of: impl Fn(&'a Row) -> Option<f64
 }
 
 fn by_side<'a>(rows: &[&'a Row], of: impl Fn(&'a Row) -> Option<f64> + Copy) -> Vec<Layer> {
-    let line = |(index, which): (usize, Which)| {
-        let tone = if which == Which::Envelope { Tone::Ours } else { Tone::Other(index) };
-        Layer::Line { series: series(rows, which, of), tone, marked: true }
-    };
-    SIDES.into_iter().enumerate().map(line).collect()
+    let line = |(which, tone): (Which, Tone)| Layer::Line { series: series(rows, which, of), tone, marked: true };
+    SIDES.into_iter().map(line).collect()
 }
 
 /// The bounds as upright lines from 0 to `top`.
@@ -48,7 +54,8 @@ fn largest<'a>(rows: &[&'a Row], of: impl Fn(&'a Row) -> Option<f64>) -> f64 {
 }
 
 fn chart(title: &str, y: Axis, layers: Vec<Layer>) -> Chart {
-    Chart { layers, height: 300.0, listed: true, ..Chart::new(title, Axis::linear(DEMAND, PER_MIN), y.including(0.0)) }
+    let x = Axis::linear(DEMAND, PER_MIN).including(0.0);
+    Chart { layers, height: 300.0, listed: true, ..Chart::new(title, x, y.including(0.0)) }
 }
 
 fn travel_times(rows: &[&Row]) -> Plot {
@@ -82,14 +89,14 @@ fn silences(rows: &[&Row]) -> Plot {
     let mut lengths_s: Vec<f64> = with.iter().map(|row| row.dark_s).collect();
     lengths_s.sort_by(f64::total_cmp);
     lengths_s.dedup();
-    let line = |(index, dark_s): (usize, f64)| {
+    let line = |(dark_s, tone): (f64, Tone)| {
         let points = with.iter().filter(|row| row.dark_s == dark_s);
         let points = points.filter_map(|row| Some((row.vehicles_per_min, of(row)?)));
         let is_ours = with.iter().any(|row| row.dark_s == dark_s && row.which == Which::Envelope);
-        let tone = if is_ours { Tone::Ours } else { Tone::Other(index) };
+        let tone = if is_ours { Tone::Ours } else { tone };
         Layer::Line { series: Series::new(format!("{dark_s} s"), points), tone, marked: true }
     };
-    let layers = lengths_s.into_iter().enumerate().map(line).collect();
+    let layers = lengths_s.into_iter().zip(LENGTHS).map(line).collect();
     let title = "Mean travel time over demand, by the length of silences";
     let caption = "With the envelope; every vehicle is silent once on its way.".to_owned();
     plot(title, caption, chart(title, Axis::linear("mean travel time", "s"), layers))
