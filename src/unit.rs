@@ -328,7 +328,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// Claims passes at the next intersection, and says them when it is their turn.
     #[inline(never)] // apart from the stack of the horizon
     fn claim(&mut self, now: Instant, ego: Option<&State>) -> Option<Pass> {
-        let is_kept = self.mode != Mode::Standby && self.scene.config.envelope.is_some();
+        let is_kept = self.mode != Mode::Standby && self.scene.may_claim();
         let range = Range::of(&self.scene, now, ego?).filter(|_| is_kept && self.scene.fresh_ego(now).is_some())?;
         pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
         let tag = self.outbox.next_tag();

@@ -25,6 +25,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .mechanical_n = 150,
     },
     .correction = 1,
+    .passes = 1,
     .law = {
         .time_gap_ms = 1600,
         .standstill_mm = 2000,

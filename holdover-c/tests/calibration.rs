@@ -41,6 +41,7 @@ fn fields() -> Vec<Field> {
         body.friction_milli,
         body.mechanical_n,
         correction,
+        passes,
         law.time_gap_ms,
         law.standstill_mm,
         law.gain_table,

@@ -32,6 +32,8 @@ pub enum Purpose {
     Emergency(u32),
     /// Whether the vehicle with that index has a fault, which one, and from when on.
     Fault(u32),
+    /// Whether the vehicle with that index keeps passes.
+    Passes(u32),
 }
 
 /// The generator for that purpose under that seed.
@@ -47,6 +49,7 @@ pub fn stream(seed: u64, purpose: Purpose) -> ChaCha8Rng {
         Purpose::RangeFaults(vehicle) => (7, vehicle),
         Purpose::Emergency(vehicle) => (8, vehicle),
         Purpose::Fault(vehicle) => (9, vehicle),
+        Purpose::Passes(vehicle) => (10, vehicle),
     };
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(kind << 32 | u64::from(which));

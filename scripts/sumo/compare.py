@@ -21,6 +21,7 @@ from sumo_programs import version
 
 ROOT = Path(__file__).resolve().parents[2]
 KNOWN_TRIPS = [(30, 1, 301), (90, 1, 891)]  # demand, seed, vehicles in ten minutes
+SIDES = {"holdover": "holdover, without the envelope", "envelope": "holdover, with the envelope"}  # of holdover-sim, beside SUMO
 EPILOG = """examples:
   compare.py                                     the table of scripts/sumo/README.md
   compare.py --check                             only export the network and examine it
@@ -122,17 +123,17 @@ def beside(path):
         return [
             {
                 "rule": "holdover",
-                "what": "holdover, with the envelope" if row["envelope"] else "holdover, without the envelope",
+                "what": SIDES[row["side"]],
                 "vehicles_per_min": row["vehicles_per_min"],
                 "vehicles": row["served"] + row["unserved"],
                 "served": row["served"],
                 "mean_travel_time_s": row["mean_travel_time_s"],
                 "full_stops_per_vehicle": row["full_stops"] / (row["served"] + row["unserved"]),
-                "exits_per_min": None,
+                "exits_per_min": row["exits_per_min"],
                 "collisions": row["collisions_on_roads"] + row["collisions_at_intersections"],
             }
             for row in theirs
-            if row["slots"] == slots and not row["perfect_link"]
+            if row["slots"] == slots and row["side"] in SIDES
         ]
     except (OSError, ValueError, KeyError, TypeError) as error:
         remedy = "give the output of `holdover-sim run corridor --demand N,… --json`"

@@ -12,8 +12,8 @@ use crate::time::{Duration, GnssTime, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::pass::STEP;
 
-/// How much earlier or later than foreseen the ego may be in the area. It is more often later.
-const SLACK: Slack = Slack { before: Duration::from_millis(600), after: Duration::from_millis(800) };
+/// How much earlier or later than foreseen the ego may be in the area.
+const SLACK: Slack = Slack::UNIT;
 /// With less than this left, more is claimed.
 const LEAST: Slack = Slack { before: Duration::from_millis(200), after: Duration::from_millis(400) };
 /// A stay that begins sooner than this has to be possible at both ends of what the ego can do.

@@ -56,6 +56,7 @@ impl TryFrom<&Config> for config::Config {
             link: plain.link.into(),
             envelope: if switch(plain.envelope.engaged)? { Some(plain.envelope.into()) } else { None },
             range_sensor: switch(plain.range_sensor)?,
+            passes: switch(plain.passes)?,
         })
     }
 }
@@ -171,6 +172,7 @@ impl From<&config::Config> for Config {
             limits: (&typed.limits).into(),
             body: (&typed.body).into(),
             correction: u8::from(typed.correction),
+            passes: u8::from(typed.passes),
             law: (&typed.law).into(),
             prediction: Prediction { step_us: whole(step), horizon_us: whole(horizon), model: (&model).into() },
             link: (&typed.link).into(),

@@ -10,6 +10,7 @@ use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, s
 use crate::sim::sensors::faults::is_fitted;
 use crate::sim::station::station;
 use crate::sim::world::horizon;
+use crate::streams::{Purpose, stream, unit};
 
 /// What a vehicle does when the link to a vehicle just ahead is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,8 @@ pub struct Conditions {
     pub step_s: f64,
     /// Number of peer slots of a unit.
     pub slots: usize,
+    /// Share of the vehicles whose units keep no passes.
+    pub without_passes: f64,
     /// Emergency stops and faults.
     pub emergencies: Emergencies,
 }
@@ -50,6 +53,7 @@ impl Conditions {
             when_lost: WhenLost::Holdover,
             step_s: corridor.step_s,
             slots: corridor.slots,
+            without_passes: corridor.traffic.without_passes,
             emergencies: Emergencies::NONE,
         }
     }
@@ -64,24 +68,34 @@ pub struct Identity {
     pub called: usize,
     /// Whether it has a range sensor.
     pub sees: bool,
+    /// Whether its unit keeps passes.
+    pub passes: bool,
 }
 
 impl Identity {
     /// Of a trip of a seed, by the number of its station.
     #[must_use]
-    pub fn of(corridor: &Corridor, seed: u64, trip: usize, called: usize) -> Self {
-        Self { trip, called, sees: is_fitted(corridor.sensors.share, seed, trip as u32) }
+    pub fn of(corridor: &Corridor, conditions: &Conditions, seed: u64, trip: usize, called: usize) -> Self {
+        let sees = is_fitted(corridor.sensors.share, seed, trip as u32);
+        Self { trip, called, sees, passes: !lacks_passes(conditions.without_passes, seed, trip as u32) }
     }
+}
+
+/// Whether the unit of the vehicle with this index keeps no passes, if this share of the vehicles keeps none. A vehicle that keeps none at
+/// a share keeps none at every larger share.
+fn lacks_passes(share: f64, seed: u64, index: u32) -> bool {
+    unit(&mut stream(seed, Purpose::Passes(index))) < share
 }
 
 /// The configuration of the unit of a vehicle.
 #[must_use]
 pub fn config(corridor: &Corridor, conditions: &Conditions, identity: Identity, kind: Kind) -> Config {
     let traffic = &corridor.traffic;
-    let Identity { trip, called, sees } = identity;
+    let Identity { trip, called, sees, passes } = identity;
     let mut config = Config::car(station(called));
     config.station_id = (trip as u32) << 8 | u32::from(config.station.0);
     config.range_sensor = sees;
+    config.passes = passes;
     config.transport = corridor.bus.transport;
     config.period = duration(corridor.period_s);
     config.length = distance(kind.length_m());
@@ -108,7 +122,29 @@ mod tests {
     use crate::roads::example;
     use crate::sim::vehicle::STEPS;
 
-    const FIRST: Identity = Identity { trip: 0, called: 0, sees: false };
+    const FIRST: Identity = Identity { trip: 0, called: 0, sees: false, passes: true };
+
+    #[test]
+    fn who_keeps_no_passes_at_a_share_keeps_none_at_every_larger_one() {
+        let without = |share: f64| (0..1000).filter(|index| lacks_passes(share, 1, *index)).collect::<Vec<_>>();
+        let (few, many) = (without(0.1), without(0.5));
+        assert!((70..=130).contains(&few.len()) && (450..=550).contains(&many.len()), "{} {}", few.len(), many.len());
+        assert!(few.iter().all(|one| many.contains(one)));
+        assert_eq!((without(0.0).len(), without(1.0).len()), (0, 1000));
+    }
+
+    #[test]
+    fn the_units_of_a_share_of_the_file_keep_no_passes() {
+        let text = example::TEXT.replacen("without_passes = 0.0", "without_passes = 0.5", 1);
+        let keeps = |text: &str| {
+            let corridor = example::of(text);
+            let conditions = Conditions::of(&corridor);
+            let of = |trip| config(&corridor, &conditions, Identity::of(&corridor, &conditions, 1, trip, 0), Kind::Car);
+            (0..100).filter(|trip| of(*trip).passes).count()
+        };
+        assert_eq!(keeps(example::TEXT), 100);
+        assert!((35..=65).contains(&keeps(&text)), "{}", keeps(&text));
+    }
 
     #[test]
     fn whatever_a_file_may_say_the_units_take() {

@@ -96,6 +96,8 @@ pub struct Traffic {
     pub vans: f64,
     /// Fraction of buses, 0 to 1.
     pub buses: f64,
+    /// Fraction of vehicles whose units keep no passes, 0 to 1.
+    pub without_passes: f64,
 }
 
 /// The radio links.

@@ -183,7 +183,7 @@ impl Experiment {
         let (trips, ego) = self.excerpt().trips(seed);
         let trip = trips.get(ego?)?;
         let conditions = Conditions { step_s, ..Conditions::of(&self.corridor) };
-        let identity = super::conditions::Identity::of(&self.corridor, seed, ego?, ego?);
+        let identity = super::conditions::Identity::of(&self.corridor, &conditions, seed, ego?, ego?);
         let config = super::conditions::config(&self.corridor, &conditions, identity, trip.kind);
         Some((config, self.itineraries[trip.road]))
     }
@@ -195,12 +195,12 @@ impl Experiment {
     }
 
     /// The same experiment with no more arrivals than an excerpt has.
-    fn excerpt(&self) -> Self {
+    pub(super) fn excerpt(&self) -> Self {
         let duration_s = self.corridor.duration_s.min(EXCERPT_S);
         self.of(Corridor { duration_s, ..self.corridor.clone() })
     }
 
-    fn all(&self, jobs: &[(u64, Conditions)], done: impl Fn() + Sync) -> Result<Vec<Outcome>, Error> {
+    pub(super) fn all(&self, jobs: &[(u64, Conditions)], done: impl Fn() + Sync) -> Result<Vec<Outcome>, Error> {
         let one = |(seed, conditions): &(u64, Conditions)| {
             let outcome = self.run(*seed, *conditions, None);
             done();
@@ -224,7 +224,8 @@ fn with_ego(corridor: &Corridor, network: &Network, seed: u64) -> (Vec<Trip>, Op
 }
 
 /// The conditions of the sides, in the order of [`Sides`].
-fn of_sides(corridor: &Corridor) -> [Conditions; Sides::COUNT] {
+#[must_use]
+pub fn of_sides(corridor: &Corridor) -> [Conditions; Sides::COUNT] {
     let scenario = Conditions::of(corridor);
     let [without, with] =
         [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });

@@ -14,6 +14,8 @@ pub struct Outcome {
     pub seed: u64,
     /// Travel times of the vehicles that have left.
     pub travel_times_s: Vec<f64>,
+    /// The times at which they left.
+    pub exits_s: Vec<f64>,
     /// Full stops.
     pub full_stops: usize,
     /// Collisions on roads, and in conflict areas.
@@ -46,6 +48,7 @@ impl Outcome {
         Self {
             seed,
             travel_times_s: referee.travel_times_s.iter().flatten().copied().collect(),
+            exits_s: referee.exits_s(),
             full_stops: referee.stops.len(),
             collisions: [on_roads, referee.collisions.len() - on_roads],
             smallest_gap_m: referee.smallest_gap_m,
@@ -204,6 +207,7 @@ mod tests {
         Outcome {
             seed: 1,
             travel_times_s: travel_times_s.to_vec(),
+            exits_s: Vec::new(),
             full_stops: 1,
             collisions: [1, 2],
             smallest_gap_m: gap_m,

@@ -8,6 +8,7 @@
 
 pub mod alone;
 pub mod beliefs;
+pub mod capacity;
 pub mod conditions;
 pub mod description;
 #[cfg(test)]
@@ -20,8 +21,10 @@ pub mod map;
 pub mod network;
 pub mod read;
 pub mod referee;
+pub mod shares;
 pub mod sight;
 pub mod tally;
+pub mod throughput;
 pub mod traffic;
 pub mod trips;
 pub mod watch;

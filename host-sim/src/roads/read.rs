@@ -29,6 +29,7 @@ const APPEAR: Number = Number { key: "appear_m", unit: "metres", limits: 50.0..=
 const LEAVE: Number = Number { key: "leave_m", unit: "metres", limits: 20.0..=1000.0, default: 40.0 };
 const VANS: Number = Number { key: "vans", unit: "a share", limits: 0.0..=1.0, default: 0.15 };
 const BUSES: Number = Number { key: "buses", unit: "a share", limits: 0.0..=1.0, default: 0.1 };
+const WITHOUT_PASSES: Number = Number { key: "without_passes", unit: "a share", limits: 0.0..=1.0, default: 0.0 };
 const DELAY_MEAN: Number = Number { key: "delay_mean_s", unit: "seconds", limits: 0.0..=10.0, default: 0.040 };
 const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 0.0..=10.0, default: 0.0259 };
 const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, default: 0.1 };
@@ -152,6 +153,7 @@ fn traffic(document: &Document, mut section: Section) -> Result<Traffic, Error> 
         leave_m: section.number(&LEAVE)?.value,
         vans: vans.value,
         buses: buses.value,
+        without_passes: section.number(&WITHOUT_PASSES)?.value,
     };
     section.finish()?;
     if vans.value + buses.value > 1.0 {

@@ -84,6 +84,13 @@ impl<'a> Referee<'a> {
         }
     }
 
+    /// The times at which vehicles have left, by trip.
+    #[must_use]
+    pub fn exits_s(&self) -> Vec<f64> {
+        let exits = self.trips.iter().zip(&self.travel_times_s);
+        exits.filter_map(|(trip, travels_s)| Some(trip.at_s + (*travels_s)?)).collect()
+    }
+
     fn on_roads(&mut self, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {
         let mut order: Vec<&Sighting> = sightings.iter().chain(&self.beyond).collect();
         order.sort_by(|a, b| a.road.cmp(&b.road).then(b.way_m.total_cmp(&a.way_m)));

@@ -70,6 +70,15 @@ fn the_keys_of_run_on_a_string_are_the_documented_ones() {
 }
 
 #[test]
+fn the_keys_of_the_rows_over_demand_are_the_documented_ones() {
+    let folder = folder();
+    let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
+    std::fs::write(folder.path().join("short.toml"), text.replacen("duration_s = 600.0", "duration_s = 10.0", 1))
+        .unwrap();
+    holds("run corridor --demand", folder.path(), &["run short.toml --no-report --demand 20"]);
+}
+
+#[test]
 fn the_keys_of_run_on_a_corridor_are_the_documented_ones() {
     let folder = folder();
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();

@@ -59,9 +59,14 @@ impl Passes {
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Whether the ego keeps passes: its own gate has to be engaged, because that is what keeps the promise.
+    /// Whether the ego keeps passes where there is something to cross. Its own gate has to be engaged, because that is what keeps the promise.
+    pub fn may_claim(&self) -> bool {
+        self.config.passes && self.config.envelope.is_some()
+    }
+
+    /// Whether the ego keeps passes at the next intersection.
     pub fn keeps_passes(&self) -> bool {
-        self.config.envelope.is_some() && self.coordination.crossing().is_some()
+        self.may_claim() && self.coordination.crossing().is_some()
     }
 
     /// GNSS time, if it is known well enough for passes.

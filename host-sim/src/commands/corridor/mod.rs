@@ -16,7 +16,6 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use crate::commands::ending::json;
 use crate::commands::motions::rows::{self, Row};
 use crate::error::Error;
 use crate::input::scenario::{Envelope, Faults, Fitted};
@@ -26,6 +25,7 @@ use crate::roads::description::{Corridor, Emergencies};
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
+use crate::roads::shares::{self, SHARES, ShareRow};
 use crate::verdict::Verdict;
 use options::CorridorOptions;
 
@@ -102,6 +102,8 @@ pub struct Results {
     pub excerpts_with_envelope: bool,
     /// The errors under each difference between a vehicle and what its unit assumes.
     pub wrong: Vec<WrongRow>,
+    /// The figures with several shares of vehicles that keep no passes, with the envelope in any case.
+    pub without_passes: Vec<ShareRow>,
     /// The errors at each prediction step; empty without a report and a picture.
     pub steps: Vec<StepRow>,
     /// The errors in a silence over five motions of a target; empty without a report and a picture.
@@ -125,7 +127,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let logged = usize::from(options.candump.is_some());
     let bar = ProgressBar::new(
-        (Sides::COUNT * options.seeds.len() + WRONGS + drawn + options.vehicles.len() + logged) as u64,
+        (Sides::COUNT * options.seeds.len() + WRONGS + SHARES.len() + drawn + options.vehicles.len() + logged) as u64,
     );
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
         bar.set_style(style);
@@ -139,6 +141,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let envelope = Envelope { engaged, ..options.corridor.envelope };
     let excerpts = experiment.of(Corridor { envelope, ..options.corridor.clone() });
     let wrong = excerpts.wrong(first, done)?;
+    let without_passes = shares::run(&experiment, first, done)?;
     let steps: Vec<(StepRow, Journal)> = if is_drawn { excerpts.steps(first, done)? } else { Vec::new() };
     let costs: Vec<cost::Cost> = steps
         .iter()
@@ -164,7 +167,8 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     bar.finish_and_clear();
     let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
-    let failures = verdict::failures(&options.corridor.limits, &sides);
+    let mut failures = verdict::failures(&options.corridor.limits, &sides);
+    failures.extend(verdict::of_shares(&without_passes));
     let driven_s =
         sides.all().iter().map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64).sum::<f64>();
     let results = Results {
@@ -176,6 +180,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         sides,
         excerpts_with_envelope: engaged,
         wrong,
+        without_passes,
         steps: steps.iter().map(|(row, _)| row.clone()).collect(),
         motions,
         failures,
@@ -192,16 +197,15 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
 
 /// Runs denser traffic, and nothing else.
 fn run_demand(options: &CorridorOptions, experiment: &Experiment) -> Result<Verdict, Error> {
-    let runs = 4 * options.demand.len() * options.slots.len() * options.seeds.len();
+    let cases = demand::runs(experiment) * options.demand.len();
+    let runs = cases * options.slots.len() * options.seeds.len();
     let progress = LongRuns::new(runs);
     let rows = demand::run(experiment, &options.demand, &options.slots, &options.seeds, |which| progress.done(which))?;
     progress.finish();
     let failures = demand::failures(&rows);
-    if options.destination.json {
-        output::print(&format!("{}\n", json(&rows)?))?;
-    } else {
-        output::print(&demand::text(&rows))?;
-    }
+    let sensors = Sensors::of(experiment, &options.seeds);
+    let page = || demand::render(options, &sensors, &rows);
+    options.destination.deliver(&rows, &demand::text(&rows), "", page)?;
     failures.iter().for_each(|failure| output::say(failure));
     Ok(Verdict::of(&failures))
 }

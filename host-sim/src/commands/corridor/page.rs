@@ -10,6 +10,7 @@ use crate::report::page::{Cell, Page};
 use crate::roads::experiment::{EXCERPT_S, Experiment};
 use crate::roads::figures::StepRow;
 use crate::roads::journal::Journal;
+use crate::roads::shares::ShareRow;
 
 /// The page.
 #[must_use]
@@ -58,10 +59,34 @@ pub fn render(
         &["What is wrong", "Largest error, m", "rms, m", "Mean travel time, s", "Collisions"],
         &rows.collect::<Vec<_>>(),
     );
+    without_passes(&mut page, &results.without_passes);
     page.section("Beside seven others, over what a target does in a silence");
     motions::section(&mut page, &results.motions);
     speed(&mut page, &results.timing.scale);
     page.finish()
+}
+
+/// The section on vehicles that keep no passes.
+fn without_passes(page: &mut Page, rows: &[ShareRow]) {
+    page.section("Shares without passes");
+    let row = |row: &ShareRow| {
+        let side = &row.side;
+        let seconds = side.mean_travel_time_s.map_or("–".into(), |time| format!("{time:.2}"));
+        vec![
+            Cell::number(format!("{:.0} %", 100.0 * row.share)),
+            Cell::number(side.served.to_string()),
+            Cell::number(side.unserved.to_string()),
+            Cell::strong(seconds),
+            Cell::number(side.full_stops.to_string()),
+            Cell::number(side.collisions().to_string()),
+        ]
+    };
+    let caption = format!(
+        "Arrivals of the first {EXCERPT_S} s, with the envelope. This share of the vehicles keeps no passes: others give way to them by \
+         what is certain of them and by what is seen, and they to others."
+    );
+    let header = ["Without passes", "Served", "Not served", "Mean travel time, s", "Full stops", "Collisions"];
+    page.table(&caption, &header, &rows.iter().map(row).collect::<Vec<_>>());
 }
 
 /// The section on the speed of the simulation.
@@ -90,7 +115,7 @@ fn reasons(results: &Results) -> Vec<String> {
     )]
 }
 
-fn facts(options: &CorridorOptions, sensors: &Sensors) -> Vec<(String, String)> {
+pub(super) fn facts(options: &CorridorOptions, sensors: &Sensors) -> Vec<(String, String)> {
     let corridor = &options.corridor;
     let (radio, traffic) = (&corridor.radio, &corridor.traffic);
     let rate: f64 = corridor.roads.iter().map(|road| road.vehicles_per_min).sum();

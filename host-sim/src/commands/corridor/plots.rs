@@ -21,7 +21,7 @@ pub struct Plot {
     pub chart: Chart,
 }
 
-fn plot(title: &str, caption: String, chart: Chart) -> Plot {
+pub(super) fn plot(title: &str, caption: String, chart: Chart) -> Plot {
     Plot { title: title.into(), chart: Chart { description: caption.clone(), ..chart }, caption }
 }
 

@@ -87,6 +87,20 @@ pub fn text(results: &Results) -> String {
             row.side.collisions()
         );
     }
+    let _ = writeln!(text, "\nwith the envelope, so many vehicles without passes:");
+    let _ =
+        writeln!(text, "{:>22}{:>10}{:>12}{:>12}{:>12}", "share, %", "served", "travel, s", "full stops", "collisions");
+    for row in &results.without_passes {
+        let _ = writeln!(
+            text,
+            "{:>22.0}{:>10}{:>12}{:>12}{:>12}",
+            100.0 * row.share,
+            row.side.served,
+            number(row.side.mean_travel_time_s, 2),
+            row.side.full_stops,
+            row.side.collisions()
+        );
+    }
     if !results.steps.is_empty() {
         let _ = writeln!(text, "\n{:22}{:>10}{:>10}{:>12}", "step, s", "max, m", "rms, m", "updates/s");
         for row in &results.steps {

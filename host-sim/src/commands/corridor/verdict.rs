@@ -6,6 +6,7 @@
 use crate::roads::description::Limits;
 use crate::roads::experiment::Sides;
 use crate::roads::figures::Side;
+use crate::roads::shares::ShareRow;
 
 /// The reasons why the figures fail; empty if they pass.
 #[must_use]
@@ -21,6 +22,13 @@ pub fn failures(limits: &Limits, sides: &Sides) -> Vec<String> {
     failures.extend(limits.position_error_m.and_then(|most_m| position_error(most_m, &sides.holdover)));
     failures.extend(limits.travel_time_ratio.and_then(|most| travel_time(most, &sides.holdover, &sides.perfect_link)));
     failures
+}
+
+/// The same of vehicles among which a share keeps no passes.
+#[must_use]
+pub fn of_shares(rows: &[ShareRow]) -> Vec<String> {
+    let how = |share: f64| format!(" with {:.0} % without passes", 100.0 * share);
+    rows.iter().flat_map(|row| safety(&how(row.share), &row.side)).collect()
 }
 
 /// The failures of safety, and vehicles that were not served; `how` names the side.
@@ -172,6 +180,13 @@ mod tests {
             ["1 tick(s) with emergencies at which a target was outside its bound"]
         );
         assert_eq!(faulty(|side| side.served = 0), ["nobody got through with emergencies, so nothing was measured"]);
+    }
+
+    #[test]
+    fn where_a_share_keeps_no_passes_everyone_has_to_be_safe_and_served() {
+        let good = ShareRow { share: 0.1, side: good().envelope };
+        let bad = ShareRow { share: 0.5, side: Side { collisions_on_roads: 1, ..good.side } };
+        assert_eq!(of_shares(&[good, bad]), ["collisions with 50 % without passes: 1 on roads, 0 in conflict areas"]);
     }
 
     #[test]

@@ -124,8 +124,9 @@ fn of_corridor(corridor: &Corridor, vehicle: Option<usize>) -> Result<(Config, &
         return Err(Error::new(cause, format!("give an index below {STATIONS}")).in_option("--vehicle"));
     }
     let trip = &trips[vehicle];
-    let identity = Identity::of(corridor, corridor.seed, vehicle, vehicle);
-    let config = conditions::config(corridor, &Conditions::of(corridor), identity, trip.kind);
+    let conditions = Conditions::of(corridor);
+    let identity = Identity::of(corridor, &conditions, corridor.seed, vehicle, vehicle);
+    let config = conditions::config(corridor, &conditions, identity, trip.kind);
     Ok((config, itineraries(&network)[trip.road]))
 }
 

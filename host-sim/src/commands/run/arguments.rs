@@ -37,8 +37,9 @@ pub struct RunSettings {
     pub vehicles: Option<Vec<usize>>,
 
     /// Run these amounts of traffic, in vehicles per minute, and nothing else. Each is run with and without the
-    /// envelope, over the scenario's links and over perfect ones. This can take an hour; after each run stderr shows
-    /// what is done and what is left. Corridors only
+    /// envelope, over the scenario's links and over perfect ones; with vehicles that drive alone while a link is lost;
+    /// without passes; and with silences of 0 to 12 s. This can take hours; after each run stderr shows what is done
+    /// and what is left. Corridors only
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub demand: Option<Vec<f64>>,
 

@@ -109,7 +109,7 @@ impl Traffic<'_> {
             time_gap: Some(seconds(self.corridor.traffic.time_gap_s)),
         };
         let fitted = &self.corridor.sensors;
-        let identity = Identity::of(self.corridor, self.seed, index, called);
+        let identity = Identity::of(self.corridor, &self.conditions, self.seed, index, called);
         let sees = identity.sees;
         let config = config(self.corridor, &self.conditions, identity, trip.kind);
         let (offset_us, length_m) = (clock_offset(self.seed, index), trip.kind.length_m());
