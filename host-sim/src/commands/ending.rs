@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
+use crate::draft::Draft;
 use crate::error::Error;
 use crate::output;
 use crate::places::can_be_folder;
@@ -19,7 +20,7 @@ pub struct OutputArguments {
     pub json: bool,
 
     /// Folder for the HTML report; it is created
-    #[arg(long, value_name = "DIR", default_value = "holdover-report")]
+    #[arg(long, alias = "output", value_name = "DIR", default_value = "holdover-report")]
     pub out: PathBuf,
 
     /// Write no report
@@ -81,7 +82,7 @@ impl Destination {
         let Some(folder) = &self.report else { return Ok(()) };
         fs::create_dir_all(folder).map_err(|error| Error::unwritable(folder, &error))?;
         let file = folder.join("index.html");
-        fs::write(&file, page()).map_err(|error| Error::unwritable(&file, &error))?;
+        Draft::whole(&file, &page())?;
         output::say(&format!("report: {}", file.display()));
         Ok(())
     }

@@ -41,11 +41,10 @@ pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
     let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();
     let timing = Timing { ticks_per_s: (ticks as f64 / start.elapsed().as_secs_f64().max(1e-9)).round() };
     let results = Results::pooled(&outcomes, options.lengths_s(), timing);
-    if let Some(file) = &options.trace {
-        trace::write(file, &outcomes)?;
-    }
     let page = || page::report(options, &outcomes, &results).render();
-    options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page)?;
+    let delivered = options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page);
+    let traced = options.trace.as_ref().map_or(Ok(()), |file| trace::write(file, &outcomes));
+    delivered.and(traced)?;
     Ok(Verdict::Pass)
 }
 

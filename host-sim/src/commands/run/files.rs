@@ -1,9 +1,9 @@
 //! The file of a run's trace: the trace enters, a CSV of every tick leaves.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
+use crate::draft::Draft;
 use crate::error::Error;
 use crate::input::scenario::Scenario;
 use crate::measure::figures::{mode_name, papers};
@@ -12,9 +12,9 @@ use crate::sim::world::Trace;
 /// Writes every tick of the measured vehicle as its follower estimates it, with the bound on the bus and the follower's
 /// command. `limited` is 1 where the envelope changed that command.
 pub fn write_trace(file: &Path, scenario: &Scenario, trace: &Trace) -> Result<(), Error> {
-    let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
-    let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
-    write_rows(&mut out, scenario, trace).and_then(|()| out.flush()).map_err(|error| unwritable(&error))
+    let mut out = Draft::of(file)?;
+    write_rows(&mut out, scenario, trace).map_err(|error| Error::unwritable(file, &error))?;
+    out.finish()
 }
 
 fn write_rows(out: &mut impl Write, scenario: &Scenario, trace: &Trace) -> std::io::Result<()> {

@@ -27,14 +27,12 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     let failures = failures(scenario, &summary);
-    if let Some(file) = &options.trace {
-        files::write_trace(file, scenario, &trace)?;
-    }
-    if let Some(candump) = &options.candump {
-        candump.write(&trace.log)?;
-    }
     let text = table::text(scenario, &summary, &failures);
     let page = || page::report(options, &trace, &summary, &failures).render();
-    options.destination.deliver(&summary, &text, &text, page)?;
+    // One file that cannot be written does not keep the others away.
+    let delivered = options.destination.deliver(&summary, &text, &text, page);
+    let traced = options.trace.as_ref().map_or(Ok(()), |file| files::write_trace(file, scenario, &trace));
+    let logged = options.candump.as_ref().map_or(Ok(()), |candump| candump.write(&trace.log));
+    delivered.and(traced).and(logged)?;
     Ok(Verdict::of(&failures))
 }
