@@ -2,9 +2,11 @@
 //!
 //! Columns are found by their names in the header line, in any order. Other columns are ignored, and so are a byte
 //! order mark, CRLF and blank lines. There are no comments. An unusable file ends with file, line, cause and remedy
-//! ([`Error`]); nothing is repaired silently.
+//! ([`Error`]); nothing is repaired silently. A file that can be used and tells of what cannot be is read with its
+//! findings.
 
 mod columns;
+mod findings;
 
 use crate::error::Error;
 use columns::{Column, Table};
@@ -40,6 +42,7 @@ pub struct MotionRow {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     rows: Vec<MotionRow>,
+    findings: Vec<Error>,
 }
 
 /// Time over which speeds give an acceleration if the file has none, in seconds.
@@ -60,7 +63,7 @@ impl Motion {
     /// A drive that was computed: at least two rows, with time strictly increasing.
     pub(crate) fn of(rows: Vec<MotionRow>) -> Self {
         debug_assert!(rows.len() > 1 && rows.windows(2).all(|pair| pair[0].t_s < pair[1].t_s));
-        Self { rows }
+        Self { rows, findings: Vec::new() }
     }
 
     /// Reads the file.
@@ -79,7 +82,7 @@ impl Motion {
         let table = Table::parse(file, bytes, MOTION_COLUMNS)?;
         let (t, position, speed) = (table.column(&TIME)?, table.column(&POSITION)?, table.column(&SPEED)?);
         let acceleration = table.optional_column(&ACCELERATION);
-        let mut rows: Vec<MotionRow> = Vec::new();
+        let (mut rows, mut lines): (Vec<MotionRow>, Vec<u64>) = Default::default();
         for line in table.lines() {
             let row = MotionRow {
                 t_s: line.number(&t)?,
@@ -89,9 +92,16 @@ impl Motion {
             };
             line.follows(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
+            lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), 2)?;
-        Ok(Self { rows })
+        Ok(Self { findings: findings::of_motion(file, &rows, &lines), rows })
+    }
+
+    /// What no vehicle does, with file and line; empty for a recording without fault.
+    #[must_use]
+    pub fn findings(&self) -> &[Error] {
+        &self.findings
     }
 
     /// The samples in the order of time.
@@ -175,6 +185,7 @@ pub struct ChannelRow {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTrace {
     rows: Vec<ChannelRow>,
+    findings: Vec<Error>,
 }
 
 impl ChannelTrace {
@@ -197,14 +208,33 @@ impl ChannelTrace {
     fn parse_rows(file: &Path, bytes: &[u8], least: usize) -> Result<Self, Error> {
         let table = Table::parse(file, bytes, CHANNEL_COLUMNS)?;
         let (t, delay) = (table.column(&TIME)?, table.column(&DELAY)?);
-        let mut rows: Vec<ChannelRow> = Vec::new();
+        let (mut rows, mut lines): (Vec<ChannelRow>, Vec<u64>) = Default::default();
         for line in table.lines() {
             let row = ChannelRow { t_s: line.number(&t)?, delay_s: line.number_or_empty(&delay)? };
             line.does_not_precede(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
+            lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), least)?;
-        Ok(Self { rows })
+        Ok(Self { findings: findings::of_channel(file, &rows, &lines), rows })
+    }
+
+    /// What no link does, with file and line; empty for a recording without fault.
+    #[must_use]
+    pub fn findings(&self) -> &[Error] {
+        &self.findings
+    }
+
+    /// Whether any message arrives.
+    #[must_use]
+    pub fn delivers(&self) -> bool {
+        self.rows.iter().any(|row| row.delay_s.is_some())
+    }
+
+    /// Time from the first message to the last.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.rows[self.rows.len() - 1].t_s - self.rows[0].t_s
     }
 
     /// The messages, in the order of sending.

@@ -139,6 +139,11 @@ impl<'a> Table<'a> {
 }
 
 impl Line<'_> {
+    /// Its line in the file, counted from 1.
+    pub fn number_in_file(&self) -> u64 {
+        self.record.line
+    }
+
     /// The number in a column.
     pub fn number(&self, found: &FoundColumn) -> Result<f64, Error> {
         self.number_or_empty(found)?.ok_or_else(|| {
