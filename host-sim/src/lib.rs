@@ -11,7 +11,7 @@
 //! sim          the world of a string: vehicles, plants, sensors, modems and the air between them
 //! bus          CAN buses in memory and in Linux, their faults and their logs
 //! input        scenarios, recordings and the library of scenarios
-//! draft, error, output, parallel, places, seeds, streams, verdict    what every floor stands on
+//! draft, error, output, parallel, places, provenance, seeds, streams, verdict    what every floor stands on
 //! ```
 
 pub mod bus;
@@ -23,6 +23,7 @@ pub mod measure;
 pub mod output;
 pub mod parallel;
 pub mod places;
+pub mod provenance;
 pub mod report;
 pub mod roads;
 pub mod seeds;

@@ -1,6 +1,7 @@
 //! The command line as it is meant: typed values enter; checked options leave, with every input file read, or an error.
 //! After this only writing can fail.
 
+use crate::commands::check::CheckOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::dbc::DbcOptions;
@@ -17,7 +18,7 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
+    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -35,6 +36,8 @@ pub enum Options {
     List,
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
+    /// Check files.
+    Check(CheckOptions),
     /// Run a scenario at several steps with many seeds.
     Sweep(SweepOptions),
     /// Measure the cost of the envelope.
@@ -66,6 +69,7 @@ impl Options {
         match cli.command {
             Some(Command::Run(arguments)) => Self::of_run(arguments),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Check(arguments)) => Ok(Self::Check(CheckOptions::read(arguments))),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::EnvelopeCost(arguments)) => EnvelopeCostOptions::read(arguments).map(Self::EnvelopeCost),
             Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
@@ -104,6 +108,7 @@ impl Options {
             Self::Corridor(options) => corridor::run(options),
             Self::List => output::print(&library::list()).map(|()| Verdict::Pass),
             Self::Evaluate(options) => evaluate::run(options),
+            Self::Check(options) => check::run(options),
             Self::Sweep(options) => sweep::run(options),
             Self::Gains(options) => gains::run(options),
             Self::String(options) => string::run(options),

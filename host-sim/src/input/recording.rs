@@ -10,10 +10,12 @@ mod findings;
 
 use crate::error::Error;
 use columns::{Column, Table};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Columns of a motion recording.
 pub const MOTION_COLUMNS: &str = "t_s,position_m,speed_mps[,acceleration_mps2]";
+/// Columns of a recording of either kind.
+const EITHER_COLUMNS: &str = "t_s,position_m,speed_mps or t_s,delay_s";
 /// Columns of a channel recording.
 pub const CHANNEL_COLUMNS: &str = "t_s,delay_s";
 
@@ -24,6 +26,31 @@ const POSITION: Column = Column { name: "position_m", unit: "m", limits: -1e9..=
 const SPEED: Column = Column { name: "speed_mps", unit: "m/s", limits: -0.5..=65.534 };
 const ACCELERATION: Column = Column { name: "acceleration_mps2", unit: "m/s²", limits: -50.0..=50.0 };
 const DELAY: Column = Column { name: "delay_s", unit: "s", limits: 0.0..=1e6 };
+
+/// A recording of either kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Recorded {
+    /// Of a drive.
+    Motion(Motion),
+    /// Of a link.
+    Channel(ChannelTrace),
+}
+
+impl Recorded {
+    /// Reads a file whose columns say what it is of.
+    ///
+    /// # Errors
+    /// Those of [`Motion::read`] and [`ChannelTrace::read`].
+    pub fn read(file: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?;
+        let table = Table::parse(file, &bytes, EITHER_COLUMNS)?;
+        match (table.optional_column(&DELAY), table.optional_column(&POSITION)) {
+            (Some(_), None) => ChannelTrace::parse_rows(file, &bytes, 2).map(Self::Channel),
+            (None, None) => Err(table.lacks(&format!("{}` or `{}", POSITION.name, DELAY.name))),
+            (_, Some(_)) => Motion::parse(file, &bytes).map(Self::Motion),
+        }
+    }
+}
 
 /// A sample of a recorded drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +68,7 @@ pub struct MotionRow {
 /// A recorded drive: at least two rows, time strictly increasing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
+    file: PathBuf,
     rows: Vec<MotionRow>,
     findings: Vec<Error>,
 }
@@ -63,7 +91,7 @@ impl Motion {
     /// A drive that was computed: at least two rows, with time strictly increasing.
     pub(crate) fn of(rows: Vec<MotionRow>) -> Self {
         debug_assert!(rows.len() > 1 && rows.windows(2).all(|pair| pair[0].t_s < pair[1].t_s));
-        Self { rows, findings: Vec::new() }
+        Self { file: PathBuf::new(), rows, findings: Vec::new() }
     }
 
     /// Reads the file.
@@ -95,7 +123,13 @@ impl Motion {
             lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), 2)?;
-        Ok(Self { findings: findings::of_motion(file, &rows, &lines), rows })
+        Ok(Self { file: file.to_owned(), findings: findings::of_motion(file, &rows, &lines), rows })
+    }
+
+    /// The file that it was read from; empty for a drive that was computed.
+    #[must_use]
+    pub fn file(&self) -> &Path {
+        &self.file
     }
 
     /// What no vehicle does, with file and line; empty for a recording without fault.
@@ -184,6 +218,7 @@ pub struct ChannelRow {
 /// A recorded channel: at least one row, with time not decreasing (messages may be sent at the same time).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTrace {
+    file: PathBuf,
     rows: Vec<ChannelRow>,
     findings: Vec<Error>,
 }
@@ -216,7 +251,13 @@ impl ChannelTrace {
             lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), least)?;
-        Ok(Self { findings: findings::of_channel(file, &rows, &lines), rows })
+        Ok(Self { file: file.to_owned(), findings: findings::of_channel(file, &rows, &lines), rows })
+    }
+
+    /// The file that it was read from.
+    #[must_use]
+    pub fn file(&self) -> &Path {
+        &self.file
     }
 
     /// What no link does, with file and line; empty for a recording without fault.
@@ -243,16 +284,27 @@ impl ChannelTrace {
         &self.rows
     }
 
+    /// Time after which the recording starts again; `None` with a single row.
+    fn cycle_s(&self) -> Option<f64> {
+        let rows = self.rows.len();
+        (rows > 1).then(|| self.duration_s() * (rows as f64 / (rows - 1) as f64))
+    }
+
+    /// That a run of this length hears the recording more than once, if it does.
+    #[must_use]
+    pub fn repeats(&self, run_s: f64) -> Option<Error> {
+        let cycle_s = self.cycle_s().filter(|cycle_s| run_s > cycle_s + 1e-6)?;
+        let cause = format!("lasts {cycle_s:.1} s and the run {run_s:.1} s, so it is repeated from {cycle_s:.1} s on");
+        Some(Error::new(cause, "shorten the run by `duration_s`, or give a longer recording").in_file(&self.file))
+    }
+
     /// The delay of a message that is sent this long after the start: the delay of the latest row at or before that
     /// time, counted from the first row. `None`: lost. After its end the recording starts again from its beginning, one
     /// mean interval after its last row. A recording of one row repeats that row for ever.
     #[must_use]
     pub fn delay_at(&self, since_start_s: f64) -> Option<f64> {
-        let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);
-        let cycle_s = match self.rows.len() {
-            1 => return first.delay_s,
-            rows => (last.t_s - first.t_s) * (rows as f64 / (rows - 1) as f64),
-        };
+        let first = self.rows[0];
+        let Some(cycle_s) = self.cycle_s() else { return first.delay_s };
         let t_s = first.t_s + since_start_s.rem_euclid(cycle_s);
         let next = self.rows.partition_point(|row| row.t_s <= t_s);
         self.rows[next.saturating_sub(1)].delay_s

@@ -3,7 +3,7 @@
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
 
-use crate::input::impairment::Link;
+use crate::input::impairment::{Impairment, Link};
 use crate::input::scenario::Scenario;
 use crate::measure::metrics::{
     ErrorStatistics, SETTLED_FROM_S, STANDING_BELOW_MPS, collisions, full_stops, lowest_speed, smallest_gap,
@@ -165,6 +165,11 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     let may_stop = scenario.leader.motion.is_some() || stops || scenario.envelope.engaged;
     if summary.full_stops > 0 && !may_stop {
         failures.push(format!("{} full stop(s)", summary.full_stops));
+    }
+    if let Impairment::Recorded(link) = &scenario.channel.impairment
+        && !link.delivers()
+    {
+        failures.push(format!("no message arrives over {}", link.file().display()));
     }
     if summary.ours.max_position_error_m.is_none() {
         failures.push("the target was never estimated".into());

@@ -4,6 +4,8 @@
 
 use std::fmt::Write;
 
+use crate::provenance::VERSION;
+
 use super::{
     markup::{count, escape},
     plot::{Figure, Width},
@@ -48,6 +50,8 @@ impl Cell {
 /// A page that is built from top to bottom.
 pub struct Page {
     title: String,
+    head: String,
+    warnings: String,
     body: String,
     figures: usize,
 }
@@ -55,8 +59,8 @@ pub struct Page {
 impl Page {
     /// A page with this title. The `kicker` above it names the kind of page.
     pub fn new(kicker: &str, title: &str) -> Self {
-        let body = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
-        Self { title: title.into(), body, figures: 0 }
+        let head = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
+        Self { title: title.into(), head, warnings: String::new(), body: String::new(), figures: 0 }
     }
 
     // Writing to a String cannot fail, so the results of `write!` below are ignored.
@@ -77,6 +81,15 @@ impl Page {
             }
         }
         self.body.push_str("</div>\n");
+    }
+
+    /// What there is to say of the input. It stands above everything but the title.
+    pub fn warn(&mut self, warnings: &[String]) {
+        if warnings.is_empty() {
+            return;
+        }
+        let items: String = warnings.iter().map(|warning| format!("<li>{}</li>", escape(warning))).collect();
+        let _ = writeln!(self.warnings, "<div class=\"verdict warned\"><b>Warning</b><ul>{items}</ul></div>");
     }
 
     /// A heading.
@@ -163,21 +176,23 @@ impl Page {
 
     /// The finished document.
     pub fn finish(self) -> String {
-        let Self { title, body, .. } = self;
+        let Self { title, head, warnings, body, .. } = self;
         format!(
             concat!(
                 "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n",
                 "<meta charset=\"utf-8\"/>\n",
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n",
                 "<meta name=\"color-scheme\" content=\"light dark\"/>\n",
-                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}</main>\n",
+                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{head}{warnings}{body}</main>\n",
                 "<footer>Written by holdover-sim {version}. This file is complete in itself; it loads nothing.</footer>\n",
                 "</body>\n</html>\n"
             ),
             title = escape(&title),
             style = STYLE,
+            head = head,
+            warnings = warnings,
             body = body,
-            version = env!("CARGO_PKG_VERSION")
+            version = VERSION
         )
     }
 }

@@ -50,6 +50,11 @@ pub struct SweepReport {
 impl SweepReport {
     /// The page, as one self-contained HTML document.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut rows = self.rows.clone();
         rows.sort_by(|a, b| a.step_s.total_cmp(&b.step_s));
         let mut page = Page::new("holdover-sim · report of a sweep", &self.title);
@@ -64,7 +69,7 @@ impl SweepReport {
         page.section("Cost");
         cost_table(&mut page, &rows);
         cost_figure(&mut page, &rows);
-        page.finish()
+        page
     }
 }
 

@@ -79,7 +79,7 @@ impl CorridorOptions {
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
         let candump = candump(&corridor, &settings)?;
-        let destination = settings.output.read()?;
+        let destination = settings.output.read()?.with_inputs([named])?;
         let mut taken = vec![named];
         for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
             if let Some(file) = file {

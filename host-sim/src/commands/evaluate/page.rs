@@ -47,6 +47,7 @@ pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results
         command: command(options),
         classes,
         class_names: super::table::heads(&results.ours),
+        failures: results.failures.clone(),
         drives: options.recordings.iter().zip(outcomes).map(drive).collect(),
         methods,
     }

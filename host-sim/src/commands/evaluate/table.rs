@@ -6,6 +6,7 @@ use super::figures::{Figures, Results, figures};
 use super::options::EvaluateOptions;
 use super::sample::{Outcome, refusals};
 use crate::report::markup::count;
+use crate::verdict::Verdict;
 
 /// The tables.
 pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) -> String {
@@ -22,6 +23,11 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
         ),
         Some(_) => writeln!(text, "{} comparisons, {} messages", count(ticks as u64), count(sent as u64)),
     };
+    let verdict = || Verdict::of(&results.failures).line(&results.failures);
+    if ticks == 0 {
+        let _ = writeln!(text, "{}", verdict());
+        return text;
+    }
     let refusals: Vec<String> =
         refusals(outcomes).iter().map(|(cause, times)| format!("{cause} {}", count(*times))).collect();
     if !refusals.is_empty() {
@@ -43,6 +49,9 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
     classes(&mut text, results);
     if let (true, Some(lengths_s)) = (outcomes.len() > 1, options.lengths_s()) {
         recordings(&mut text, options, outcomes, lengths_s);
+    }
+    if !results.failures.is_empty() {
+        let _ = writeln!(text, "{}", verdict());
     }
     text
 }

@@ -68,6 +68,9 @@ impl HilOptions {
             return refuse(&cause, &format!("give a time before {} s", scenario.duration_s));
         }
         let destination = Destination::new(arguments.json, arguments.out)?;
+        let destination =
+            destination.with_inputs(file_of(&arguments.scenario).into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), false)?;
         Ok(Self {
             bus: arguments.bus,
             setup: Setup {

@@ -9,7 +9,7 @@ use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
 
 /// The page.
-pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> String {
+pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Page {
     let mut page = Page::new("holdover-sim · hardware in the loop", &format!("The device in {}", options.name));
     let passed = "The device drove its vehicle as its twin would have, in time.".to_owned();
     let reasons = if results.reasons.is_empty() { vec![passed] } else { results.reasons.clone() };
@@ -30,7 +30,7 @@ pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Str
     page.facts(&facts(options));
     page.section("Course");
     figures(&mut page, options, outcome);
-    page.finish()
+    page
 }
 
 /// The row of a line of the terminal's table: the figure's name, and after two blanks its value.

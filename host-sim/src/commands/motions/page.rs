@@ -21,11 +21,11 @@ const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the request of a d
                          age times its speed; that differs from a constant speed only where the last message was overtaken.";
 
 /// The page of `motions`.
-pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
+pub fn render(options: &MotionsOptions, rows: &[Row]) -> Page {
     let mut page = Page::new("holdover-sim · report of target motions", "What a target does in a silence");
     section(&mut page, rows);
     page.command(&options.command());
-    page.finish()
+    page
 }
 
 /// The section of a report, for the page of any command.

@@ -79,6 +79,10 @@ pub struct RunSettings {
     #[arg(long, value_name = "on|off", hide_possible_values = true)]
     pub range_sensors: Option<Switch>,
 
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,

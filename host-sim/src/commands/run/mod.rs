@@ -20,6 +20,7 @@ use options::RunOptions;
 /// # Errors
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let scenario = &options.scenario;
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
@@ -28,7 +29,7 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     bar.finish_and_clear();
     let failures = failures(scenario, &summary);
     let text = table::text(scenario, &summary, &failures);
-    let page = || page::report(options, &trace, &summary, &failures).render();
+    let page = || page::report(options, &trace, &summary, &failures).page();
     // One file that cannot be written does not keep the others away.
     let delivered = options.destination.deliver(&summary, &text, &text, page);
     let traced = options.trace.as_ref().map_or(Ok(()), |file| files::write_trace(file, scenario, &trace));

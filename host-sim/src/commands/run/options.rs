@@ -59,8 +59,10 @@ impl RunOptions {
             let error = Error::new(format!("there is no vehicle {vehicle}"), format!("give an index from 0 to {last}"));
             return Err(error.in_option("--candump-vehicle"));
         }
-        let destination = settings.output.read()?;
         let inputs = [scenario_file.as_ref(), settings.leader_motion.as_ref(), settings.channel_trace.as_ref()];
+        let destination = settings.output.read()?;
+        let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), settings.strict)?;
         let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
         for (option, file) in outputs {

@@ -48,6 +48,10 @@ pub struct SweepArguments {
     #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
     pub range_sensors: Switch,
 
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,

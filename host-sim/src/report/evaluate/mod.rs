@@ -69,6 +69,8 @@ pub struct EvaluateReport {
     pub class_names: Vec<(String, usize)>,
     /// The methods; the unit is first.
     pub methods: Vec<Method>,
+    /// The drives of which nothing could be compared, and why.
+    pub failures: Vec<String>,
     /// The drives.
     pub drives: Vec<Drive>,
 }
@@ -79,7 +81,15 @@ const MOST_DRIVES: usize = 6;
 impl EvaluateReport {
     /// The page, as one self-contained HTML document. The same report is always the same bytes.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut page = Page::new("holdover-sim · report of an evaluation", &self.title);
+        if !self.failures.is_empty() {
+            page.verdict(false, &self.failures);
+        }
         page.paragraph(&self.say_result());
         self.list_methods(&mut page);
         page.section("Error by class");
@@ -101,7 +111,7 @@ impl EvaluateReport {
         page.command(&self.command);
         page.section("Notes");
         page.list(&self.notes());
-        page.finish()
+        page
     }
 
     /// The drive during which most messages were sent. All drives use the same link from its beginning.

@@ -137,6 +137,11 @@ pub struct RunReport {
 impl RunReport {
     /// The page, as one self-contained HTML document. The same report is always the same bytes.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut page = Page::new("holdover-sim · report of a run", &self.title);
         page.verdict(self.verdict.passed, &self.verdict.reasons);
         let rows: Vec<Vec<Cell>> = self.summary.iter().map(summary_cells).collect();
@@ -162,7 +167,7 @@ impl RunReport {
             page.section("Notes");
             page.list(&self.notes);
         }
-        page.finish()
+        page
     }
 
     fn list_refusals(&self, page: &mut Page) {
