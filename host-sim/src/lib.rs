@@ -11,7 +11,8 @@
 //! sim          the world of a string: vehicles, plants, sensors, modems and the air between them
 //! bus          CAN buses in memory and in Linux, their faults and their logs
 //! input        scenarios, recordings and the library of scenarios
-//! draft, error, output, parallel, places, provenance, seeds, streams, verdict    what every floor stands on
+//! draft, error, output, parallel, places, provenance, seeds, streams, thinned, verdict    what every floor
+//!              stands on
 //! ```
 
 pub mod bus;
@@ -29,4 +30,5 @@ pub mod roads;
 pub mod seeds;
 pub mod sim;
 pub mod streams;
+pub mod thinned;
 pub mod verdict;

@@ -20,6 +20,7 @@ use crate::sim::stages::Stages;
 use crate::sim::station::request;
 use crate::sim::vehicle::{Alias, Vehicle};
 use crate::streams::{Purpose, stream, unit};
+use crate::thinned::{Thinning, halve};
 
 mod config;
 mod tick;
@@ -27,6 +28,9 @@ mod tick;
 use crate::sim::air::{Air, Arrived};
 pub use config::{HORIZON_S, config, horizon, machine};
 pub use tick::{Bounds, TargetBelief, Tick};
+
+/// The most ticks that the trace of a run has: ten minutes at the usual period.
+pub const MOST_TICKS: usize = 60_000;
 
 /// Least time for which the units tick before the run, in seconds. A unit trusts its time base after two
 /// synchronisations.
@@ -51,6 +55,49 @@ pub struct Trace {
     pub log: Vec<(f64, Frame)>,
     /// Number of messages that found no slot in a modem.
     pub turned_away: u64,
+    /// The last tick of every vehicle, whether it is kept or not.
+    pub latest: Vec<Tick>,
+    /// Which ticks are kept: every one, unless the trace is of bounded length.
+    pub thinning: Thinning,
+}
+
+impl Trace {
+    /// The same with at most this many ticks. Of a longer run every second, every fourth and so on is kept.
+    #[must_use]
+    pub fn of_at_most(self, ticks: usize) -> Self {
+        Self { thinning: Thinning::to(ticks), ..self }
+    }
+
+    /// Every tick that is kept: its time, the ticks of all vehicles, and the estimate of the literal paper's method.
+    pub fn each(&self, mut tick: impl FnMut(f64, &[Tick], Option<f64>)) {
+        let mut ticks = Vec::with_capacity(self.vehicles.len());
+        for (index, at_s) in self.times_s.iter().enumerate() {
+            ticks.clear();
+            ticks.extend(self.vehicles.iter().map(|vehicle| vehicle[index]));
+            tick(*at_s, &ticks, self.paper.get(index).copied().flatten());
+        }
+    }
+
+    /// Adds the latest tick.
+    fn push(&mut self, at_s: f64) {
+        let place = self.thinning.place();
+        if place.is_full {
+            halve(&mut self.times_s);
+            halve(&mut self.paper);
+            self.vehicles.iter_mut().for_each(halve);
+        }
+        if place.is_kept {
+            self.times_s.push(at_s);
+            self.vehicles.iter_mut().zip(&self.latest).for_each(|(ticks, tick)| ticks.push(*tick));
+        }
+    }
+
+    /// Adds the estimate of the literal paper's method at the latest tick.
+    pub fn push_paper(&mut self, paper_m: Option<f64>) {
+        if self.paper.len() < self.times_s.len() {
+            self.paper.push(paper_m);
+        }
+    }
 }
 
 /// The vehicle whose position is estimated, and the vehicle that estimates it.
@@ -145,13 +192,16 @@ impl<'a> World<'a> {
         self.warm_up()?;
         let period_s = self.scenario.period_s;
         let ticks = self.ticks();
-        let mut trace = self.trace();
+        let mut trace = self.trace().of_at_most(MOST_TICKS);
         for tick in 0..ticks {
             let at_s = tick as f64 * period_s;
             self.tick(at_s, |world| {
                 world.note(at_s, &mut trace);
                 beside(world, at_s, &mut trace)
             })?;
+            if let Some(upto) = self.log.as_ref().map(|(index, _)| self.vehicles[*index].instant(at_s)) {
+                self.log_until(upto, &mut trace)?;
+            }
             if tick % 100 == 0 {
                 progress(tick as f64 / ticks as f64);
             }
@@ -193,16 +243,17 @@ impl<'a> World<'a> {
     /// The trace of a run that has not begun.
     #[must_use]
     pub fn trace(&self) -> Trace {
-        let ticks = self.ticks();
         Trace {
-            times_s: Vec::with_capacity(ticks),
-            vehicles: vec![Vec::with_capacity(ticks); self.vehicles.len()],
-            paper: Vec::with_capacity(ticks),
+            times_s: Vec::new(),
+            vehicles: vec![Vec::new(); self.vehicles.len()],
+            paper: Vec::new(),
             measured: self.measured,
             refusals: Vec::new(),
             channel: Channel::new(&self.scenario.channel, 0),
             log: Vec::new(),
             turned_away: 0,
+            latest: Vec::new(),
+            thinning: Thinning::default(),
         }
     }
 
@@ -257,10 +308,9 @@ impl<'a> World<'a> {
 
     /// Adds a tick to the trace; called after [`act`](Stages::act).
     pub fn note(&self, at_s: f64, trace: &mut Trace) {
-        trace.times_s.push(at_s);
-        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
-            ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
-        }
+        trace.latest.clear();
+        trace.latest.extend(self.vehicles.iter().map(|vehicle| Tick::of(vehicle, at_s, self.scenario.period_s)));
+        trace.push(at_s);
     }
 
     /// Ends the run and completes the trace.
@@ -272,14 +322,19 @@ impl<'a> World<'a> {
             .iter()
             .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
             .collect();
-        if let Some((index, node)) = &mut self.log {
-            while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
-                trace.log.push((self.vehicles[*index].time_of(at), frame));
-            }
-        }
+        self.log_until(Instant::from_micros(u64::MAX), &mut trace)?;
         trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
         trace.channel = self.air.into_channel();
         Ok(trace)
+    }
+
+    /// Adds the frames on the logged bus up to a time to the trace.
+    fn log_until(&mut self, upto: Instant, trace: &mut Trace) -> io::Result<()> {
+        let Some((index, node)) = &mut self.log else { return Ok(()) };
+        while let Some((at, frame)) = node.receive(upto)? {
+            trace.log.push((self.vehicles[*index].time_of(at), frame));
+        }
+        Ok(())
     }
 
     /// Delivers all messages that have arrived by now, in the order of arrival.

@@ -11,8 +11,11 @@ use indicatif::ProgressBar;
 
 use crate::error::Error;
 use crate::measure::figures::failures;
-use crate::measure::simulate::simulate;
+use crate::measure::simulate::simulate_beside;
+use crate::sim::world::Trace;
 use crate::verdict::Verdict;
+use candump::Candump;
+use files::TraceFile;
 use options::RunOptions;
 
 /// Runs the scenario and writes the output that the options ask for.
@@ -24,16 +27,30 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let scenario = &options.scenario;
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
+    let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
+    let mut candump = options.candump.as_ref().map(Candump::begin).transpose()?;
+    let each = |at_s: f64, trace: &mut Trace, paper_m| {
+        if let Some(file) = &mut traced {
+            file.note(at_s, &trace.latest, paper_m);
+        }
+        if let Some(log) = &mut candump {
+            log.note(&trace.log);
+            trace.log.clear();
+        }
+    };
     let (trace, summary) =
-        simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
+        simulate_beside(scenario, scenario.seed, logged, each, |share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     let failures = failures(scenario, &summary);
     let text = table::text(scenario, &summary, &failures);
     let page = || page::report(options, &trace, &summary, &failures).page();
     // One file that cannot be written does not keep the others away.
     let delivered = options.destination.deliver(&summary, &text, &text, page);
-    let traced = options.trace.as_ref().map_or(Ok(()), |file| files::write_trace(file, scenario, &trace));
-    let logged = options.candump.as_ref().map_or(Ok(()), |candump| candump.write(&trace.log));
+    let traced = traced.map_or(Ok(()), TraceFile::finish);
+    let logged = candump.map_or(Ok(()), |mut log| {
+        log.note(&trace.log);
+        log.finish()
+    });
     delivered.and(traced).and(logged)?;
     Ok(Verdict::of(&failures))
 }

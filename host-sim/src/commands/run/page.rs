@@ -153,6 +153,10 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
 /// messages.
 fn silences(scenario: &Scenario, trace: &Trace) -> Vec<Interval> {
     let Some(link) = trace.channel.link(measured_link(trace)) else { return Vec::new() };
+    // Where only some messages are recorded, there are gaps between them.
+    if link.thinning.stride() > 1 {
+        return Vec::new();
+    }
     let longer_than_s = 2.5 / scenario.message_rate_hz;
     let end_s = trace.times_s.last().copied().unwrap_or(0.0);
     link.silences(longer_than_s.max(0.5), 0.0, end_s)
@@ -239,6 +243,21 @@ fn notes(trace: &Trace, summary: &Summary) -> Vec<String> {
              estimate goes by the law that the other one published, and is wrong by what the envelope does. The bound holds."
                 .to_owned(),
         );
+    }
+    if trace.thinning.stride() > 1 {
+        notes.push(format!(
+            "The run is long: figures over time are of one tick in {}. Largest, smallest and counted figures of the table are of all.",
+            trace.thinning.stride()
+        ));
+    }
+    let link = trace.channel.link(measured_link(trace)).filter(|link| link.thinning.stride() > 1);
+    if let Some(link) = link {
+        notes.push(format!(
+            "Of the messages over the ego’s link one in {} is shown, and silences are not shaded; {} of {} were lost.",
+            link.thinning.stride(),
+            link.counts.sent - link.counts.delivered,
+            link.counts.sent
+        ));
     }
     if trace.turned_away > 0 {
         notes.push(format!("{} messages found no free slot in a modem.", trace.turned_away));
