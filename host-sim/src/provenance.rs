@@ -38,11 +38,13 @@ impl Input {
 /// The command line, as a shell takes it.
 #[must_use]
 pub fn command_line() -> String {
-    let words = std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy()));
+    let words = std::env::args_os().skip(1).map(|word| shell_word(&word.to_string_lossy()));
     std::iter::once("holdover-sim".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-fn quoted(word: &str) -> String {
+/// A word as a shell takes it.
+#[must_use]
+pub fn shell_word(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=@+%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         word.to_owned()
@@ -67,8 +69,8 @@ mod tests {
 
     #[test]
     fn words_that_a_shell_would_take_apart_are_quoted() {
-        assert_eq!(quoted("--out=a/b-1.5,2"), "--out=a/b-1.5,2");
-        assert_eq!(quoted("it's $1"), r"'it'\''s $1'");
-        assert_eq!(quoted(""), "''");
+        assert_eq!(shell_word("--out=a/b-1.5,2"), "--out=a/b-1.5,2");
+        assert_eq!(shell_word("it's $1"), r"'it'\''s $1'");
+        assert_eq!(shell_word(""), "''");
     }
 }

@@ -9,7 +9,7 @@ use holdover_sim::measure::simulate::simulate_beside;
 use holdover_sim::sim::world::MOST_TICKS;
 
 /// 61,000 ticks of two vehicles.
-const LONG: &str = "duration_s = 6100\nperiod_s = 0.1\n[[vehicle]]\n[[vehicle]]\n";
+const LONG: &str = "duration_s = 3050\nperiod_s = 0.05\n[[vehicle]]\n[[vehicle]]\n";
 
 #[test]
 fn what_a_run_keeps_does_not_grow_with_its_length() {
@@ -26,10 +26,10 @@ fn what_a_run_keeps_does_not_grow_with_its_length() {
     assert_eq!((trace.times_s.len(), trace.thinning.stride()), (30_500, 2));
     assert!(trace.times_s.len() <= MOST_TICKS && trace.vehicles.iter().all(|ticks| ticks.len() == trace.times_s.len()));
     assert_eq!(trace.paper.len(), trace.times_s.len());
-    assert!(trace.times_s.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-6));
+    assert!(trace.times_s.windows(2).all(|pair| (pair[1] - pair[0] - 0.1).abs() < 1e-6));
     assert!(most_frames < 1000 && trace.log.len() < 1000, "{most_frames} frames, and {} at the end", trace.log.len());
     let link = trace.channel.link(Link { from: 0, to: 1 }).unwrap();
-    assert!(link.counts.sent > 60_000 && link.messages.len() <= 18_000, "{} messages", link.messages.len());
+    assert!(link.counts.sent > 30_000 && link.messages.len() <= 18_000, "{} messages", link.messages.len());
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::dbc::DbcOptions;
 use crate::commands::ecu::options::EcuOptions;
+use crate::commands::ending::json;
 use crate::commands::envelope_cost::options::EnvelopeCostOptions;
 use crate::commands::evaluate::options::EvaluateOptions;
 use crate::commands::gains::GainsOptions;
@@ -32,8 +33,10 @@ pub enum Options {
     Run(RunOptions),
     /// Run a corridor.
     Corridor(Box<CorridorOptions>),
-    /// List the scenarios that come with the program.
-    List,
+    /// List the scenarios that come with the program, as JSON or not.
+    List(bool),
+    /// Print one of them.
+    Show(&'static str),
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
     /// Check files.
@@ -86,7 +89,10 @@ impl Options {
 
     fn of_run(arguments: RunArguments) -> Result<Self, Error> {
         if arguments.settings.list {
-            return Ok(Self::List);
+            return Ok(Self::List(arguments.settings.output.json));
+        }
+        if let Some(name) = &arguments.settings.show {
+            return library::show(name).map(Self::Show);
         }
         let Some(named) = &arguments.scenario else { return RunOptions::read(arguments).map(Self::Run) };
         let (file, text) = library::text(named)?;
@@ -106,7 +112,9 @@ impl Options {
         match self {
             Self::Run(options) => run::run(options),
             Self::Corridor(options) => corridor::run(options),
-            Self::List => output::print(&library::list()).map(|()| Verdict::Pass),
+            Self::List(true) => output::print(&format!("{}\n", json(&library::listed())?)).map(|()| Verdict::Pass),
+            Self::List(false) => output::print(&library::list()).map(|()| Verdict::Pass),
+            Self::Show(text) => output::print(text).map(|()| Verdict::Pass),
             Self::Evaluate(options) => evaluate::run(options),
             Self::Check(options) => check::run(options),
             Self::Sweep(options) => sweep::run(options),

@@ -172,6 +172,12 @@ impl Motion {
         slope(&self.rows[start..end])
     }
 
+    /// The longest time between two samples that is no gap.
+    #[must_use]
+    pub fn longest_interval_s(&self) -> f64 {
+        findings::longest(self.rows.windows(2).map(|pair| pair[1].t_s - pair[0].t_s))
+    }
+
     /// Time from the first sample to the last.
     #[must_use]
     pub fn duration_s(&self) -> f64 {

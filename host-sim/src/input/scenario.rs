@@ -9,6 +9,7 @@ pub(crate) mod envelope;
 pub(crate) mod keys;
 mod plant;
 pub(crate) mod sensors;
+pub(crate) mod set;
 mod start;
 mod validate;
 
@@ -151,6 +152,8 @@ pub struct Overrides {
     pub envelope: Option<Switch>,
     /// `--range-sensors`.
     pub range_sensors: Option<Switch>,
+    /// Each `--set`, as typed: `key=value`.
+    pub set: Vec<String>,
 }
 
 impl Overrides {
@@ -163,6 +166,7 @@ impl Overrides {
         channel_trace: None,
         envelope: Some(Switch::Off),
         range_sensors: Some(Switch::Off),
+        set: Vec::new(),
     };
 }
 

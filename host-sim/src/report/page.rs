@@ -11,6 +11,9 @@ use super::{
     plot::{Figure, Width},
 };
 
+/// From so many columns on a table is set smaller.
+const MANY_COLUMNS: usize = 7;
+
 const STYLE: &str = include_str!("style.css");
 
 /// One cell of a table.
@@ -129,7 +132,10 @@ impl Page {
 
     /// A table. The first cell of each row is its heading. A column is aligned like its cell in the first row.
     pub fn table(&mut self, caption: &str, header: &[&str], rows: &[Vec<Cell>]) {
-        let _ = write!(self.body, "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escape(caption));
+        // A table of many columns is set smaller, so that all of them are seen on a screen and on paper.
+        let class = if header.len() >= MANY_COLUMNS { " class=\"many\"" } else { "" };
+        let caption = escape(caption);
+        let _ = write!(self.body, "<div class=\"scroll\"><table{class}><caption>{caption}</caption><thead><tr>");
         for (index, name) in header.iter().enumerate() {
             let number = rows.first().and_then(|row| row.get(index)).is_some_and(|c| c.class.starts_with("number"));
             let class = if number { " class=\"number\"" } else { "" };

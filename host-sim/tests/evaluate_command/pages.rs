@@ -81,7 +81,15 @@ fn the_table_names_every_method_and_class() {
     let text = |arguments: &str| String::from_utf8(bench.run(arguments).stdout).unwrap();
     let link = text("--motion a.csv --channel c.csv --no-report");
     let silence = text("--motion a.csv b<&>.csv --outage 0.5,2 --no-report");
-    for name in ["holdover", "freeze", "constant_speed", "constant_acceleration", "singer", "kalman", "paper"] {
+    for name in [
+        "holdover",
+        "freeze",
+        "constant speed",
+        "constant acceleration",
+        "Singer's model",
+        "Kalman filter",
+        "literal paper",
+    ] {
         assert!(link.contains(name) && silence.contains(name), "{name}");
     }
     assert!(link.contains("0.1–0.5 s") && link.contains("181 messages sent, 151 delivered"), "{link}");

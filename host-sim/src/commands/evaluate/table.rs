@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::figures::{Figures, Results, figures};
 use super::options::EvaluateOptions;
 use super::sample::{Outcome, refusals};
+use crate::measure::baseline::spoken;
 use crate::report::markup::count;
 use crate::verdict::Verdict;
 
@@ -37,7 +38,7 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
     let _ = writeln!(text, "{:<23}{:>11}{:>11}{:>11}{:>14}", "", "rms", "99 %", "maximum", "rms");
     for (name, figures) in results.methods() {
         let Figures { rms_position_m, p99_position_m, max_position_m, rms_speed_mps, .. } = *figures;
-        let _ = write!(text, "{name:<23}");
+        let _ = write!(text, "{:<23}", spoken(name));
         [rms_position_m, p99_position_m, max_position_m].into_iter().for_each(|value| cell(&mut text, value));
         let _ = writeln!(text, "{:>14}", number(rms_speed_mps));
     }
@@ -64,7 +65,7 @@ fn classes(text: &mut String, results: &Results) {
     };
     row(text, "", heads.iter().map(|(name, _)| name.clone()).collect());
     for (name, figures) in results.methods() {
-        row(text, name, class_rms(figures).into_iter().map(number).collect());
+        row(text, &spoken(name), class_rms(figures).into_iter().map(number).collect());
     }
     row(text, "count", heads.iter().map(|(_, samples)| count(*samples as u64)).collect());
 }

@@ -44,7 +44,7 @@ pub struct HilArguments {
     pub fault: Vec<String>,
 
     /// Seed of everything random, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Print the results as one JSON value on stdout

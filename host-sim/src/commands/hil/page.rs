@@ -8,6 +8,9 @@ use crate::measure::figures::{gaps, speeds};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
 
+/// Commands and ticks that are farther apart than this are not joined: there was none in between. The device's period is 0.01 s.
+const JOINED_S: f64 = 0.05;
+
 /// The page.
 pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Page {
     let mut page = Page::new("holdover-sim · hardware in the loop", &format!("The device in {}", options.name));
@@ -73,7 +76,9 @@ fn facts(options: &HilOptions) -> Vec<(String, String)> {
 
 fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
     let ego = options.setup.scenario.ego;
-    let line = |name: &str, points: Vec<(f64, f64)>, tone| Layer::line(Series::new(name, points), tone);
+    let line = |name: &str, points: Vec<(f64, f64)>, tone| {
+        Layer::line(Series::new(name, points).joined_within(JOINED_S), tone)
+    };
     let speed = speeds(&outcome.trace).into_iter().nth(ego).unwrap_or_default();
     let ahead = speeds(&outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
     let gap = gaps(&options.setup.scenario, &outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();

@@ -2,6 +2,7 @@
 
 pub mod arguments;
 pub mod candump;
+mod collided;
 mod files;
 pub mod options;
 mod page;

@@ -1,5 +1,6 @@
 //! The report of a run: options, trace and figures enter, the page's content leaves.
 
+use crate::commands::run::collided::crashes;
 use crate::commands::run::options::RunOptions;
 use crate::input::impairment::{AppliesTo, Impairment, Link};
 use crate::input::scenario::Scenario;
@@ -22,16 +23,19 @@ pub fn report(options: &RunOptions, trace: &Trace, summary: &Summary, failures: 
         trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.position_m)).collect::<Vec<_>>()
     };
     let silences = silences(scenario, trace);
+    let joined_s = 1.5 * scenario.period_s * trace.thinning.stride() as f64;
     RunReport {
         title: title(options),
         facts: facts(scenario),
         verdict: Verdict { passed: failures.is_empty(), reasons: reasons(summary, failures) },
         command: command(options),
         summary: rows(summary),
+        crashes: crashes(scenario, trace, summary, &names),
         trajectories: (0..names.len()).map(|index| Series::new(names[index].clone(), positions(index))).collect(),
         ego: trace.measured.vehicle,
-        error_ours: Series::new("holdover", errors(trace, ours(trace))),
-        error_paper: Series::new("literal paper", errors(trace, papers(trace))),
+        // Where there is no estimate there is no error, and no line.
+        error_ours: Series::new("holdover", errors(trace, ours(trace))).joined_within(joined_s),
+        error_paper: Series::new("literal paper", errors(trace, papers(trace))).joined_within(joined_s),
         bound: bound(trace),
         drive: drive(scenario, trace, &names),
         silences,
@@ -137,7 +141,7 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
         row("Lowest speed", summary.min_speed_mps, None, "m/s", None),
         row("Full stops", count(summary.full_stops), None, "", None),
         row("Collisions", count(summary.collisions), None, "", Some(Limit::AtMost(0.0))),
-        row("Width of the bound, median", summary.bound.median_width_m, None, "m", None),
+        row("Median width of the bound", summary.bound.median_width_m, None, "m", None),
         row(
             "Ticks with a target outside its bound",
             count(summary.bound.violations),

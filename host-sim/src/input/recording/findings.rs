@@ -110,7 +110,7 @@ impl Step {
 }
 
 /// The longest interval that is no gap.
-fn longest(intervals_s: impl Iterator<Item = f64>) -> f64 {
+pub fn longest(intervals_s: impl Iterator<Item = f64>) -> f64 {
     (GAP_INTERVALS * median(intervals_s)).max(GAP_S)
 }
 
