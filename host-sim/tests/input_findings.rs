@@ -46,7 +46,7 @@ fn of_honest_recordings_nothing_is_said() {
     // A drive at 1 Hz with a sample missing, and one that stands.
     assert_eq!(drive((0..60).filter(|n| *n != 30).map(|n| (f64::from(n), 10.0 * f64::from(n), 10.0))), [""; 0]);
     assert_eq!(drive(minute().map(|(t, _)| (t, 5.0, 0.0))), [""; 0]);
-    assert_eq!(link(minute().map(|(t, _)| (t, (t < 20.0 || t > 24.0).then_some(0.03)))), [""; 0]);
+    assert_eq!(link(minute().map(|(t, _)| (t, (!(20.0..=24.0).contains(&t)).then_some(0.03)))), [""; 0]);
 }
 
 #[test]

@@ -72,12 +72,14 @@ fn only_the_best_of_a_column_is_bold() {
     let page = page(folder.path(), "evaluate --motion drive.csv --outage 1,2,4");
     assert!(!page.contains("ours and the least") && page.contains("bold: the least."));
     let table = page.split("<table").nth(1).unwrap().split("</table>").next().unwrap();
-    let rows: Vec<Vec<&str>> = table.split("<tr>").skip(2).map(|row| row.split("<td class=\"number").skip(1).collect()).collect();
+    let rows: Vec<Vec<&str>> =
+        table.split("<tr>").skip(2).map(|row| row.split("<td class=\"number").skip(1).collect()).collect();
     assert!(rows.len() == 7 && rows.iter().all(|row| row.len() == 4), "{table}");
     let value = |cell: &str| cell.split(['>', '<']).nth(1).unwrap().parse::<f64>().unwrap();
     for column in 0..4 {
         let best = rows.iter().map(|row| value(row[column])).fold(f64::INFINITY, f64::min);
-        let bold: Vec<f64> = rows.iter().filter(|row| row[column].starts_with(" strong")).map(|row| value(row[column])).collect();
+        let bold: Vec<f64> =
+            rows.iter().filter(|row| row[column].starts_with(" strong")).map(|row| value(row[column])).collect();
         assert!(!bold.is_empty() && bold.iter().all(|bold| *bold == best), "{column}: {bold:?} of {best}");
     }
 }

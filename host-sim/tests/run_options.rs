@@ -32,7 +32,8 @@ fn what_the_parser_refuses_is_one_line_with_cause_and_remedy() {
         (&["--step", "x"], "--step: is \"x\"; give a number"),
         (&["--seed"], "--seed: has no value; give one"),
         (&["--sed", "3"], "there is no argument \"--sed\"; did you mean '--seed'?"),
-        (&["rnu"], "there is no command \"rnu\"; did you mean 'run'?"),
+        (&["evalute"], "there is no command \"evalute\"; did you mean 'evaluate'?"),
+        (&["rnu"], "there is no command \"rnu\"; see `holdover-sim --help`"),
         (&["run", "--envelope=maybe"], "--envelope: is \"maybe\"; give one of on, off"),
         (
             &["run", "--no-report", "--out", "x"],

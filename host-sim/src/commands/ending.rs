@@ -65,12 +65,12 @@ impl Destination {
         Ok(Self { json, report, inputs: Vec::new(), warnings: Vec::new() })
     }
 
-    /// The same for results that come from these files. A name without a file is one of the library.
+    /// The same for results that come from these files. A name without a file is one of the library, and a pipe can be read only once.
     ///
     /// # Errors
     /// A file that cannot be read any more.
     pub fn with_inputs<'a>(self, files: impl IntoIterator<Item = &'a Path>) -> Result<Self, Error> {
-        let files = files.into_iter().filter(|file| file.exists());
+        let files = files.into_iter().filter(|file| file.is_file());
         Ok(Self { inputs: files.map(Input::of).collect::<Result<_, _>>()?, ..self })
     }
 

@@ -132,7 +132,9 @@ Examples:
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress
   goes to stderr. The report is one HTML file in the folder of --out. Equal
-  seeds give equal bytes, but for what stands under \"timing\".
+  seeds give equal bytes, but for what stands under \"timing\". Files are written
+  whole or not at all. Of a run of more than 60,000 ticks figures over time and
+  percentiles are of evenly chosen ones, and all other figures of every tick.
 
 Exit codes:
   0  the verdict is: passed

@@ -101,7 +101,7 @@ impl<'a> Document<'a> {
 
     /// Adds the place in this file to an error.
     pub fn place(&self, error: Error, line: Option<u64>) -> Error {
-        if line.is_some_and(|line| line >= SET_LINE) {
+        if line.is_some_and(|line| line == SET_LINE) {
             return error.in_option("--set");
         }
         let error = if self.file.as_os_str().is_empty() { error } else { error.in_file(self.file) };

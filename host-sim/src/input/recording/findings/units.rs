@@ -45,7 +45,7 @@ const NOISE_MPS: f64 = 0.3;
 pub fn of(steps: &[Step]) -> Option<(String, &'static str)> {
     let all = steps.iter().fold(Share::default(), Share::with);
     let (moved, driven) = (all.moved_m / all.length_s, all.driven_m / all.length_s);
-    if all.moved_m.abs().max(all.driven_m.abs()) < LEAST_M || !((moved - driven).abs() > NOISE_MPS) {
+    if all.moved_m.abs().max(all.driven_m.abs()) < LEAST_M || (moved - driven).abs() <= NOISE_MPS {
         return None;
     }
     let ratio = all.moved_m / all.driven_m;
