@@ -132,29 +132,13 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
         // Less what the user's mask takes away, as any other file.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    // The name of the draft is no help to the user.
-    builder.tempfile_in(folder).map_err(|error| plain(&error))
+    builder.tempfile_in(folder)
 }
 
 /// The folder of a file.
 #[must_use]
 pub fn folder_of(file: &Path) -> PathBuf {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
-}
-
-/// The system's own error, without what was added to it.
-fn plain(error: &io::Error) -> io::Error {
-    let mut inner: Option<&(dyn std::error::Error + 'static)> = Some(error);
-    while let Some(found) = inner {
-        if let Some(code) = found.downcast_ref::<io::Error>().and_then(io::Error::raw_os_error) {
-            return io::Error::from_raw_os_error(code);
-        }
-        inner = match found.downcast_ref::<io::Error>().and_then(io::Error::get_ref) {
-            Some(custom) => custom.source().or(Some(custom)),
-            None => found.source(),
-        };
-    }
-    error.kind().into()
 }
 
 #[cfg(test)]

@@ -43,9 +43,10 @@ fn a_folder_that_cannot_be_created_is_refused_before_the_work() {
         "evaluate --motion drive.csv --outage 1",
         "hil --bus none0",
     ];
-    for (place, cause) in
-        [("/proc/nope", "\"/proc/nope\" cannot be written"), ("drive.csv/sub", "\"drive.csv\" is a file")]
-    {
+    for (place, cause) in [
+        ("/proc/nope", "\"/proc/nope\" cannot be written (No such file or directory); name a folder"),
+        ("drive.csv/sub", "\"drive.csv\" is a file"),
+    ] {
         for command in commands {
             let start = Instant::now();
             let output = run(folder.path(), &format!("{command} --out {place}"));

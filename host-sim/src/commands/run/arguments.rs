@@ -35,8 +35,8 @@ pub struct RunSettings {
     #[arg(long, value_name = "NAME", conflicts_with_all = ["list", "json"])]
     pub show: Option<String>,
 
-    /// Set a key of the scenario, as often as needed: channel.loss=0.3, vehicle.1.gap_m=20 (counted from 0),
-    /// leader.program=[[0,13],[12,9]]. It is checked like the file
+    /// Set a key of the scenario, as often as needed: `channel.loss=0.3`, `vehicle.1.gap_m=20` (counted from 0),
+    /// `leader.program=[[0,13],[12,9]]`. It is checked like the file
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 
