@@ -1,5 +1,5 @@
-//! Series of bounded length: a value for each sample enters; every sample is kept, or of a long series every second, every fourth and so on,
-//! evenly from the first on.
+//! Series of bounded length: a value for each sample enters; every sample is kept, or of a long series every second, every fourth and so
+//! on, evenly from the first on.
 
 /// Which samples of a series are kept. Several series of the same samples share one.
 #[derive(Clone, Debug, PartialEq, Eq)]

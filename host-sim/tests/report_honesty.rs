@@ -1,4 +1,5 @@
-//! Reports show no more than there is: no line through missing data, no bold but the best, nothing cut off, and of a collision those who had it.
+//! Reports show no more than there is: no line through missing data, no bold but the best, nothing cut off, and of a collision those who
+//! had it.
 
 use std::fs;
 use std::path::Path;

@@ -41,8 +41,8 @@ impl TraceFile {
         })
     }
 
-    /// Writes the tick of the measured vehicle as its follower estimates it, with the bound on the bus and the follower's command. `limited`
-    /// is 1 where the envelope changed that command.
+    /// Writes the tick of the measured vehicle as its follower estimates it, with the bound on the bus and the follower's command.
+    /// `limited` is 1 where the envelope changed that command.
     pub fn note(&mut self, at_s: f64, ticks: &[Tick], paper_m: Option<f64>) {
         if self.written.is_ok() {
             self.written = self.row(at_s, &ticks[self.measured.vehicle], &ticks[self.measured.by], paper_m);

@@ -1,5 +1,5 @@
-//! What no vehicle and no link does: checked rows enter; one finding for each way in which they cannot be leaves, with the line of the worst
-//! place.
+//! What no vehicle and no link does: checked rows enter; one finding for each way in which they cannot be leaves, with the line of the
+//! worst place.
 //!
 //! A finding is no error: the rows can be read, and figures can be made of them. Limits are wide, so that an honest recording with its
 //! noise passes.

@@ -101,8 +101,8 @@ impl<'a> BoundTally<'a> {
         self.leader_mps = Some(speed_mps);
     }
 
-    /// Whether a change of the recorded leader's speed that no road vehicle is capable of is so recent that the unit cannot yet have received
-    /// enough samples to accept the leader's motion again.
+    /// Whether a change of the recorded leader's speed that no road vehicle is capable of is so recent that the unit cannot yet have
+    /// received enough samples to accept the leader's motion again.
     fn is_excused(&self, at_s: f64, seen: &Tick) -> bool {
         let recovery_s = 2.0 * f64::from(RECOVERY_SAMPLES) / self.scenario.message_rate_hz;
         let age_s = seen.target.map_or(0.0, |target| target.age_s);

@@ -1,5 +1,5 @@
-//! Who ran into whom: two vehicles enter, tick by tick; when their bumper gap fell below 0, how fast they were, and what the unit of the one
-//! behind believed at that moment leave.
+//! Who ran into whom: two vehicles enter, tick by tick; when their bumper gap fell below 0, how fast they were, and what the unit of the
+//! one behind believed at that moment leave.
 
 use std::fmt;
 

@@ -1,8 +1,8 @@
 //! The figures of a run while it runs: the ticks of all vehicles enter, one after the other; the figures leave at the end. The memory that
 //! this takes does not grow with the length of the run.
 //!
-//! Largest, smallest and counted figures are of every tick. Percentiles are of every tick of runs up to [`MOST`] ticks, and of evenly chosen
-//! ones beyond.
+//! Largest, smallest and counted figures are of every tick. Percentiles are of every tick of runs up to [`MOST`] ticks, and of evenly
+//! chosen ones beyond.
 
 use super::bound::BoundTally;
 use super::collision::Collision;
