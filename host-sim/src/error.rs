@@ -113,7 +113,7 @@ fn escaped(text: &str) -> String {
 }
 
 /// The system's words without the error number that `std` appends.
-fn plain(error: &io::Error) -> String {
+pub(crate) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     text.split_once(" (os error").map_or(text.clone(), |(words, _)| words.to_owned())
 }

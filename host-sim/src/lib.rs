@@ -11,20 +11,24 @@
 //! sim          the world of a string: vehicles, plants, sensors, modems and the air between them
 //! bus          CAN buses in memory and in Linux, their faults and their logs
 //! input        scenarios, recordings and the library of scenarios
-//! error, output, parallel, places, seeds, streams, verdict    what every floor stands on
+//! draft, error, output, parallel, places, provenance, seeds, streams, thinned, verdict    what every floor
+//!              stands on
 //! ```
 
 pub mod bus;
 pub mod commands;
+pub mod draft;
 pub mod error;
 pub mod input;
 pub mod measure;
 pub mod output;
 pub mod parallel;
 pub mod places;
+pub mod provenance;
 pub mod report;
 pub mod roads;
 pub mod seeds;
 pub mod sim;
 pub mod streams;
+pub mod thinned;
 pub mod verdict;

@@ -66,6 +66,7 @@ fn five_vehicles(seconds: u32) -> RunReport {
             .collect(),
     };
     RunReport {
+        crashes: None,
         title: "The paper’s scenario: five vehicles, four seconds of silence".into(),
         facts: [
             ("Seed", "1"),

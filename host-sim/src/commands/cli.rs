@@ -1,6 +1,7 @@
 //! The command line as it is typed: arguments enter, raw values leave. [`crate::commands::options`] interprets and
 //! checks them.
 
+use crate::commands::check::{self, arguments::CheckArguments};
 use crate::commands::dbc::{self, arguments::DbcArguments};
 use crate::commands::ecu::{self, arguments::EcuArguments};
 use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
@@ -13,6 +14,7 @@ use crate::commands::replay::{self, arguments::ReplayArguments};
 use crate::commands::run::arguments::{AFTER_HELP, RunArguments, RunSettings};
 use crate::commands::string::{self, arguments::StringArguments};
 use crate::commands::sweep::{self, arguments::SweepArguments};
+use crate::provenance::VERSION;
 use clap::{Parser, Subcommand};
 
 /// Drives simulated vehicles, each with the onboard unit's own code, over an impaired V2X channel.
@@ -22,7 +24,7 @@ use clap::{Parser, Subcommand};
 /// position as its follower's unit estimates it, beside that of the literal paper's method on the same messages. It
 /// writes a report with plots.
 #[derive(Clone, Debug, Parser)]
-#[command(name = "holdover-sim", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
+#[command(name = "holdover-sim", version = VERSION, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
 pub struct Cli {
     /// The command; `run` if none is given.
     #[command(subcommand)]
@@ -41,6 +43,9 @@ pub enum Command {
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
     #[command(after_help = evaluate::arguments::AFTER_HELP)]
     Evaluate(EvaluateArguments),
+    /// Tell what recordings say that no vehicle and no link does
+    #[command(after_help = check::arguments::AFTER_HELP)]
+    Check(CheckArguments),
     /// Run a scenario at several prediction steps with many seeds, on all cores
     #[command(after_help = sweep::arguments::AFTER_HELP)]
     Sweep(SweepArguments),

@@ -4,6 +4,7 @@
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
 //! ```
 
+pub mod check;
 pub mod cli;
 pub mod corridor;
 pub mod dbc;
@@ -15,6 +16,7 @@ pub mod gains;
 pub mod hil;
 pub mod identifiers;
 pub mod interruption;
+pub mod mistyped;
 pub mod motions;
 pub mod options;
 pub mod record;

@@ -1,10 +1,12 @@
 //! The command line as it is meant: typed values enter; checked options leave, with every input file read, or an error.
 //! After this only writing can fail.
 
+use crate::commands::check::CheckOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::dbc::DbcOptions;
 use crate::commands::ecu::options::EcuOptions;
+use crate::commands::ending::json;
 use crate::commands::envelope_cost::options::EnvelopeCostOptions;
 use crate::commands::evaluate::options::EvaluateOptions;
 use crate::commands::gains::GainsOptions;
@@ -17,7 +19,7 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
+    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -31,10 +33,14 @@ pub enum Options {
     Run(RunOptions),
     /// Run a corridor.
     Corridor(Box<CorridorOptions>),
-    /// List the scenarios that come with the program.
-    List,
+    /// List the scenarios that come with the program, as JSON or not.
+    List(bool),
+    /// Print one of them.
+    Show(&'static str),
     /// Measure the estimate of a recorded vehicle.
     Evaluate(EvaluateOptions),
+    /// Check files.
+    Check(CheckOptions),
     /// Run a scenario at several steps with many seeds.
     Sweep(SweepOptions),
     /// Measure the cost of the envelope.
@@ -66,6 +72,7 @@ impl Options {
         match cli.command {
             Some(Command::Run(arguments)) => Self::of_run(arguments),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
+            Some(Command::Check(arguments)) => Ok(Self::Check(CheckOptions::read(arguments))),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
             Some(Command::EnvelopeCost(arguments)) => EnvelopeCostOptions::read(arguments).map(Self::EnvelopeCost),
             Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
@@ -82,7 +89,10 @@ impl Options {
 
     fn of_run(arguments: RunArguments) -> Result<Self, Error> {
         if arguments.settings.list {
-            return Ok(Self::List);
+            return Ok(Self::List(arguments.settings.output.json));
+        }
+        if let Some(name) = &arguments.settings.show {
+            return library::show(name).map(Self::Show);
         }
         let Some(named) = &arguments.scenario else { return RunOptions::read(arguments).map(Self::Run) };
         let (file, text) = library::text(named)?;
@@ -102,8 +112,11 @@ impl Options {
         match self {
             Self::Run(options) => run::run(options),
             Self::Corridor(options) => corridor::run(options),
-            Self::List => output::print(&library::list()).map(|()| Verdict::Pass),
+            Self::List(true) => output::print(&format!("{}\n", json(&library::listed())?)).map(|()| Verdict::Pass),
+            Self::List(false) => output::print(&library::list()).map(|()| Verdict::Pass),
+            Self::Show(text) => output::print(text).map(|()| Verdict::Pass),
             Self::Evaluate(options) => evaluate::run(options),
+            Self::Check(options) => check::run(options),
             Self::Sweep(options) => sweep::run(options),
             Self::Gains(options) => gains::run(options),
             Self::String(options) => string::run(options),

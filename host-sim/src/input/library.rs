@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Error, quoted};
@@ -48,9 +49,38 @@ pub fn text(named: &Path) -> Result<(PathBuf, String), Error> {
         }
         Err(error) => match LIBRARY.iter().find(|entry| named.to_str() == Some(entry.name)) {
             Some(entry) => Ok((PathBuf::from(format!("scenarios/{}.toml", entry.name)), entry.text.to_owned())),
-            None => Err(Error::unreadable(named, &error)),
+            None => Err(unknown(named).unwrap_or_else(|| Error::unreadable(named, &error))),
         },
     }
+}
+
+/// The error of a name that is neither a file nor in the library; `None` for a path.
+fn unknown(named: &Path) -> Option<Error> {
+    let name = named.to_str().filter(|name| !named.exists() && !name.contains(['/', '.']))?;
+    let likeness = |entry: &Entry| strsim::jaro_winkler(name, entry.name);
+    let best = LIBRARY.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b))).filter(|best| likeness(best) > 0.8);
+    let names: Vec<&str> = LIBRARY.iter().map(|entry| entry.name).collect();
+    let remedy = match best {
+        Some(best) => format!("did you mean {}?", quoted(best.name)),
+        None => format!("give a file, or one of {}", names.join(", ")),
+    };
+    Some(Error::new(format!("{} is neither a file nor a scenario of the library", quoted(name)), remedy))
+}
+
+/// The scenario of a name in the library, as its file has it.
+///
+/// # Errors
+/// There is none of that name.
+pub fn show(name: &str) -> Result<&'static str, Error> {
+    let entry = LIBRARY.iter().find(|entry| entry.name == name);
+    let refused = || {
+        let names: Vec<&str> = LIBRARY.iter().map(|entry| entry.name).collect();
+        let remedy = format!("give one of {}", names.join(", "));
+        let error = unknown(Path::new(name))
+            .unwrap_or_else(|| Error::new(format!("{} is no scenario of the library", quoted(name)), remedy));
+        error.in_option("--show")
+    };
+    entry.map(|entry| entry.text).ok_or_else(refused)
 }
 
 /// The kind of a scenario text; a string by default.
@@ -76,13 +106,32 @@ pub fn kind(file: &Path, text: &str) -> Result<Kind, Error> {
 /// The list of the scenarios, one line each.
 #[must_use]
 pub fn list() -> String {
-    let about = |text: &str| {
-        let table = DeTable::parse(text).ok();
+    let width = LIBRARY.iter().map(|entry| entry.name.len()).max().unwrap_or(0);
+    LIBRARY.iter().map(|entry| format!("{:width$}  {}\n", entry.name, entry.about())).collect()
+}
+
+/// A line of the list, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Listed {
+    /// The name on the command line.
+    pub name: &'static str,
+    /// What it is.
+    pub about: String,
+}
+
+/// The list for JSON.
+#[must_use]
+pub fn listed() -> Vec<Listed> {
+    LIBRARY.iter().map(|entry| Listed { name: entry.name, about: entry.about() }).collect()
+}
+
+impl Entry {
+    /// What it is, as its file says.
+    fn about(&self) -> String {
+        let table = DeTable::parse(self.text).ok();
         let about = table.as_ref().and_then(|table| table.get_ref().get("about")?.get_ref().as_str());
         about.unwrap_or_default().to_owned()
-    };
-    let width = LIBRARY.iter().map(|entry| entry.name.len()).max().unwrap_or(0);
-    LIBRARY.iter().map(|entry| format!("{:width$}  {}\n", entry.name, about(entry.text))).collect()
+    }
 }
 
 #[cfg(test)]

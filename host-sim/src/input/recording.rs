@@ -2,16 +2,20 @@
 //!
 //! Columns are found by their names in the header line, in any order. Other columns are ignored, and so are a byte
 //! order mark, CRLF and blank lines. There are no comments. An unusable file ends with file, line, cause and remedy
-//! ([`Error`]); nothing is repaired silently.
+//! ([`Error`]); nothing is repaired silently. A file that can be used and tells of what cannot be is read with its
+//! findings.
 
 mod columns;
+mod findings;
 
 use crate::error::Error;
 use columns::{Column, Table};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Columns of a motion recording.
 pub const MOTION_COLUMNS: &str = "t_s,position_m,speed_mps[,acceleration_mps2]";
+/// Columns of a recording of either kind.
+const EITHER_COLUMNS: &str = "t_s,position_m,speed_mps or t_s,delay_s";
 /// Columns of a channel recording.
 pub const CHANNEL_COLUMNS: &str = "t_s,delay_s";
 
@@ -22,6 +26,31 @@ const POSITION: Column = Column { name: "position_m", unit: "m", limits: -1e9..=
 const SPEED: Column = Column { name: "speed_mps", unit: "m/s", limits: -0.5..=65.534 };
 const ACCELERATION: Column = Column { name: "acceleration_mps2", unit: "m/s²", limits: -50.0..=50.0 };
 const DELAY: Column = Column { name: "delay_s", unit: "s", limits: 0.0..=1e6 };
+
+/// A recording of either kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Recorded {
+    /// Of a drive.
+    Motion(Motion),
+    /// Of a link.
+    Channel(ChannelTrace),
+}
+
+impl Recorded {
+    /// Reads a file whose columns say what it is of.
+    ///
+    /// # Errors
+    /// Those of [`Motion::read`] and [`ChannelTrace::read`].
+    pub fn read(file: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(file).map_err(|error| Error::unreadable(file, &error))?;
+        let table = Table::parse(file, &bytes, EITHER_COLUMNS)?;
+        match (table.optional_column(&DELAY), table.optional_column(&POSITION)) {
+            (Some(_), None) => ChannelTrace::parse_rows(file, &bytes, 2).map(Self::Channel),
+            (None, None) => Err(table.lacks(&format!("{}` or `{}", POSITION.name, DELAY.name))),
+            (_, Some(_)) => Motion::parse(file, &bytes).map(Self::Motion),
+        }
+    }
+}
 
 /// A sample of a recorded drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +66,11 @@ pub struct MotionRow {
 }
 
 /// A recorded drive: at least two rows, time strictly increasing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Motion {
+    file: PathBuf,
     rows: Vec<MotionRow>,
+    findings: Vec<Error>,
 }
 
 /// Time over which speeds give an acceleration if the file has none, in seconds.
@@ -56,11 +87,18 @@ pub struct MotionState {
     pub acceleration_mps2: f64,
 }
 
+/// Drives with the same samples are the same, wherever they were read.
+impl PartialEq for Motion {
+    fn eq(&self, other: &Self) -> bool {
+        self.rows == other.rows
+    }
+}
+
 impl Motion {
     /// A drive that was computed: at least two rows, with time strictly increasing.
     pub(crate) fn of(rows: Vec<MotionRow>) -> Self {
         debug_assert!(rows.len() > 1 && rows.windows(2).all(|pair| pair[0].t_s < pair[1].t_s));
-        Self { rows }
+        Self { file: PathBuf::new(), rows, findings: Vec::new() }
     }
 
     /// Reads the file.
@@ -79,7 +117,7 @@ impl Motion {
         let table = Table::parse(file, bytes, MOTION_COLUMNS)?;
         let (t, position, speed) = (table.column(&TIME)?, table.column(&POSITION)?, table.column(&SPEED)?);
         let acceleration = table.optional_column(&ACCELERATION);
-        let mut rows: Vec<MotionRow> = Vec::new();
+        let (mut rows, mut lines): (Vec<MotionRow>, Vec<u64>) = Default::default();
         for line in table.lines() {
             let row = MotionRow {
                 t_s: line.number(&t)?,
@@ -89,9 +127,22 @@ impl Motion {
             };
             line.follows(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
+            lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), 2)?;
-        Ok(Self { rows })
+        Ok(Self { file: file.to_owned(), findings: findings::of_motion(file, &rows, &lines), rows })
+    }
+
+    /// The file that it was read from; empty for a drive that was computed.
+    #[must_use]
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// What no vehicle does, with file and line; empty for a recording without fault.
+    #[must_use]
+    pub fn findings(&self) -> &[Error] {
+        &self.findings
     }
 
     /// The samples in the order of time.
@@ -126,6 +177,12 @@ impl Motion {
         let from_s = newest.t_s - SLOPE_WINDOW_S - 1e-9;
         let start = self.rows[..end].partition_point(|row| row.t_s < from_s);
         slope(&self.rows[start..end])
+    }
+
+    /// The longest time between two samples that is no gap.
+    #[must_use]
+    pub fn longest_interval_s(&self) -> f64 {
+        findings::longest(self.rows.windows(2).map(|pair| pair[1].t_s - pair[0].t_s))
     }
 
     /// Time from the first sample to the last.
@@ -172,9 +229,18 @@ pub struct ChannelRow {
 }
 
 /// A recorded channel: at least one row, with time not decreasing (messages may be sent at the same time).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ChannelTrace {
+    file: PathBuf,
     rows: Vec<ChannelRow>,
+    findings: Vec<Error>,
+}
+
+/// Links with the same messages are the same, wherever they were read.
+impl PartialEq for ChannelTrace {
+    fn eq(&self, other: &Self) -> bool {
+        self.rows == other.rows
+    }
 }
 
 impl ChannelTrace {
@@ -197,14 +263,39 @@ impl ChannelTrace {
     fn parse_rows(file: &Path, bytes: &[u8], least: usize) -> Result<Self, Error> {
         let table = Table::parse(file, bytes, CHANNEL_COLUMNS)?;
         let (t, delay) = (table.column(&TIME)?, table.column(&DELAY)?);
-        let mut rows: Vec<ChannelRow> = Vec::new();
+        let (mut rows, mut lines): (Vec<ChannelRow>, Vec<u64>) = Default::default();
         for line in table.lines() {
             let row = ChannelRow { t_s: line.number(&t)?, delay_s: line.number_or_empty(&delay)? };
             line.does_not_precede(rows.last().map(|row| row.t_s), row.t_s)?;
             rows.push(row);
+            lines.push(line.number_in_file());
         }
         table.has_rows(rows.len(), least)?;
-        Ok(Self { rows })
+        Ok(Self { file: file.to_owned(), findings: findings::of_channel(file, &rows, &lines), rows })
+    }
+
+    /// The file that it was read from.
+    #[must_use]
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// What no link does, with file and line; empty for a recording without fault.
+    #[must_use]
+    pub fn findings(&self) -> &[Error] {
+        &self.findings
+    }
+
+    /// Whether any message arrives.
+    #[must_use]
+    pub fn delivers(&self) -> bool {
+        self.rows.iter().any(|row| row.delay_s.is_some())
+    }
+
+    /// Time from the first message to the last.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        self.rows[self.rows.len() - 1].t_s - self.rows[0].t_s
     }
 
     /// The messages, in the order of sending.
@@ -213,16 +304,27 @@ impl ChannelTrace {
         &self.rows
     }
 
+    /// Time after which the recording starts again; `None` with a single row.
+    fn cycle_s(&self) -> Option<f64> {
+        let rows = self.rows.len();
+        (rows > 1).then(|| self.duration_s() * (rows as f64 / (rows - 1) as f64))
+    }
+
+    /// That a run of this length hears the recording more than once, if it does.
+    #[must_use]
+    pub fn repeats(&self, run_s: f64) -> Option<Error> {
+        let cycle_s = self.cycle_s().filter(|cycle_s| run_s > cycle_s + 1e-6)?;
+        let cause = format!("lasts {cycle_s:.1} s and the run {run_s:.1} s, so it is repeated from {cycle_s:.1} s on");
+        Some(Error::new(cause, "shorten the run by `duration_s`, or give a longer recording").in_file(&self.file))
+    }
+
     /// The delay of a message that is sent this long after the start: the delay of the latest row at or before that
     /// time, counted from the first row. `None`: lost. After its end the recording starts again from its beginning, one
     /// mean interval after its last row. A recording of one row repeats that row for ever.
     #[must_use]
     pub fn delay_at(&self, since_start_s: f64) -> Option<f64> {
-        let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);
-        let cycle_s = match self.rows.len() {
-            1 => return first.delay_s,
-            rows => (last.t_s - first.t_s) * (rows as f64 / (rows - 1) as f64),
-        };
+        let first = self.rows[0];
+        let Some(cycle_s) = self.cycle_s() else { return first.delay_s };
         let t_s = first.t_s + since_start_s.rem_euclid(cycle_s);
         let next = self.rows.partition_point(|row| row.t_s <= t_s);
         self.rows[next.saturating_sub(1)].delay_s

@@ -9,6 +9,7 @@ pub(crate) mod envelope;
 pub(crate) mod keys;
 mod plant;
 pub(crate) mod sensors;
+pub(crate) mod set;
 mod start;
 mod validate;
 
@@ -17,7 +18,7 @@ pub use envelope::Envelope;
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
 
 use crate::error::Error;
-use crate::input::impairment::ChannelModel;
+use crate::input::impairment::{ChannelModel, Impairment};
 use crate::input::kind::{Difference, Kind};
 use crate::input::library;
 use crate::input::recording::Motion;
@@ -151,6 +152,8 @@ pub struct Overrides {
     pub envelope: Option<Switch>,
     /// `--range-sensors`.
     pub range_sensors: Option<Switch>,
+    /// Each `--set`, as typed: `key=value`.
+    pub set: Vec<String>,
 }
 
 impl Overrides {
@@ -163,6 +166,7 @@ impl Overrides {
         channel_trace: None,
         envelope: Some(Switch::Off),
         range_sensors: Some(Switch::Off),
+        set: Vec::new(),
     };
 }
 
@@ -211,6 +215,23 @@ impl Scenario {
     /// The errors of [`Scenario::read`].
     pub fn parse(file: &Path, text: &str, overrides: &Overrides) -> Result<Self, Error> {
         validate::scenario(file, text, overrides)
+    }
+
+    /// The files of its recordings.
+    pub fn recordings(&self) -> impl Iterator<Item = &Path> {
+        let link = match &self.channel.impairment {
+            Impairment::Recorded(link) => Some(link.file()),
+            Impairment::Random { .. } => None,
+        };
+        self.leader.motion.as_ref().map(Motion::file).into_iter().chain(link)
+    }
+
+    /// What its recordings say that cannot be, and whether the run hears a recorded channel more than once.
+    #[must_use]
+    pub fn findings(&self) -> Vec<Error> {
+        let drive = self.leader.motion.iter().flat_map(Motion::findings).cloned();
+        let Impairment::Recorded(link) = &self.channel.impairment else { return drive.collect() };
+        drive.chain(link.findings().iter().cloned()).chain(link.repeats(self.duration_s)).collect()
     }
 
     /// The same scenario with another prediction step.

@@ -1,18 +1,20 @@
-//! The figures of a run: a trace enters; the figures of merit leave, and the reasons of a failed verdict.
+//! The figures of a run: its ticks or its trace enter; the figures of merit leave, and the reasons of a failed verdict.
 
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
 
-use crate::input::impairment::Link;
+use crate::input::impairment::{Impairment, Link};
 use crate::input::scenario::Scenario;
-use crate::measure::metrics::{
-    ErrorStatistics, SETTLED_FROM_S, STANDING_BELOW_MPS, collisions, full_stops, lowest_speed, smallest_gap,
-};
+use crate::measure::metrics::{SETTLED_FROM_S, STANDING_BELOW_MPS};
 use crate::sim::world::{Tick, Trace};
 
 mod bound;
+mod collision;
+mod tally;
 
-pub use bound::{BoundFigures, bounds};
+pub use bound::BoundFigures;
+pub use collision::Collision;
+pub use tally::Tally;
 
 /// The position errors of one estimator, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -23,13 +25,6 @@ pub struct Errors {
     pub p99_position_error_m: Option<f64>,
     /// Root of the mean square.
     pub rms_position_error_m: Option<f64>,
-}
-
-impl Errors {
-    fn of(errors: &[f64]) -> Self {
-        let figures = ErrorStatistics::of(errors);
-        Self { max_position_error_m: figures.max, p99_position_error_m: figures.p99, rms_position_error_m: figures.rms }
-    }
 }
 
 /// The envelope.
@@ -50,7 +45,7 @@ pub struct Timing {
 }
 
 /// The figures of one run.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// The errors of the unit.
     #[serde(flatten)]
@@ -65,12 +60,17 @@ pub struct Summary {
     pub full_stops: usize,
     /// Episodes of a bumper gap below 0.
     pub collisions: usize,
+    /// The first of them, one by one.
+    pub collided: Vec<Collision>,
     /// Wall-clock figures.
     pub timing: Timing,
     /// The bounds of the targets.
     pub bound: BoundFigures,
     /// The envelope.
     pub envelope: EnvelopeFigures,
+    /// Hardest braking of a vehicle that is driven by a unit, as a magnitude.
+    #[serde(skip)]
+    pub hardest_braking_mps2: f64,
 }
 
 /// The errors over time, from [`SETTLED_FROM_S`] on: `(time, error)`.
@@ -120,33 +120,12 @@ pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
     if found.is_empty() { followers.collect() } else { found }
 }
 
-/// Fraction of time in which the envelope changed the command of one of these vehicles, 0 to 1.
-#[must_use]
-pub fn limited_share(trace: &Trace, vehicles: &[usize]) -> f64 {
-    let ticks = || vehicles.iter().flat_map(|index| &trace.vehicles[*index]);
-    ticks().filter(|tick| tick.limited).count() as f64 / ticks().count().max(1) as f64
-}
-
 /// The figures of a trace.
 #[must_use]
 pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Summary {
-    let values = |series: Vec<(f64, f64)>| series.into_iter().map(|(_, error)| error).collect::<Vec<f64>>();
-    let (gaps, speeds) = (gaps(scenario, trace), speeds(trace));
-    let driven = usize::from(scenario.leader.motion.is_some());
-    Summary {
-        ours: Errors::of(&values(errors(trace, ours(trace)))),
-        paper: Errors::of(&values(errors(trace, papers(trace)))),
-        min_gap_m: gaps.iter().filter_map(|gap| smallest_gap(gap)).reduce(f64::min),
-        min_speed_mps: speeds.iter().filter_map(|speed| lowest_speed(speed)).reduce(f64::min),
-        full_stops: speeds.iter().skip(driven).map(|speed| full_stops(speed)).sum(),
-        collisions: gaps.iter().map(|gap| collisions(gap)).sum(),
-        timing: Timing { realtime_factor },
-        bound: BoundFigures::of(scenario, trace),
-        envelope: EnvelopeFigures {
-            engaged: scenario.envelope.engaged,
-            limited_share: limited_share(trace, &impaired_followers(scenario)),
-        },
-    }
+    let mut tally = Tally::new(scenario);
+    trace.each(|at_s, ticks, paper_m| tally.note(at_s, ticks, paper_m));
+    tally.finish(realtime_factor)
 }
 
 /// The reasons why a run failed; empty if it passed.
@@ -154,7 +133,8 @@ pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Su
 pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     let mut failures = Vec::new();
     if summary.collisions > 0 {
-        failures.push(format!("{} collision(s): a bumper gap fell below 0", summary.collisions));
+        let first = summary.collided.first().map_or(String::new(), |first| format!("; first {first}"));
+        failures.push(format!("{} collision(s): a bumper gap fell below 0{first}", summary.collisions));
     }
     if summary.bound.violations > 0 {
         failures.push(format!("{} tick(s) at which a target was outside its bound", summary.bound.violations));
@@ -165,6 +145,11 @@ pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {
     let may_stop = scenario.leader.motion.is_some() || stops || scenario.envelope.engaged;
     if summary.full_stops > 0 && !may_stop {
         failures.push(format!("{} full stop(s)", summary.full_stops));
+    }
+    if let Impairment::Recorded(link) = &scenario.channel.impairment
+        && !link.delivers()
+    {
+        failures.push(format!("no message arrives over {}", link.file().display()));
     }
     if summary.ours.max_position_error_m.is_none() {
         failures.push("the target was never estimated".into());

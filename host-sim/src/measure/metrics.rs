@@ -81,19 +81,34 @@ fn smallest(samples: &[(f64, f64)]) -> Option<f64> {
 /// Full stops of one vehicle: episodes in which its speed stays below 0.1 m/s for 0.5 s or more. `speeds` are
 /// `(t_s, speed_mps)` in order of time. A sample holds until the next one; the last one ends the series.
 pub fn full_stops(speeds: &[(f64, f64)]) -> usize {
-    let mut stops = 0;
-    let mut standing_since = None;
-    for &(at, speed) in speeds {
-        let since = *standing_since.get_or_insert(at);
+    let mut tally = StandTally::default();
+    speeds.iter().for_each(|&(at, speed)| tally.note(at, speed));
+    tally.finish()
+}
+
+/// The full stops of one vehicle so far.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StandTally {
+    stops: usize,
+    standing_since: Option<f64>,
+    last_s: f64,
+}
+
+impl StandTally {
+    /// A speed at a time, in order of time.
+    pub fn note(&mut self, at: f64, speed: f64) {
+        let since = *self.standing_since.get_or_insert(at);
         if speed >= STANDING_BELOW_MPS || speed.is_nan() {
-            stops += usize::from(lasts(since, at));
-            standing_since = None;
+            self.stops += usize::from(lasts(since, at));
+            self.standing_since = None;
         }
+        self.last_s = at;
     }
-    if let (Some(since), Some(&(end, _))) = (standing_since, speeds.last()) {
-        stops += usize::from(lasts(since, end));
+
+    /// All full stops; the last sample ends the series.
+    pub fn finish(self) -> usize {
+        self.stops + usize::from(self.standing_since.is_some_and(|since| lasts(since, self.last_s)))
     }
-    stops
 }
 
 fn lasts(from: f64, to: f64) -> bool {

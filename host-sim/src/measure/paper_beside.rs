@@ -23,13 +23,14 @@ impl PaperBeside {
         Self { paper: Paper::new(tap.measured().vehicle, scenario.step_s), tap }
     }
 
-    /// Records the estimate of a tick. It has to be called after the units have acted in that tick.
+    /// Records the estimate of a tick, and returns it. It has to be called after the units have acted in that tick.
     ///
     /// # Errors
     /// Errors of the bus.
-    pub fn note(&mut self, world: &World<'_>, at_s: f64, trace: &mut Trace) -> io::Result<()> {
+    pub fn note(&mut self, world: &World<'_>, at_s: f64, trace: &mut Trace) -> io::Result<Option<f64>> {
         self.tap.hear(world, at_s, |heard| self.paper.hear(&heard))?;
-        trace.paper.push(self.paper.estimate(at_s).map(|estimate| estimate.position_m));
-        Ok(())
+        let position_m = self.paper.estimate(at_s).map(|estimate| estimate.position_m);
+        trace.push_paper(position_m);
+        Ok(position_m)
     }
 }

@@ -4,10 +4,15 @@
 
 use std::fmt::Write;
 
+use crate::provenance::VERSION;
+
 use super::{
     markup::{count, escape},
     plot::{Figure, Width},
 };
+
+/// From so many columns on a table is set smaller.
+const MANY_COLUMNS: usize = 7;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -48,6 +53,8 @@ impl Cell {
 /// A page that is built from top to bottom.
 pub struct Page {
     title: String,
+    head: String,
+    warnings: String,
     body: String,
     figures: usize,
 }
@@ -55,8 +62,8 @@ pub struct Page {
 impl Page {
     /// A page with this title. The `kicker` above it names the kind of page.
     pub fn new(kicker: &str, title: &str) -> Self {
-        let body = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
-        Self { title: title.into(), body, figures: 0 }
+        let head = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
+        Self { title: title.into(), head, warnings: String::new(), body: String::new(), figures: 0 }
     }
 
     // Writing to a String cannot fail, so the results of `write!` below are ignored.
@@ -77,6 +84,15 @@ impl Page {
             }
         }
         self.body.push_str("</div>\n");
+    }
+
+    /// What there is to say of the input. It stands above everything but the title.
+    pub fn warn(&mut self, warnings: &[String]) {
+        if warnings.is_empty() {
+            return;
+        }
+        let items: String = warnings.iter().map(|warning| format!("<li>{}</li>", escape(warning))).collect();
+        let _ = writeln!(self.warnings, "<div class=\"verdict warned\"><b>Warning</b><ul>{items}</ul></div>");
     }
 
     /// A heading.
@@ -116,7 +132,10 @@ impl Page {
 
     /// A table. The first cell of each row is its heading. A column is aligned like its cell in the first row.
     pub fn table(&mut self, caption: &str, header: &[&str], rows: &[Vec<Cell>]) {
-        let _ = write!(self.body, "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>", escape(caption));
+        // A table of many columns is set smaller, so that all of them are seen on a screen and on paper.
+        let class = if header.len() >= MANY_COLUMNS { " class=\"many\"" } else { "" };
+        let caption = escape(caption);
+        let _ = write!(self.body, "<div class=\"scroll\"><table{class}><caption>{caption}</caption><thead><tr>");
         for (index, name) in header.iter().enumerate() {
             let number = rows.first().and_then(|row| row.get(index)).is_some_and(|c| c.class.starts_with("number"));
             let class = if number { " class=\"number\"" } else { "" };
@@ -163,21 +182,23 @@ impl Page {
 
     /// The finished document.
     pub fn finish(self) -> String {
-        let Self { title, body, .. } = self;
+        let Self { title, head, warnings, body, .. } = self;
         format!(
             concat!(
                 "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n",
                 "<meta charset=\"utf-8\"/>\n",
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n",
                 "<meta name=\"color-scheme\" content=\"light dark\"/>\n",
-                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{body}</main>\n",
+                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{head}{warnings}{body}</main>\n",
                 "<footer>Written by holdover-sim {version}. This file is complete in itself; it loads nothing.</footer>\n",
                 "</body>\n</html>\n"
             ),
             title = escape(&title),
             style = STYLE,
+            head = head,
+            warnings = warnings,
             body = body,
-            version = env!("CARGO_PKG_VERSION")
+            version = VERSION
         )
     }
 }

@@ -50,6 +50,11 @@ pub struct SweepReport {
 impl SweepReport {
     /// The page, as one self-contained HTML document.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut rows = self.rows.clone();
         rows.sort_by(|a, b| a.step_s.total_cmp(&b.step_s));
         let mut page = Page::new("holdover-sim · report of a sweep", &self.title);
@@ -64,26 +69,31 @@ impl SweepReport {
         page.section("Cost");
         cost_table(&mut page, &rows);
         cost_figure(&mut page, &rows);
-        page.finish()
+        page
     }
 }
 
 fn errors_table(page: &mut Page, rows: &[SweepRow]) {
     let published = |step_s: f64| PUBLISHED.iter().find(|(at, _)| *at == step_s).map(|(_, error)| *error);
     let spelled = |value: Option<f64>| value.map_or("–".into(), |value| significant(value, 3));
+    let better = |value: Option<f64>, other: Option<f64>| match (value, other) {
+        (Some(value), Some(other)) if value <= other => Cell::strong(spelled(Some(value))),
+        _ => Cell::number(spelled(value)),
+    };
     let cells = |row: &SweepRow| {
         vec![
             Cell::number(format!("{} s", row.step_s)),
-            Cell::strong(spelled(row.max_ours)),
-            Cell::number(spelled(row.p99_ours)),
-            Cell::number(spelled(row.max_paper)),
-            Cell::number(spelled(row.p99_paper)),
+            better(row.max_ours, row.max_paper),
+            better(row.p99_ours, row.p99_paper),
+            better(row.max_paper, row.max_ours),
+            better(row.p99_paper, row.p99_ours),
             Cell::number(spelled(published(row.step_s))),
         ]
     };
-    let header = ["Step", "Ours, largest", "Ours, 99 %", "Paper, largest", "Paper, 99 %", "As published"];
+    let header =
+        ["Step", "Ours, largest", "Ours, 99 %", "Literal paper, largest", "Literal paper, 99 %", "As published"];
     let caption = "Position error in metres: the largest of all runs, and the 99th percentile of all runs together, ours \
-                   and the literal paper’s; and the largest that the paper reports.";
+                   and the literal paper’s, the smaller in bold; and the largest that the paper reports.";
     page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
 }
 

@@ -8,6 +8,7 @@ use super::description::{Corridor, Emergencies, IntersectionPlan, Limits, Radio,
 use super::fit::{self, Part};
 use crate::error::{Error, quoted};
 use crate::input::scenario::keys::{Document, Number, Section};
+use crate::input::scenario::set::Sets;
 use crate::input::scenario::{Overrides, Span, bus, envelope, sensors};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
@@ -61,7 +62,8 @@ const INTERSECTIONS: usize = 16;
 /// # Errors
 /// Text that is not TOML, unknown keys, wrong types, impossible values.
 pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corridor, Error> {
-    let document = Document::new(file, text);
+    let sets = Sets::read(&overrides.set)?;
+    let document = Document::new(file, text, &sets);
     let table = document.parse()?;
     let mut top = document.top(&table);
     let kind_line = top.value("kind").and_then(|kind| top.line_of(kind));

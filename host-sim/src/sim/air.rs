@@ -10,6 +10,9 @@ use crate::sim::channel::Channel;
 use crate::sim::modem::V2xMessage;
 use crate::sim::time::micros;
 
+/// The most messages in the record of a link: half an hour at ten a second.
+const MOST_MESSAGES: usize = 18_000;
+
 /// A message on its way.
 struct Flight {
     arrives_us: i64,
@@ -58,7 +61,7 @@ impl Air {
     /// An empty channel: nothing has been sent yet.
     #[must_use]
     pub fn new(model: &ChannelModel, seed: u64) -> Self {
-        Self { channel: Channel::new(model, seed), flights: BinaryHeap::new(), sent: 0 }
+        Self { channel: Channel::new(model, seed).of_at_most(MOST_MESSAGES), flights: BinaryHeap::new(), sent: 0 }
     }
 
     /// Sends a message from the vehicle `from` to the vehicles `to`.

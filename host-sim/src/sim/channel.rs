@@ -18,6 +18,7 @@
 
 use crate::input::impairment::{ChannelModel, Impairment, Link, Window};
 use crate::streams::{Purpose, stream, unit};
+use crate::thinned::{Thinning, halve};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::collections::BTreeMap;
@@ -51,6 +52,8 @@ pub struct LinkRecord {
     /// Per message, in the order of sending: its time of sending, and the delay of its first copy. `None`: no copy
     /// arrived.
     pub messages: Vec<(f64, Option<f64>)>,
+    /// Which messages are kept: every one, unless the record is of bounded length.
+    pub thinning: Thinning,
 }
 
 impl LinkRecord {
@@ -76,13 +79,21 @@ pub struct Channel {
     model: ChannelModel,
     seed: u64,
     links: BTreeMap<Link, (ChaCha8Rng, LinkRecord)>,
+    /// For a link on which nothing has been sent yet.
+    thinning: Thinning,
 }
 
 impl Channel {
     /// A channel on which nothing has been sent yet.
     #[must_use]
     pub fn new(model: &ChannelModel, seed: u64) -> Self {
-        Self { model: model.clone(), seed, links: BTreeMap::new() }
+        Self { model: model.clone(), seed, links: BTreeMap::new(), thinning: Thinning::default() }
+    }
+
+    /// The same with at most this many messages in the record of a link. Of more every second, every fourth and so on is kept.
+    #[must_use]
+    pub fn of_at_most(self, messages: usize) -> Self {
+        Self { thinning: Thinning::to(messages), ..self }
     }
 
     /// Sends a message over a link, at a time in seconds since the start of the run, and returns when its copies
@@ -91,7 +102,7 @@ impl Channel {
         let seed = self.seed;
         let (generator, record) = self.links.entry(link).or_insert_with(|| {
             let purpose = Purpose::Link { from: link.from as u16, to: link.to as u16 };
-            (stream(seed, purpose), LinkRecord::default())
+            (stream(seed, purpose), LinkRecord { thinning: self.thinning.clone(), ..LinkRecord::default() })
         });
         let delays =
             if self.model.impairs(link) { self.model.impairment.delays(at_s, generator) } else { [Some(0.0), None] };
@@ -145,7 +156,13 @@ impl LinkRecord {
                 self.counts.duplicates += copies as u64 - 1;
             }
         }
-        self.messages.push((at_s, in_time.iter().copied().reduce(f64::min)));
+        let place = self.thinning.place();
+        if place.is_full {
+            halve(&mut self.messages);
+        }
+        if place.is_kept {
+            self.messages.push((at_s, in_time.iter().copied().reduce(f64::min)));
+        }
         in_time.iter().map(|delay_s| at_s + delay_s).collect()
     }
 }

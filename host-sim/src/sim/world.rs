@@ -10,8 +10,8 @@ use holdover::ConfigError;
 use holdover::health::Cause;
 use holdover::time::Instant;
 
+use crate::bus::Bus;
 use crate::bus::memory::MemoryNode;
-use crate::bus::{Bus, Frame};
 use crate::input::scenario::Scenario;
 use crate::sim::channel::Channel;
 use crate::sim::plant::Plant;
@@ -20,38 +20,20 @@ use crate::sim::stages::Stages;
 use crate::sim::station::request;
 use crate::sim::vehicle::{Alias, Vehicle};
 use crate::streams::{Purpose, stream, unit};
+use crate::thinned::Thinning;
 
 mod config;
 mod tick;
+mod trace;
 
 use crate::sim::air::{Air, Arrived};
 pub use config::{HORIZON_S, config, horizon, machine};
 pub use tick::{Bounds, TargetBelief, Tick};
+pub use trace::{MOST_TICKS, Trace};
 
 /// Least time for which the units tick before the run, in seconds. A unit trusts its time base after two
 /// synchronisations.
 pub const WARM_UP_S: f64 = 1.0;
-
-/// The trace of a run.
-pub struct Trace {
-    /// The time of each tick.
-    pub times_s: Vec<f64>,
-    /// For each vehicle, its ticks.
-    pub vehicles: Vec<Vec<Tick>>,
-    /// For each tick, where the literal paper's method estimates the measured vehicle to be; empty if it is not
-    /// evaluated.
-    pub paper: Vec<Option<f64>>,
-    /// The vehicle whose position is estimated, and the vehicle that estimates it.
-    pub measured: Measured,
-    /// Refusals of all units together, by cause.
-    pub refusals: Vec<(Cause, u64)>,
-    /// The channel with all that happened on it.
-    pub channel: Channel,
-    /// The bus of the logged vehicle, if there is one: times of the run, and frames.
-    pub log: Vec<(f64, Frame)>,
-    /// Number of messages that found no slot in a modem.
-    pub turned_away: u64,
-}
 
 /// The vehicle whose position is estimated, and the vehicle that estimates it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,13 +127,16 @@ impl<'a> World<'a> {
         self.warm_up()?;
         let period_s = self.scenario.period_s;
         let ticks = self.ticks();
-        let mut trace = self.trace();
+        let mut trace = self.trace().of_at_most(MOST_TICKS);
         for tick in 0..ticks {
             let at_s = tick as f64 * period_s;
             self.tick(at_s, |world| {
                 world.note(at_s, &mut trace);
                 beside(world, at_s, &mut trace)
             })?;
+            if let Some(upto) = self.log.as_ref().map(|(index, _)| self.vehicles[*index].instant(at_s)) {
+                self.log_until(upto, &mut trace)?;
+            }
             if tick % 100 == 0 {
                 progress(tick as f64 / ticks as f64);
             }
@@ -193,16 +178,17 @@ impl<'a> World<'a> {
     /// The trace of a run that has not begun.
     #[must_use]
     pub fn trace(&self) -> Trace {
-        let ticks = self.ticks();
         Trace {
-            times_s: Vec::with_capacity(ticks),
-            vehicles: vec![Vec::with_capacity(ticks); self.vehicles.len()],
-            paper: Vec::with_capacity(ticks),
+            times_s: Vec::new(),
+            vehicles: vec![Vec::new(); self.vehicles.len()],
+            paper: Vec::new(),
             measured: self.measured,
             refusals: Vec::new(),
             channel: Channel::new(&self.scenario.channel, 0),
             log: Vec::new(),
             turned_away: 0,
+            latest: Vec::new(),
+            thinning: Thinning::default(),
         }
     }
 
@@ -257,10 +243,9 @@ impl<'a> World<'a> {
 
     /// Adds a tick to the trace; called after [`act`](Stages::act).
     pub fn note(&self, at_s: f64, trace: &mut Trace) {
-        trace.times_s.push(at_s);
-        for (vehicle, ticks) in self.vehicles.iter().zip(&mut trace.vehicles) {
-            ticks.push(Tick::of(vehicle, at_s, self.scenario.period_s));
-        }
+        trace.latest.clear();
+        trace.latest.extend(self.vehicles.iter().map(|vehicle| Tick::of(vehicle, at_s, self.scenario.period_s)));
+        trace.push(at_s);
     }
 
     /// Ends the run and completes the trace.
@@ -272,14 +257,19 @@ impl<'a> World<'a> {
             .iter()
             .map(|cause| (*cause, self.vehicles.iter().map(|v| u64::from(v.unit.health().of(*cause))).sum()))
             .collect();
-        if let Some((index, node)) = &mut self.log {
-            while let Some((at, frame)) = node.receive(Instant::from_micros(u64::MAX))? {
-                trace.log.push((self.vehicles[*index].time_of(at), frame));
-            }
-        }
+        self.log_until(Instant::from_micros(u64::MAX), &mut trace)?;
         trace.turned_away = self.vehicles.iter().map(Vehicle::turned_away).sum();
         trace.channel = self.air.into_channel();
         Ok(trace)
+    }
+
+    /// Adds the frames on the logged bus up to a time to the trace.
+    fn log_until(&mut self, upto: Instant, trace: &mut Trace) -> io::Result<()> {
+        let Some((index, node)) = &mut self.log else { return Ok(()) };
+        while let Some((at, frame)) = node.receive(upto)? {
+            trace.log.push((self.vehicles[*index].time_of(at), frame));
+        }
+        Ok(())
     }
 
     /// Delivers all messages that have arrived by now, in the order of arrival.

@@ -49,8 +49,13 @@ impl Bench {
 
     /// The results of an evaluation, without a report.
     pub fn results(&self, arguments: &str) -> Value {
+        self.results_of(0, arguments)
+    }
+
+    /// The results of an evaluation that ends with this exit code.
+    pub fn results_of(&self, code: i32, arguments: &str) -> Value {
         let output = self.run(&format!("{arguments} --json --no-report"));
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.code(), Some(code), "{}", String::from_utf8_lossy(&output.stderr));
         serde_json::from_slice(&output.stdout).unwrap()
     }
 

@@ -64,10 +64,13 @@ fn the_report_of_silences_shows_classes_each_drive_and_the_distribution() {
 }
 
 #[test]
-fn a_report_of_nothing_is_a_page_all_the_same() {
+fn a_report_of_nothing_is_a_page_that_says_why_and_fails() {
     let bench = bench();
     bench.link("deaf.csv", [(0.0, None), (9.0, None)]);
-    let page = page(&bench, "--motion a.csv --channel deaf.csv");
+    let output = bench.run("--motion a.csv --channel deaf.csv --out report");
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = std::fs::read_to_string(bench.file("report/index.html")).unwrap();
+    assert!(page.contains("<b>Failed</b><p>no message of a.csv arrives over deaf.csv</p>"));
     assert!(page.contains("Nothing could be compared"));
     assert_eq!(figures(&page), 4);
 }
@@ -78,7 +81,15 @@ fn the_table_names_every_method_and_class() {
     let text = |arguments: &str| String::from_utf8(bench.run(arguments).stdout).unwrap();
     let link = text("--motion a.csv --channel c.csv --no-report");
     let silence = text("--motion a.csv b<&>.csv --outage 0.5,2 --no-report");
-    for name in ["holdover", "freeze", "constant_speed", "constant_acceleration", "singer", "kalman", "paper"] {
+    for name in [
+        "holdover",
+        "freeze",
+        "constant speed",
+        "constant acceleration",
+        "Singer's model",
+        "Kalman filter",
+        "literal paper",
+    ] {
         assert!(link.contains(name) && silence.contains(name), "{name}");
     }
     assert!(link.contains("0.1–0.5 s") && link.contains("181 messages sent, 151 delivered"), "{link}");

@@ -13,6 +13,7 @@ use holdover_sim::commands::hil::lock_step;
 use holdover_sim::commands::hil::session::{self, Setup};
 use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
 use holdover_sim::input::scenario::{Overrides, Scenario};
+use holdover_sim::measure::figures::Collision;
 use holdover_sim::sim::world;
 use serde_json::Value;
 
@@ -66,7 +67,16 @@ fn folder() -> tempfile::TempDir {
 fn the_keys_of_run_on_a_string_are_the_documented_ones() {
     let folder = folder();
     std::fs::write(folder.path().join("short.toml"), "duration_s = 3").unwrap();
-    holds("run", folder.path(), &["run short.toml --no-report"]);
+    // The leader stops unseen and unheard, so that there is a collision.
+    let crash = "duration_s = 14\n[envelope]\nengaged = false\n[leader]\nprogram = [[0, 15.0], [6, 0.0]]\n[channel]\n\
+                 outages = [[5, 14]]\napplies_to = \"all\"\n[[vehicle]]\n[[vehicle]]\nrange_sensor = false\n";
+    std::fs::write(folder.path().join("crash.toml"), crash).unwrap();
+    holds("run", folder.path(), &["run short.toml --no-report", "run crash.toml --no-report"]);
+}
+
+#[test]
+fn the_keys_of_the_list_are_the_documented_ones() {
+    holds("run --list", folder().path(), &["run --list"]);
 }
 
 #[test]
@@ -147,6 +157,19 @@ fn the_keys_of_hil_are_the_documented_ones() {
     let faults = vec!["corrupt@1:1".parse().unwrap()];
     let latency_p99_ms = holdover_sim::commands::hil::judge::LATENCY_P99_MS;
     let setup = Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms, faults };
+    // The device drives well; so a collision is made up.
+    let collision = Collision {
+        at_s: 1.0,
+        vehicle: 2,
+        into: 1,
+        speed_mps: 5.0,
+        into_speed_mps: 0.0,
+        believed_gap_m: Some(3.0),
+        least_gap_m: Some(1.0),
+        age_s: Some(0.5),
+        mode: "holdover",
+        command_mps2: 0.0,
+    };
     let json = |is_in_steps: bool| {
         let (port, mut rig) = bench(Behaviour::good(setup.config, is_in_steps));
         let outcome = if is_in_steps {
@@ -154,7 +177,9 @@ fn the_keys_of_hil_are_the_documented_ones() {
         } else {
             session::run(&setup, port, &mut rig, |_| {})
         };
-        serde_json::to_value(judge(&setup, &outcome.unwrap())).unwrap()
+        let mut results = judge(&setup, &outcome.unwrap());
+        results.scenario.collided.push(collision);
+        serde_json::to_value(results).unwrap()
     };
     let values = [json(true), json(false)];
     assert_eq!(timeless(&values[0]), timeless(&json(true)));

@@ -17,6 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::commands::motions::rows::{self, Row};
+use crate::draft::Draft;
 use crate::error::Error;
 use crate::input::scenario::{Envelope, Faults, Fitted};
 use crate::output::{self, LongRuns};
@@ -150,10 +151,11 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
             cost::measure(row.step_s, &config, itinerary, &journal.log)
         })
         .collect();
+    let mut logged_to = Ok(());
     if let Some(candump) = &options.candump {
         let mut journal = Journal::new(Some(candump.vehicle));
         experiment.run(first, Conditions::of(&options.corridor), Some(&mut journal))?;
-        candump.write(&journal.log)?;
+        logged_to = candump.write(&journal.log);
         done();
     }
     let mut loads = Vec::new();
@@ -187,11 +189,11 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         timing: Timing { wall_s, vehicle_seconds_per_s: driven_s / wall_s.max(1e-9), cost: costs, scale: loads },
     };
     let text = table::text(&results);
-    options.destination.deliver(&results, &text, &text, || page::render(options, &experiment, &results, &steps))?;
-    if let Some(file) = &options.picture {
-        let drawn = picture::draw(&experiment, &results, &steps);
-        std::fs::write(file, drawn).map_err(|error| Error::unwritable(file, &error))?;
-    }
+    let page = || page::render(options, &experiment, &results, &steps);
+    let delivered = options.destination.deliver(&results, &text, &text, page);
+    let picture = || picture::draw(&experiment, &results, &steps);
+    let drawn = options.picture.as_ref().map_or(Ok(()), |file| Draft::whole(file, &picture()));
+    delivered.and(drawn).and(logged_to)?;
     Ok(Verdict::of(&results.failures))
 }
 

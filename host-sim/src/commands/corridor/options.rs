@@ -9,6 +9,7 @@ use crate::commands::run::candump::Candump;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Switch};
 use crate::places::can_be_file;
+use crate::provenance::shell_word;
 use crate::roads::description::Corridor;
 use crate::roads::experiment::of_seed;
 use crate::roads::read;
@@ -66,6 +67,7 @@ impl CorridorOptions {
             step_s: settings.step,
             envelope: settings.envelope,
             range_sensors: settings.range_sensors,
+            set: settings.set.clone(),
             ..Overrides::default()
         };
         let mut corridor = read::corridor(file, text, &overrides)?;
@@ -79,7 +81,7 @@ impl CorridorOptions {
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
         let candump = candump(&corridor, &settings)?;
-        let destination = settings.output.read()?;
+        let destination = settings.output.read()?.with_inputs([named])?;
         let mut taken = vec![named];
         for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
             if let Some(file) = file {
@@ -107,6 +109,7 @@ impl CorridorOptions {
         if let Some(sensors) = settings.range_sensors {
             command += &format!(" --range-sensors {sensors}");
         }
+        command.extend(settings.set.iter().map(|set| format!(" --set {}", shell_word(set))));
         let listed = |numbers: Vec<String>| numbers.join(",");
         if !demand.is_empty() {
             command += &format!(" --demand {}", listed(demand.iter().map(f64::to_string).collect()));

@@ -19,7 +19,7 @@ pub fn render(
     experiment: &Experiment,
     results: &Results,
     steps: &[(StepRow, Journal)],
-) -> String {
+) -> Page {
     let mut page = Page::new("holdover-sim · report of a corridor", &options.name);
     page.verdict(results.failures.is_empty(), &reasons(results));
     let header: Vec<&str> = ["Figure"].into_iter().chain(SIDES).collect();
@@ -63,7 +63,7 @@ pub fn render(
     page.section("Beside seven others, over what a target does in a silence");
     motions::section(&mut page, &results.motions);
     speed(&mut page, &results.timing.scale);
-    page.finish()
+    page
 }
 
 /// The section on vehicles that keep no passes.

@@ -54,7 +54,8 @@ pub fn draw(experiment: &Experiment, results: &Results, steps: &[(StepRow, Journ
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-10 0 {} {:.0}\" role=\"img\">\n<style>{}\n\
          .heading{{font:600 15px system-ui,sans-serif;fill:var(--ink)}}\
-         .note{{font:13px system-ui,sans-serif;fill:var(--ink)}}</style>\n{body}</svg>\n",
+         .note{{font:13px system-ui,sans-serif;fill:var(--ink)}}</style>\n\
+         <rect x=\"-10\" y=\"0\" width=\"100%\" height=\"100%\" fill=\"var(--paper)\"/>\n{body}</svg>\n",
         Width::Wide.pixels() + 20.0,
         top + BETWEEN,
         escape(STYLE)

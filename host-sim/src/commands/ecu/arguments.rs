@@ -9,11 +9,11 @@ use crate::commands::identifiers::IdentifierArguments;
 #[derive(Clone, Debug, Default, Args)]
 pub struct UnitArguments {
     /// The car that is built into the firmware (station 1 there), with this station, 0 to 255
-    #[arg(long, value_name = "N", conflicts_with = "vehicle")]
+    #[arg(long, value_name = "N", conflicts_with = "vehicle", allow_negative_numbers = true)]
     pub station: Option<u8>,
 
     /// The unit of the vehicle with this index in the scenario; by default the ego's
-    #[arg(long, value_name = "INDEX")]
+    #[arg(long, value_name = "INDEX", allow_negative_numbers = true)]
     pub vehicle: Option<usize>,
 
     /// Where the messages lie on the bus.

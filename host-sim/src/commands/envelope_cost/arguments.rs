@@ -19,11 +19,11 @@ pub struct EnvelopeCostArguments {
     pub silences: Option<Vec<f64>>,
 
     /// Number of seeds, each with one run with the envelope and one without
-    #[arg(long, value_name = "N", default_value = "20")]
+    #[arg(long, value_name = "N", default_value = "20", allow_negative_numbers = true)]
     pub seeds: u64,
 
     /// The first seed, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// The distance for which the travel time is measured
@@ -41,6 +41,10 @@ pub struct EnvelopeCostArguments {
     /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says
     #[arg(long, value_name = "on|off", hide_possible_values = true)]
     pub range_sensors: Option<Switch>,
+
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
 
     /// Where its results go.
     #[command(flatten)]

@@ -30,6 +30,7 @@ struct Results<'a> {
 /// # Errors
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &EnvelopeCostOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let bar = output::progress(2 * options.seeds * options.scenarios.len() as u64);
     let seeds = (options.seed, options.seeds);
     let run = |scenario| rows::run(scenario, seeds, options.distance_m, || bar.inc(1));

@@ -44,7 +44,8 @@ impl EnvelopeCostOptions {
     /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: EnvelopeCostArguments) -> Result<Self, Error> {
         let words = typed(&arguments);
-        let EnvelopeCostArguments { scenario: scenario_file, silences, seeds, seed, distance, output, .. } = arguments;
+        let EnvelopeCostArguments { scenario: scenario_file, silences, seeds, seed, distance, strict, output, .. } =
+            arguments;
         let overrides = Overrides {
             seed,
             leader_motion: arguments.leader_motion,
@@ -60,6 +61,8 @@ impl EnvelopeCostOptions {
             return Err(error.in_option("--distance"));
         }
         let destination = output.read()?;
+        let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), strict)?;
         Ok(Self {
             scenarios,
             scenario_file,

@@ -13,7 +13,7 @@ const WHAT: &str = "The envelope is each unit’s last gate. In every tick it ca
                     vehicle; without the envelope it drives on by the estimate.";
 
 /// The page.
-pub fn render(options: &EnvelopeCostOptions, rows: &[Row], failures: &[String]) -> String {
+pub fn render(options: &EnvelopeCostOptions, rows: &[Row], failures: &[String]) -> Page {
     let mut page = Page::new("holdover-sim · report of the envelope’s cost", "What the envelope costs");
     let passed = "With the envelope nobody collided, and no target was ever outside its bound.".to_owned();
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
@@ -24,7 +24,7 @@ pub fn render(options: &EnvelopeCostOptions, rows: &[Row], failures: &[String]) 
     page.command(&command(options));
     page.section("Cost");
     figures(&mut page, rows);
-    page.finish()
+    page
 }
 
 fn table(page: &mut Page, rows: &[Row]) {

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::scenario::Scenario;
-use crate::measure::figures::{impaired_followers, limited_share};
+use crate::measure::figures::impaired_followers;
 use crate::measure::simulate::simulate;
 use crate::parallel;
 use crate::sim::world::Trace;
@@ -80,15 +80,13 @@ pub fn run(
 fn outcome(scenario: &Scenario, seed: u64, distance_m: f64) -> Result<Outcome, Error> {
     let (trace, summary) = simulate(scenario, seed, None, |_| {})?;
     let followers = impaired_followers(scenario);
-    let driven = usize::from(scenario.leader.motion.is_some());
-    let accelerations = trace.vehicles[driven..].iter().flatten().map(|tick| tick.acceleration_mps2);
     Ok(Outcome {
         side: Side {
-            limited_share: limited_share(&trace, &followers),
+            limited_share: summary.envelope.limited_share,
             travel_time_s: None,
             full_stops: summary.full_stops,
             min_gap_m: summary.min_gap_m,
-            hardest_braking_mps2: -accelerations.fold(0.0, f64::min),
+            hardest_braking_mps2: summary.hardest_braking_mps2,
             collisions: summary.collisions,
             bound_violations: summary.bound.violations,
         },

@@ -7,6 +7,7 @@ use crate::commands::ending::OutputArguments;
 
 /// The arguments of `evaluate`.
 #[derive(Clone, Debug, Args)]
+#[command(mut_arg("out", |out| out.default_value("holdover-report/evaluate")))]
 pub struct EvaluateArguments {
     /// Recorded drive: t_s,position_m,speed_mps and, if known, acceleration_mps2; several drives are pooled
     #[arg(long, value_name = "FILE.csv", required = true, num_args = 1..)]
@@ -27,6 +28,10 @@ pub struct EvaluateArguments {
     /// Prediction step of the core, and time between two ticks
     #[arg(long, value_name = "SECONDS", default_value = "0.01", allow_negative_numbers = true)]
     pub step: f64,
+
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
 
     /// Where its results go.
     #[command(flatten)]
@@ -77,4 +82,5 @@ Output:
 
 Exit codes:
   0  evaluated
+  1  there was nothing to compare: no message arrived, or no silence ended
   2  bad input; one line on stderr names file, line, cause and remedy";

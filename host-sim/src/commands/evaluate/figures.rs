@@ -76,6 +76,8 @@ pub struct Results {
     pub messages_sent: usize,
     /// Messages that were not lost.
     pub messages_delivered: usize,
+    /// The recordings of which nothing could be compared, and why; empty if all could.
+    pub failures: Vec<String>,
     /// Wall-clock figures.
     pub timing: Timing,
 }
@@ -83,7 +85,7 @@ pub struct Results {
 impl Results {
     /// The figures of all recordings together. `lengths_s` are the lengths of the silences, if silences were measured.
     #[must_use]
-    pub fn pooled(outcomes: &[Outcome], lengths_s: Option<&[f64]>, timing: Timing) -> Self {
+    pub fn pooled(outcomes: &[Outcome], lengths_s: Option<&[f64]>, failures: Vec<String>, timing: Timing) -> Self {
         let samples: Vec<&Sample> = outcomes.iter().flat_map(|outcome| &outcome.samples).collect();
         let [ours, baselines @ ..] = figures(&samples, lengths_s);
         Self {
@@ -92,6 +94,7 @@ impl Results {
             ticks: samples.len(),
             messages_sent: outcomes.iter().map(|outcome| outcome.sent).sum(),
             messages_delivered: outcomes.iter().map(|outcome| outcome.delivered).sum(),
+            failures,
             timing,
         }
     }

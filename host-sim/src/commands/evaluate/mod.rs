@@ -28,7 +28,7 @@ use crate::error::Error;
 use crate::parallel;
 use crate::verdict::Verdict;
 use figures::{Results, Timing};
-use options::{EvaluateOptions, Impairment};
+use options::{EvaluateOptions, Impairment, Recording};
 use sample::Outcome;
 
 /// Evaluates the recordings and writes the output that the options ask for.
@@ -36,17 +36,31 @@ use sample::Outcome;
 /// # Errors
 /// Output that cannot be written.
 pub fn run(options: &EvaluateOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let start = Instant::now();
     let outcomes = outcomes(options)?;
     let ticks: u64 = outcomes.iter().map(|outcome| outcome.unit_ticks).sum();
     let timing = Timing { ticks_per_s: (ticks as f64 / start.elapsed().as_secs_f64().max(1e-9)).round() };
-    let results = Results::pooled(&outcomes, options.lengths_s(), timing);
-    if let Some(file) = &options.trace {
-        trace::write(file, &outcomes)?;
-    }
-    let page = || page::report(options, &outcomes, &results).render();
-    options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page)?;
-    Ok(Verdict::Pass)
+    let failures = failures(options, &outcomes);
+    let results = Results::pooled(&outcomes, options.lengths_s(), failures, timing);
+    let page = || page::report(options, &outcomes, &results).page();
+    let delivered = options.destination.deliver(&results, &table::text(options, &outcomes, &results), "", page);
+    let traced = options.trace.as_ref().map_or(Ok(()), |file| trace::write(file, &outcomes));
+    delivered.and(traced)?;
+    Ok(Verdict::of(&results.failures))
+}
+
+/// The recordings of which nothing could be compared, and why; empty if all could.
+fn failures(options: &EvaluateOptions, outcomes: &[Outcome]) -> Vec<String> {
+    let reason = |(recording, outcome): (&Recording, &Outcome)| {
+        let name = recording.file.display();
+        match &options.impairment {
+            _ if !outcome.samples.is_empty() => None,
+            Impairment::Channel(link, _) => Some(format!("no message of {name} arrives over {}", link.display())),
+            Impairment::Outages(_) => Some(format!("{name} is shorter than every silence")),
+        }
+    };
+    options.recordings.iter().zip(outcomes).filter_map(reason).collect()
 }
 
 /// The outcome of every recording, in the order of the command line. Over a link the recordings run in parallel. With

@@ -58,6 +58,9 @@ impl EvaluateOptions {
             recordings.iter().try_for_each(|recording| recording.overlaps(file, trace))?;
         }
         let destination = arguments.output.read()?;
+        let inputs = arguments.motion.iter().chain(&arguments.predecessor).chain(&arguments.channel);
+        let destination = destination.with_inputs(inputs.map(PathBuf::as_path))?;
+        let destination = destination.with_findings(findings(&recordings, &impairment), arguments.strict)?;
         if let Some(file) = &arguments.trace {
             let inputs = arguments.motion.iter().chain(&arguments.predecessor).chain(&arguments.channel);
             can_be_file("--trace", file, &inputs.map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -73,6 +76,18 @@ impl EvaluateOptions {
             Impairment::Channel(..) => None,
             Impairment::Outages(lengths_s) => Some(lengths_s),
         }
+    }
+}
+
+/// What the recordings say that cannot be.
+fn findings(recordings: &[Recording], impairment: &Impairment) -> Vec<Error> {
+    let ahead = |recording: &Recording| recording.predecessor.as_ref().map(|(_, motion)| motion.findings().to_vec());
+    let drives = recordings
+        .iter()
+        .flat_map(|recording| [recording.motion.findings().to_vec(), ahead(recording).unwrap_or_default()].concat());
+    match impairment {
+        Impairment::Channel(_, link) => drives.chain(link.findings().iter().cloned()).collect(),
+        Impairment::Outages(_) => drives.collect(),
     }
 }
 

@@ -12,6 +12,9 @@ use std::path::Path;
 /// A time without arrivals longer than this is a silence.
 const SILENCE_S: f64 = 0.5;
 
+/// Time between the ends of two silences of one length: that between two messages.
+const CYCLE_S: f64 = 0.1;
+
 /// The length of silence that is shown, if it was measured.
 const SHOWN_S: f64 = 2.0;
 
@@ -39,7 +42,7 @@ pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results
     let lines = lines(&methods, classes, options.lengths_s());
     let drive = |(recording, outcome): (&Recording, &Outcome)| {
         let samples: Vec<&Sample> = outcome.samples.iter().filter(is_shown).collect();
-        drive(recording, outcome, &samples, &lines, classes)
+        drive(recording, outcome, &samples, &lines, (classes, options.step_s))
     };
     EvaluateReport {
         title: title(options),
@@ -47,6 +50,7 @@ pub fn report(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results
         command: command(options),
         classes,
         class_names: super::table::heads(&results.ours),
+        failures: results.failures.clone(),
         drives: options.recordings.iter().zip(outcomes).map(drive).collect(),
         methods,
     }
@@ -79,14 +83,24 @@ fn lines(methods: &[Method], classes: Classes, lengths_s: Option<&[f64]>) -> Vec
     lines
 }
 
-fn drive(recording: &Recording, outcome: &Outcome, samples: &[&Sample], lines: &[usize], classes: Classes) -> Drive {
+fn drive(
+    recording: &Recording,
+    outcome: &Outcome,
+    samples: &[&Sample],
+    lines: &[usize],
+    (classes, step_s): (Classes, f64),
+) -> Drive {
+    // A comparison at every tick, or at every message that began a silence.
+    let joined_s = 1.5 * if classes == Classes::Age { step_s } else { CYCLE_S };
     let errors = |&method: &usize| {
-        Series::new(NAMES[method], samples.iter().filter_map(|s| Some((s.at_s, s.position_error(method)?))))
+        let errors = samples.iter().filter_map(|s| Some((s.at_s, s.position_error(method)?)));
+        Series::new(NAMES[method], errors).joined_within(joined_s)
     };
     let rows = recording.motion.rows().iter().filter(|row| row.t_s <= outcome.end_s);
     let drive = Drive {
         name: name(&recording.file),
-        speed: Series::new("", rows.map(|row| (row.t_s, row.speed_mps))),
+        speed: Series::new("", rows.map(|row| (row.t_s, row.speed_mps)))
+            .joined_within(recording.motion.longest_interval_s()),
         errors: lines.iter().map(errors).collect(),
         ..Drive::default()
     };

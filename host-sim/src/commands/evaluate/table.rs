@@ -5,7 +5,9 @@ use std::fmt::Write;
 use super::figures::{Figures, Results, figures};
 use super::options::EvaluateOptions;
 use super::sample::{Outcome, refusals};
+use crate::measure::baseline::spoken;
 use crate::report::markup::count;
+use crate::verdict::Verdict;
 
 /// The tables.
 pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) -> String {
@@ -22,6 +24,11 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
         ),
         Some(_) => writeln!(text, "{} comparisons, {} messages", count(ticks as u64), count(sent as u64)),
     };
+    let verdict = || Verdict::of(&results.failures).line(&results.failures);
+    if ticks == 0 {
+        let _ = writeln!(text, "{}", verdict());
+        return text;
+    }
     let refusals: Vec<String> =
         refusals(outcomes).iter().map(|(cause, times)| format!("{cause} {}", count(*times))).collect();
     if !refusals.is_empty() {
@@ -31,7 +38,7 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
     let _ = writeln!(text, "{:<23}{:>11}{:>11}{:>11}{:>14}", "", "rms", "99 %", "maximum", "rms");
     for (name, figures) in results.methods() {
         let Figures { rms_position_m, p99_position_m, max_position_m, rms_speed_mps, .. } = *figures;
-        let _ = write!(text, "{name:<23}");
+        let _ = write!(text, "{:<23}", spoken(name));
         [rms_position_m, p99_position_m, max_position_m].into_iter().for_each(|value| cell(&mut text, value));
         let _ = writeln!(text, "{:>14}", number(rms_speed_mps));
     }
@@ -44,6 +51,9 @@ pub fn text(options: &EvaluateOptions, outcomes: &[Outcome], results: &Results) 
     if let (true, Some(lengths_s)) = (outcomes.len() > 1, options.lengths_s()) {
         recordings(&mut text, options, outcomes, lengths_s);
     }
+    if !results.failures.is_empty() {
+        let _ = writeln!(text, "{}", verdict());
+    }
     text
 }
 
@@ -55,7 +65,7 @@ fn classes(text: &mut String, results: &Results) {
     };
     row(text, "", heads.iter().map(|(name, _)| name.clone()).collect());
     for (name, figures) in results.methods() {
-        row(text, name, class_rms(figures).into_iter().map(number).collect());
+        row(text, &spoken(name), class_rms(figures).into_iter().map(number).collect());
     }
     row(text, "count", heads.iter().map(|(_, samples)| count(*samples as u64)).collect());
 }

@@ -1,17 +1,17 @@
 //! The trace: comparisons enter, a CSV file with one line for each leaves.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use super::sample::{NAMES, Outcome, Sample};
+use crate::draft::Draft;
 use crate::error::Error;
 
 /// Writes all comparisons of all recordings, which are numbered from 0 in the order of the command line.
 pub fn write(file: &Path, outcomes: &[Outcome]) -> Result<(), Error> {
-    let unwritable = |error: &io::Error| Error::unwritable(file, error);
-    let mut out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
-    write_rows(&mut out, outcomes).and_then(|()| out.flush()).map_err(|error| unwritable(&error))
+    let mut out = Draft::of(file)?;
+    write_rows(&mut out, outcomes).map_err(|error| Error::unwritable(file, &error))?;
+    out.finish()
 }
 
 fn write_rows(out: &mut impl Write, outcomes: &[Outcome]) -> io::Result<()> {

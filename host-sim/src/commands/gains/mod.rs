@@ -20,6 +20,7 @@ use holdover::parameters;
 use serde::Serialize;
 
 use crate::commands::ending::Destination;
+use crate::draft::Draft;
 use crate::error::Error;
 use crate::output;
 use crate::places::can_be_file;
@@ -105,13 +106,13 @@ impl Table {
 /// Output that cannot be written.
 pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
     let table = Table::made();
+    let results = table.results();
+    let delivered = options.destination.deliver(&results, &text(&results), "", || page::render(&table));
     if let Some(file) = &options.write {
-        let text = source::text(&table.curve, &table.cells);
-        std::fs::write(file, text).map_err(|error| Error::unwritable(file, &error))?;
+        Draft::whole(file, &source::text(&table.curve, &table.cells))?;
         output::say(&format!("table: {}", file.display()));
     }
-    let results = table.results();
-    options.destination.deliver(&results, &text(&results), "", || page::render(&table))?;
+    delivered?;
     Ok(Verdict::of(results.failures))
 }
 

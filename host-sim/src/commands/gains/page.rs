@@ -20,7 +20,7 @@ const GAPS: &str = "The table is made for the smaller time gap and proved at bot
                     each second of gap. The limits on the demand, 2.5 and -4 m/s² and 5 m/s³, hold by construction.";
 
 /// The page.
-pub fn render(table: &Table) -> String {
+pub fn render(table: &Table) -> Page {
     let mut page = Page::new("holdover-sim · report of the gains", "The table of gains, eq. 6");
     let [made, shipped] = &table.proofs;
     let passed = format!(
@@ -43,7 +43,7 @@ pub fn render(table: &Table) -> String {
         let caption = "k by headway (across) and the target’s speed (down).";
         page.figure(&title, caption, &[&map(own, caption)]);
     }
-    page.finish()
+    page
 }
 
 fn proofs(page: &mut Page, proofs: &[Proof]) {

@@ -44,7 +44,7 @@ pub struct HilArguments {
     pub fault: Vec<String>,
 
     /// Seed of everything random, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Print the results as one JSON value on stdout
@@ -52,8 +52,12 @@ pub struct HilArguments {
     pub json: bool,
 
     /// Folder for the HTML report; it is created. Without it there is no report
-    #[arg(long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
+    #[arg(long, alias = "output", value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Write no report, which is so without --out
+    #[arg(long, hide = true, conflicts_with = "out")]
+    pub no_report: bool,
 }
 
 /// The end of `hil --help`.

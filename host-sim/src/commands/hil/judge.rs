@@ -18,6 +18,7 @@ use super::spread::Spread;
 use crate::measure::figures::mode_name;
 use crate::measure::figures::{BoundFigures, Summary, failures, summarise};
 use crate::sim::world::{Tick, Trace};
+use crate::thinned::Thinning;
 use crate::verdict::Verdict;
 
 /// Default limit of the time from the vehicle's motion to the device's command, except for one command in a hundred:
@@ -238,6 +239,8 @@ fn violations(setup: &Setup, outcome: &Outcome) -> usize {
         channel: trace.channel.clone(),
         log: Vec::new(),
         turned_away: 0,
+        latest: Vec::new(),
+        thinning: Thinning::default(),
     };
     BoundFigures::of(&setup.scenario, &trace).violations
 }

@@ -45,6 +45,7 @@ use rig::MachineRig;
 /// # Errors
 /// An interface that cannot be used, and output that cannot be written.
 pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let port = bus::open(&options.bus)?;
     let mut rig = MachineRig::new(&options.bus, options.device.clone());
     let bar = ProgressBar::new(1000);

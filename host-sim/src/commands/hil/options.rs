@@ -67,7 +67,10 @@ impl HilOptions {
             let cause = format!("{} begins at {} s, after the run", late.kind.name(), late.from_s);
             return refuse(&cause, &format!("give a time before {} s", scenario.duration_s));
         }
-        let destination = Destination::new(arguments.json, arguments.output)?;
+        let destination = Destination::new(arguments.json, arguments.out)?;
+        let destination =
+            destination.with_inputs(file_of(&arguments.scenario).into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), false)?;
         Ok(Self {
             bus: arguments.bus,
             setup: Setup {

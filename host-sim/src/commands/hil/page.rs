@@ -8,8 +8,11 @@ use crate::measure::figures::{gaps, speeds};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Layer, Series, Tone};
 
+/// Commands and ticks that are farther apart than this are not joined: there was none in between. The device's period is 0.01 s.
+const JOINED_S: f64 = 0.05;
+
 /// The page.
-pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> String {
+pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Page {
     let mut page = Page::new("holdover-sim · hardware in the loop", &format!("The device in {}", options.name));
     let passed = "The device drove its vehicle as its twin would have, in time.".to_owned();
     let reasons = if results.reasons.is_empty() { vec![passed] } else { results.reasons.clone() };
@@ -30,7 +33,7 @@ pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Str
     page.facts(&facts(options));
     page.section("Course");
     figures(&mut page, options, outcome);
-    page.finish()
+    page
 }
 
 /// The row of a line of the terminal's table: the figure's name, and after two blanks its value.
@@ -73,7 +76,9 @@ fn facts(options: &HilOptions) -> Vec<(String, String)> {
 
 fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
     let ego = options.setup.scenario.ego;
-    let line = |name: &str, points: Vec<(f64, f64)>, tone| Layer::line(Series::new(name, points), tone);
+    let line = |name: &str, points: Vec<(f64, f64)>, tone| {
+        Layer::line(Series::new(name, points).joined_within(JOINED_S), tone)
+    };
     let speed = speeds(&outcome.trace).into_iter().nth(ego).unwrap_or_default();
     let ahead = speeds(&outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
     let gap = gaps(&options.setup.scenario, &outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();

@@ -231,7 +231,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         } else {
             world.act(at_s)?;
             world.note(at_s, &mut trace);
-            paper.note(&world, at_s, &mut trace)?
+            paper.note(&world, at_s, &mut trace)?;
         }
         cut = gone(setup, &talk, &listener, rig, at_s);
         if tick % 100 == 0 {

@@ -14,7 +14,7 @@ pub struct MotionsArguments {
     pub silences: u32,
 
     /// Seed of the first silence of each motion; each further silence has the next seed
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
 
     /// Where its results go.
@@ -46,9 +46,9 @@ Motions:
 
 Methods:
   holdover           the unit
-  freeze, constant_speed, constant_acceleration, singer, kalman
+  freeze, constant speed, constant acceleration, Singer's model, Kalman filter
                      from the target's last messages
-  paper              the literal paper
+  literal paper      the paper's equations as printed
   consensus          the consensus law of platoon simulators: the message that
                      came last, moved on by its age times its speed
 

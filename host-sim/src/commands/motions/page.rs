@@ -5,6 +5,7 @@ use super::options::MotionsOptions;
 use super::rows::{MethodFigures, Row};
 use super::silence::NAMES;
 use super::table::standing;
+use crate::measure::baseline::spoken;
 use crate::report::markup::{count, significant};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Bars, Chart, Layer, Series, Tone};
@@ -21,11 +22,11 @@ const OF_OTHERS: &str = "The literal paper takes 13.4 m/s for the request of a d
                          age times its speed; that differs from a constant speed only where the last message was overtaken.";
 
 /// The page of `motions`.
-pub fn render(options: &MotionsOptions, rows: &[Row]) -> String {
+pub fn render(options: &MotionsOptions, rows: &[Row]) -> Page {
     let mut page = Page::new("holdover-sim · report of target motions", "What a target does in a silence");
     section(&mut page, rows);
     page.command(&options.command());
-    page.finish()
+    page
 }
 
 /// The section of a report, for the page of any command.
@@ -44,7 +45,7 @@ pub fn section(page: &mut Page, rows: &[Row]) {
 #[must_use]
 pub fn largest(rows: &[Row]) -> Bars {
     let errors = |method: usize| rows.iter().map(|row| Some(row.methods.get(method)?.max_position_m)).collect();
-    let method = |(index, name): (usize, &str)| (name.replace('_', " "), tone(index, name), errors(index));
+    let method = |(index, name): (usize, &str)| (spoken(name), tone(index, name), errors(index));
     Bars {
         title: "Largest position error in a silence of 4 s, by what the target does".into(),
         description: "A bar for each method, in groups by what the target does.".into(),
@@ -80,7 +81,7 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
             let text = text.unwrap_or_default();
             if is_least { Cell::strong(text) } else { Cell::number(text) }
         };
-        let name = Cell::text(name.replace('_', " "));
+        let name = Cell::text(spoken(name));
         std::iter::once(name).chain(rows.iter().zip(&least).map(cell)).collect::<Vec<_>>()
     };
     let lines: Vec<Vec<Cell>> = NAMES.into_iter().enumerate().map(of_method).collect();
@@ -93,7 +94,7 @@ fn table(page: &mut Page, rows: &[Row], caption: &str, figure: fn(&MethodFigures
 /// is only in the tables.
 fn growth(page: &mut Page, row: &Row) {
     let line = |(index, method): (usize, &MethodFigures)| {
-        let series = Series::new(method.name.replace('_', " "), method.growth.clone());
+        let series = Series::new(spoken(method.name), method.growth.clone());
         Layer::Line { series, tone: tone(index, method.name), marked: false }
     };
     // The unit's line comes last, so that it lies on top.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::rows::{Outcome, Row};
+use crate::measure::baseline::spoken;
 use crate::report::markup::significant;
 
 /// The table.
@@ -18,7 +19,11 @@ pub fn text(rows: &[Row]) -> String {
             let _ = writeln!(
                 text,
                 "{:<23}{:>11.3}{:>11.3}{:>11.3}{:>14.3}",
-                method.name, method.rms_position_m, method.p99_position_m, method.max_position_m, method.rms_speed_mps
+                spoken(method.name),
+                method.rms_position_m,
+                method.p99_position_m,
+                method.max_position_m,
+                method.rms_speed_mps
             );
         }
         text.push('\n');
@@ -33,7 +38,6 @@ pub fn text(rows: &[Row]) -> String {
 #[must_use]
 pub fn standing(row: &Row) -> String {
     let published = if row.published { "published" } else { "not published" };
-    let (word, ratio, best) =
-        (row.standing.word(), significant(row.ours_over_best, 3), row.best_baseline.replace('_', " "));
+    let (word, ratio, best) = (row.standing.word(), significant(row.ours_over_best, 3), spoken(row.best_baseline));
     format!("{published}; holdover {word}, {ratio} times the rms of {best}")
 }

@@ -11,8 +11,8 @@ pub struct RecordArguments {
     pub bus: String,
 
     /// The log, as `candump -l` writes it; by default standard output
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    #[arg(short, long, alias = "output", value_name = "FILE")]
+    pub out: Option<PathBuf>,
 
     /// Stop after this long; otherwise it records until it is interrupted by Ctrl-C (SIGINT) or SIGTERM
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]

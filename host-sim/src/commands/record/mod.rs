@@ -40,14 +40,14 @@ impl RecordOptions {
     /// # Errors
     /// Impossible values.
     pub fn read(arguments: RecordArguments) -> Result<Self, Error> {
-        let RecordArguments { bus, output, duration: length_s } = arguments;
-        if let Some(file) = &output {
-            can_be_file("--output", file, &[])?;
+        let RecordArguments { bus, out, duration: length_s } = arguments;
+        if let Some(file) = &out {
+            can_be_file("--out", file, &[])?;
         }
         if let Some(length_s) = length_s.filter(|length_s| !(0.001..=1e6).contains(length_s)) {
             return Err(Error::new(format!("is {length_s}"), "give seconds from 0.001 to 1e6").in_option("--duration"));
         }
-        Ok(Self { interface: bus, file: output, length: length_s.map(duration) })
+        Ok(Self { interface: bus, file: out, length: length_s.map(duration) })
     }
 }
 

@@ -24,11 +24,11 @@ pub struct ReplayArguments {
     pub scenario: Option<PathBuf>,
 
     /// Seed of the run whose vehicle it is, if it is not the scenario's. It counts in a corridor
-    #[arg(long, value_name = "N", requires = "scenario")]
+    #[arg(long, value_name = "N", requires = "scenario", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// The vehicle whose unit receives the log; by default the ego. In a corridor, 0 to 254 by arrival
-    #[arg(long, value_name = "INDEX")]
+    #[arg(long, value_name = "INDEX", allow_negative_numbers = true)]
     pub vehicle: Option<usize>,
 
     /// The unit's own station, 0 to 255 [default: 1]

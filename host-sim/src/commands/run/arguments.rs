@@ -20,31 +20,40 @@ pub struct RunArguments {
 #[derive(Clone, Debug, Default, Args)]
 pub struct RunSettings {
     /// Seed of everything random, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Number of seeds, from `--seed` on; they run on all cores. Corridors only
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seeds: Option<u64>,
 
     /// List the scenarios that come with the program
     #[arg(long)]
     pub list: bool,
 
+    /// Print a scenario that comes with the program, with a comment for each key
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["list", "json"])]
+    pub show: Option<String>,
+
+    /// Set a key of the scenario, as often as needed: `channel.loss=0.3`, `vehicle.1.gap_m=20` (counted from 0),
+    /// `leader.program=[[0,13],[12,9]]`. It is checked like the file
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+
     /// Measure how fast the program simulates these numbers of vehicles at once, in corridors side by side [with a
     /// report: 10,30,100,300]. Corridors only
-    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub vehicles: Option<Vec<usize>>,
 
     /// Run these amounts of traffic, in vehicles per minute, and nothing else. Each is run with and without the
     /// envelope, over the scenario's links and over perfect ones; with vehicles that drive alone while a link is lost;
     /// without passes; and with silences of 0 to 12 s. This can take hours; after each run stderr shows what is done
     /// and what is left. Corridors only
-    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub demand: Option<Vec<f64>>,
 
     /// Number of peer slots of every unit, instead of the scenario's; several with `--demand`. Corridors only
-    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub slots: Option<Vec<usize>>,
 
     /// Draw a picture of one page: trajectories, errors, and this unit's method beside seven others. Corridors only
@@ -80,6 +89,10 @@ pub struct RunSettings {
     #[arg(long, value_name = "on|off", hide_possible_values = true)]
     pub range_sensors: Option<Switch>,
 
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -94,7 +107,7 @@ pub struct RunSettings {
     pub candump: Option<PathBuf>,
 
     /// The vehicle of that bus; by default the ego. In a corridor vehicles are counted from 0 by their arrival
-    #[arg(long, value_name = "INDEX", requires = "candump")]
+    #[arg(long, value_name = "INDEX", requires = "candump", allow_negative_numbers = true)]
     pub candump_vehicle: Option<usize>,
 }
 
@@ -105,6 +118,9 @@ Examples:
   holdover-sim --seed 3 --json           with other random numbers, as JSON
   holdover-sim run city.toml --out city  your scenario, its report in city/
   holdover-sim run --list                the scenarios that come with it
+  holdover-sim run --show paper >my.toml one of them, to be changed
+  holdover-sim run city.toml --set channel.loss=0.4 --set ego=2
+                                         yours with two other values
   holdover-sim run corridor --seeds 10   four intersections, ten seeds
   holdover-sim --leader-motion drive.csv --channel-trace link.csv
                                          your recordings of a drive and a link
@@ -117,7 +133,9 @@ Examples:
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress
   goes to stderr. The report is one HTML file in the folder of --out. Equal
-  seeds give equal bytes, but for what stands under \"timing\".
+  seeds give equal bytes, but for what stands under \"timing\". Files are written
+  whole or not at all. Of a run of more than 60,000 ticks figures over time and
+  percentiles are of evenly chosen ones, and all other figures of every tick.
 
 Exit codes:
   0  the verdict is: passed

@@ -1,13 +1,13 @@
 //! The log of one vehicle's bus: frames with the times of their ends enter, a candump log leaves.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::PathBuf;
 
 use holdover::time::Instant;
 
 use crate::bus::Frame;
 use crate::bus::candump::LogWriter;
+use crate::draft::Draft;
 use crate::error::Error;
 use crate::sim::time::{EPOCH_US, micros};
 
@@ -20,22 +20,52 @@ pub struct Candump {
     pub vehicle: usize,
 }
 
+/// A log, as far as it is written.
+pub struct CandumpFile {
+    file: PathBuf,
+    log: LogWriter<Draft>,
+    /// The first failure. After it nothing more is written, and the run goes on.
+    written: io::Result<()>,
+}
+
 impl Candump {
     /// Writes the frames, which have times of the run. The log has GNSS time.
     ///
     /// # Errors
     /// The log cannot be written.
     pub fn write(&self, frames: &[(f64, Frame)]) -> Result<(), Error> {
-        let file: &Path = &self.file;
-        let unwritable = |error: &std::io::Error| Error::unwritable(file, error);
-        let out = BufWriter::new(File::create(file).map_err(|error| unwritable(&error))?);
-        let Some(mut log) = LogWriter::new(out, "can0") else {
-            return Err(Error::new("the interface has no name", "report this").in_file(file));
+        let mut log = self.begin()?;
+        log.note(frames);
+        log.finish()
+    }
+
+    /// Begins the log, which is to be written while the run goes on.
+    ///
+    /// # Errors
+    /// The log cannot be created.
+    pub fn begin(&self) -> Result<CandumpFile, Error> {
+        let Some(log) = LogWriter::new(Draft::of(&self.file)?, "can0") else {
+            return Err(Error::new("the interface has no name", "report this").in_file(&self.file));
         };
+        Ok(CandumpFile { file: self.file.clone(), log, written: Ok(()) })
+    }
+}
+
+impl CandumpFile {
+    /// Writes further frames.
+    pub fn note(&mut self, frames: &[(f64, Frame)]) {
         let instant = |at_s: f64| Instant::from_micros(EPOCH_US.saturating_add_signed(micros(at_s)));
-        for (at_s, frame) in frames {
-            log.write(instant(*at_s), frame).map_err(|error| unwritable(&error))?;
+        if self.written.is_ok() {
+            self.written = frames.iter().try_for_each(|(at_s, frame)| self.log.write(instant(*at_s), frame));
         }
-        log.finish().map(|_| ()).map_err(|error| unwritable(&error))
+    }
+
+    /// Ends the log.
+    ///
+    /// # Errors
+    /// A log that could not be written.
+    pub fn finish(self) -> Result<(), Error> {
+        let Self { file, log, written } = self;
+        written.and_then(|()| log.finish()).map_err(|error| Error::unwritable(&file, &error))?.finish()
     }
 }

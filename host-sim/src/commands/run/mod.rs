@@ -2,6 +2,7 @@
 
 pub mod arguments;
 pub mod candump;
+mod collided;
 mod files;
 pub mod options;
 mod page;
@@ -11,8 +12,11 @@ use indicatif::ProgressBar;
 
 use crate::error::Error;
 use crate::measure::figures::failures;
-use crate::measure::simulate::simulate;
+use crate::measure::simulate::simulate_beside;
+use crate::sim::world::Trace;
 use crate::verdict::Verdict;
+use candump::Candump;
+use files::TraceFile;
 use options::RunOptions;
 
 /// Runs the scenario and writes the output that the options ask for.
@@ -20,21 +24,34 @@ use options::RunOptions;
 /// # Errors
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let scenario = &options.scenario;
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
+    let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
+    let mut candump = options.candump.as_ref().map(Candump::begin).transpose()?;
+    let each = |at_s: f64, trace: &mut Trace, paper_m| {
+        if let Some(file) = &mut traced {
+            file.note(at_s, &trace.latest, paper_m);
+        }
+        if let Some(log) = &mut candump {
+            log.note(&trace.log);
+            trace.log.clear();
+        }
+    };
     let (trace, summary) =
-        simulate(scenario, scenario.seed, logged, |share| bar.set_position((share * 1000.0) as u64))?;
+        simulate_beside(scenario, scenario.seed, logged, each, |share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     let failures = failures(scenario, &summary);
-    if let Some(file) = &options.trace {
-        files::write_trace(file, scenario, &trace)?;
-    }
-    if let Some(candump) = &options.candump {
-        candump.write(&trace.log)?;
-    }
     let text = table::text(scenario, &summary, &failures);
-    let page = || page::report(options, &trace, &summary, &failures).render();
-    options.destination.deliver(&summary, &text, &text, page)?;
+    let page = || page::report(options, &trace, &summary, &failures).page();
+    // One file that cannot be written does not keep the others away.
+    let delivered = options.destination.deliver(&summary, &text, &text, page);
+    let traced = traced.map_or(Ok(()), TraceFile::finish);
+    let logged = candump.map_or(Ok(()), |mut log| {
+        log.note(&trace.log);
+        log.finish()
+    });
+    delivered.and(traced).and(logged)?;
     Ok(Verdict::of(&failures))
 }

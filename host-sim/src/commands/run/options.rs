@@ -8,6 +8,7 @@ use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
 use crate::places::can_be_file;
+use crate::provenance::shell_word;
 
 /// A run, and where its results go.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +51,7 @@ impl RunOptions {
             channel_trace: settings.channel_trace.clone(),
             envelope: settings.envelope,
             range_sensors: settings.range_sensors,
+            set: settings.set.clone(),
         };
         let arguments = typed(&overrides);
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -59,8 +61,10 @@ impl RunOptions {
             let error = Error::new(format!("there is no vehicle {vehicle}"), format!("give an index from 0 to {last}"));
             return Err(error.in_option("--candump-vehicle"));
         }
-        let destination = settings.output.read()?;
         let inputs = [scenario_file.as_ref(), settings.leader_motion.as_ref(), settings.channel_trace.as_ref()];
+        let destination = settings.output.read()?;
+        let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), settings.strict)?;
         let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
         for (option, file) in outputs {
@@ -82,5 +86,6 @@ fn typed(overrides: &Overrides) -> Vec<String> {
     let trace = file("--channel-trace", &overrides.channel_trace);
     let [envelope, sensors] = [("--envelope=", overrides.envelope), ("--range-sensors ", overrides.range_sensors)]
         .map(|(option, switch)| switch.map(|switch| format!("{option}{switch}")));
-    [step, motion, trace, envelope, sensors].into_iter().flatten().collect()
+    let set = overrides.set.iter().map(|set| format!("--set {}", shell_word(set)));
+    [step, motion, trace, envelope, sensors].into_iter().flatten().chain(set).collect()
 }

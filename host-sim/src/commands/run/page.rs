@@ -1,5 +1,6 @@
 //! The report of a run: options, trace and figures enter, the page's content leaves.
 
+use crate::commands::run::collided::crashes;
 use crate::commands::run::options::RunOptions;
 use crate::input::impairment::{AppliesTo, Impairment, Link};
 use crate::input::scenario::Scenario;
@@ -22,16 +23,19 @@ pub fn report(options: &RunOptions, trace: &Trace, summary: &Summary, failures: 
         trace.times_s.iter().zip(ticks).map(|(at_s, tick)| (*at_s, tick.position_m)).collect::<Vec<_>>()
     };
     let silences = silences(scenario, trace);
+    let joined_s = 1.5 * scenario.period_s * trace.thinning.stride() as f64;
     RunReport {
         title: title(options),
         facts: facts(scenario),
         verdict: Verdict { passed: failures.is_empty(), reasons: reasons(summary, failures) },
         command: command(options),
         summary: rows(summary),
+        crashes: crashes(scenario, trace, summary, &names),
         trajectories: (0..names.len()).map(|index| Series::new(names[index].clone(), positions(index))).collect(),
         ego: trace.measured.vehicle,
-        error_ours: Series::new("holdover", errors(trace, ours(trace))),
-        error_paper: Series::new("literal paper", errors(trace, papers(trace))),
+        // Where there is no estimate there is no error, and no line.
+        error_ours: Series::new("holdover", errors(trace, ours(trace))).joined_within(joined_s),
+        error_paper: Series::new("literal paper", errors(trace, papers(trace))).joined_within(joined_s),
         bound: bound(trace),
         drive: drive(scenario, trace, &names),
         silences,
@@ -137,7 +141,7 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
         row("Lowest speed", summary.min_speed_mps, None, "m/s", None),
         row("Full stops", count(summary.full_stops), None, "", None),
         row("Collisions", count(summary.collisions), None, "", Some(Limit::AtMost(0.0))),
-        row("Width of the bound, median", summary.bound.median_width_m, None, "m", None),
+        row("Median width of the bound", summary.bound.median_width_m, None, "m", None),
         row(
             "Ticks with a target outside its bound",
             count(summary.bound.violations),
@@ -153,6 +157,10 @@ fn rows(summary: &Summary) -> Vec<SummaryRow> {
 /// messages.
 fn silences(scenario: &Scenario, trace: &Trace) -> Vec<Interval> {
     let Some(link) = trace.channel.link(measured_link(trace)) else { return Vec::new() };
+    // Where only some messages are recorded, there are gaps between them.
+    if link.thinning.stride() > 1 {
+        return Vec::new();
+    }
     let longer_than_s = 2.5 / scenario.message_rate_hz;
     let end_s = trace.times_s.last().copied().unwrap_or(0.0);
     link.silences(longer_than_s.max(0.5), 0.0, end_s)
@@ -239,6 +247,21 @@ fn notes(trace: &Trace, summary: &Summary) -> Vec<String> {
              estimate goes by the law that the other one published, and is wrong by what the envelope does. The bound holds."
                 .to_owned(),
         );
+    }
+    if trace.thinning.stride() > 1 {
+        notes.push(format!(
+            "The run is long: figures over time are of one tick in {}. Largest, smallest and counted figures of the table are of all.",
+            trace.thinning.stride()
+        ));
+    }
+    let link = trace.channel.link(measured_link(trace)).filter(|link| link.thinning.stride() > 1);
+    if let Some(link) = link {
+        notes.push(format!(
+            "Of the messages over the ego’s link one in {} is shown, and silences are not shaded; {} of {} were lost.",
+            link.thinning.stride(),
+            link.counts.sent - link.counts.delivered,
+            link.counts.sent
+        ));
     }
     if trace.turned_away > 0 {
         notes.push(format!("{} messages found no free slot in a modem.", trace.turned_away));

@@ -26,7 +26,7 @@ pub fn text(scenario: &Scenario, summary: &Summary, failures: &[String]) -> Stri
     let _ = writeln!(text, "{:<26}{:>12}", "lowest speed, m/s", metres(summary.min_speed_mps));
     let _ = writeln!(text, "{:<26}{:>12}", "full stops", summary.full_stops);
     let _ = writeln!(text, "{:<26}{:>12}", "collisions", summary.collisions);
-    let _ = writeln!(text, "{:<26}{:>12}", "width of the bound, m", metres(summary.bound.median_width_m));
+    let _ = writeln!(text, "{:<26}{:>12}", "median width of bound, m", metres(summary.bound.median_width_m));
     let _ = writeln!(text, "{:<26}{:>12}", "ticks outside the bound", summary.bound.violations);
     if summary.envelope.engaged {
         let percent = format!("{:.1} %", 100.0 * summary.envelope.limited_share);

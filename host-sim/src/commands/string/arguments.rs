@@ -47,7 +47,7 @@ pub struct StringArguments {
     pub step_only: bool,
 
     /// Seed of the losses
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
 
     /// Number of seeds of step and sines, from `--seed` on, instead of 40 and 1; the largest ratio of all counts

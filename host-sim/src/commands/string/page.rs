@@ -14,7 +14,7 @@ const CHANCE: &str = "Which messages are lost decides what a step passes on, so 
                       seeds, and the verdict is of these runs and no others.";
 
 /// The page.
-pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> String {
+pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Page {
     let mut page = Page::new("holdover-sim · report of string stability", "What a string makes of a disturbance");
     let passed = format!("With holdover no ratio is above {LIMIT} in {}.", runs(options, rows));
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
@@ -32,7 +32,7 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Str
             over_frequency(&mut page, time_gap_s, options, &rows);
         }
     }
-    page.finish()
+    page
 }
 
 fn table(page: &mut Page, rows: &[Row]) {

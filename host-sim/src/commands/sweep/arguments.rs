@@ -25,11 +25,11 @@ pub struct SweepArguments {
     pub steps: Vec<f64>,
 
     /// Number of seeds, each with one run per step
-    #[arg(long, value_name = "N", default_value = "100")]
+    #[arg(long, value_name = "N", default_value = "100", allow_negative_numbers = true)]
     pub seeds: u64,
 
     /// The first seed, instead of the scenario's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
 
     /// Whether the envelope is engaged. Nobody can foresee the commands that it changes
@@ -47,6 +47,10 @@ pub struct SweepArguments {
     /// Whether every vehicle that follows another has a range sensor
     #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
     pub range_sensors: Switch,
+
+    /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
+    #[arg(long)]
+    pub strict: bool,
 
     /// Where its results go.
     #[command(flatten)]

@@ -33,6 +33,7 @@ struct Results<'a> {
 /// # Errors
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
+    options.destination.warn();
     let bar = progress(options);
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
     for scenario in &options.scenarios {
@@ -48,7 +49,7 @@ pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
         [] => String::new(),
         failures => verdict(options.runs(), failures),
     };
-    let page = || page::report(options, &rows, &failures).render();
+    let page = || page::report(options, &rows, &failures).page();
     options.destination.deliver(&Results { rows: &rows }, &table::text(options, &rows, &failures), &said, page)?;
     Ok(Verdict::of(&failures))
 }

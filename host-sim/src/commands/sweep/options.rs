@@ -31,7 +31,8 @@ impl SweepOptions {
     /// # Errors
     /// Impossible values, an unusable scenario, and a folder that cannot be written.
     pub fn read(arguments: SweepArguments) -> Result<Self, Error> {
-        let SweepArguments { scenario: scenario_file, steps, seeds, seed, envelope, range_sensors, output } = arguments;
+        let SweepArguments { scenario: scenario_file, steps, seeds, seed, envelope, range_sensors, strict, output } =
+            arguments;
         let (envelope, range_sensors) = (Some(envelope), Some(range_sensors));
         let overrides = Overrides { seed, envelope, range_sensors, ..Overrides::default() };
         let scenario = Scenario::read(scenario_file.as_deref(), &overrides)?;
@@ -39,6 +40,8 @@ impl SweepOptions {
         let scenarios = steps.into_iter().map(at_step).collect::<Result<Vec<_>, _>>()?;
         seeds::checked(scenario.seed, seeds)?;
         let destination = output.read()?;
+        let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
+        let destination = destination.with_findings(scenario.findings(), strict)?;
         Ok(Self { seed: scenario.seed, base: scenario, scenarios, scenario_file, seeds, destination })
     }
 

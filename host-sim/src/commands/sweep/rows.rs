@@ -65,6 +65,8 @@ pub struct Runs {
 struct Outcome {
     ours: Vec<f64>,
     paper: Vec<f64>,
+    /// The largest errors of both, which a thinned trace may lack.
+    largest: [Option<f64>; 2],
     causes: Vec<String>,
 }
 
@@ -78,16 +80,21 @@ pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -
         done();
         outcome.map(|outcome| (seed, outcome))
     };
-    let (mut ours, mut paper, mut failures) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut ours, mut paper, mut largest, mut failures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for outcome in parallel::each(seed..=seed + (seeds - 1), one) {
         let (seed, outcome) = outcome?;
         ours.extend(outcome.ours);
         paper.extend(outcome.paper);
+        largest.push(outcome.largest);
         if !outcome.causes.is_empty() {
             failures.push(Failure { seed, step: scenario.step_s.to_string(), causes: outcome.causes });
         }
     }
-    Ok(Runs { ours: Errors::of(&ours), paper: Errors::of(&paper), failures })
+    let of = |errors: &[f64], index: usize| Errors {
+        max_position_error_m: max_abs(&largest.iter().filter_map(|run| run[index]).collect::<Vec<_>>()),
+        ..Errors::of(errors)
+    };
+    Ok(Runs { ours: of(&ours, 0), paper: of(&paper, 1), failures })
 }
 
 fn outcome(scenario: &Scenario, seed: u64) -> Result<Outcome, Error> {
@@ -96,6 +103,7 @@ fn outcome(scenario: &Scenario, seed: u64) -> Result<Outcome, Error> {
     Ok(Outcome {
         ours: values(errors(&trace, ours(&trace))),
         paper: values(errors(&trace, papers(&trace))),
+        largest: [summary.ours.max_position_error_m, summary.paper.max_position_error_m],
         causes: failures(scenario, &summary),
     })
 }

@@ -100,15 +100,24 @@ impl<'a> Table<'a> {
                 .in_file(self.file)
                 .at_line(self.header.line));
         }
-        self.optional_column(column).ok_or_else(|| {
-            let found = self.header.fields.iter().collect::<Vec<_>>().join(",");
-            Error::new(
-                format!("no column `{}` in the header {}", column.name, quoted(&found)),
+        self.optional_column(column).ok_or_else(|| self.lacks(column.name))
+    }
+
+    /// The error of a file without this column.
+    pub fn lacks(&self, column: &str) -> Error {
+        let found = self.header.fields.iter().collect::<Vec<_>>().join(",");
+        let other = [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(separator, _)| found.contains(*separator));
+        let (cause, remedy) = match other {
+            Some((_, separators)) if self.header.fields.len() == 1 => (
+                format!("the header {} has {separators} between its columns", quoted(&found)),
+                "write commas between columns, and decimal points".to_owned(),
+            ),
+            _ => (
+                format!("no column `{column}` in the header {}", quoted(&found)),
                 format!("name the columns {}", self.columns),
-            )
-            .in_file(self.file)
-            .at_line(self.header.line)
-        })
+            ),
+        };
+        Error::new(cause, remedy).in_file(self.file).at_line(self.header.line)
     }
 
     /// Finds a column that the file may have.
@@ -139,6 +148,11 @@ impl<'a> Table<'a> {
 }
 
 impl Line<'_> {
+    /// Its line in the file, counted from 1.
+    pub fn number_in_file(&self) -> u64 {
+        self.record.line
+    }
+
     /// The number in a column.
     pub fn number(&self, found: &FoundColumn) -> Result<f64, Error> {
         self.number_or_empty(found)?.ok_or_else(|| {

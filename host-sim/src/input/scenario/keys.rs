@@ -2,6 +2,7 @@
 //! is an unknown key.
 
 use super::Span;
+use super::set::{SET_LINE, SET_OFFSET, Sets};
 use crate::error::{Error, quoted};
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
@@ -53,6 +54,7 @@ pub type Pair = Found<[f64; 2]>;
 pub struct Document<'a> {
     file: &'a Path,
     text: &'a str,
+    sets: &'a Sets,
 }
 
 /// A table of the document, with the keys that have been asked for.
@@ -65,9 +67,10 @@ pub struct Section<'a> {
 }
 
 impl<'a> Document<'a> {
-    pub fn new(file: &'a Path, text: &'a str) -> Self {
+    /// The text of a file, and what the command line sets in it.
+    pub fn new(file: &'a Path, text: &'a str, sets: &'a Sets) -> Self {
         // An editor's byte order mark is not part of the document.
-        Self { file, text: text.strip_prefix('\u{feff}').unwrap_or(text) }
+        Self { file, text: text.strip_prefix('\u{feff}').unwrap_or(text), sets }
     }
 
     /// The document as a table of tables.
@@ -76,7 +79,9 @@ impl<'a> Document<'a> {
             let cause = format!("is not TOML ({})", error.message().lines().collect::<Vec<_>>().join(", "));
             self.error(error.span(), cause, "correct this line")
         })?;
-        Ok(table.into_inner())
+        let mut table = table.into_inner();
+        self.sets.put_into(&mut table)?;
+        Ok(table)
     }
 
     pub fn top(&self, table: &'a DeTable<'a>) -> Section<'a> {
@@ -96,6 +101,9 @@ impl<'a> Document<'a> {
 
     /// Adds the place in this file to an error.
     pub fn place(&self, error: Error, line: Option<u64>) -> Error {
+        if line.is_some_and(|line| line == SET_LINE) {
+            return error.in_option("--set");
+        }
         let error = if self.file.as_os_str().is_empty() { error } else { error.in_file(self.file) };
         line.map_or(error.clone(), |line| error.at_line(line))
     }
@@ -104,7 +112,11 @@ impl<'a> Document<'a> {
         self.error_at(span.map(|span| self.line_of(&span)), cause, remedy)
     }
 
+    /// The line of a place in the file; [`SET_LINE`] for one in what the command line sets.
     fn line_of(&self, span: &Range<usize>) -> u64 {
+        if span.start >= SET_OFFSET {
+            return SET_LINE;
+        }
         let before = self.text.as_bytes().iter().take(span.start);
         1 + before.filter(|&&byte| byte == b'\n').count() as u64
     }

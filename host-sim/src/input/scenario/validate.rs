@@ -2,6 +2,7 @@
 //! leaves.
 
 use super::keys::{Document, Found, Number, Section, whole};
+use super::set::Sets;
 use super::{
     Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Switch, Vehicle, bus, envelope, plant, sensors, start,
 };
@@ -43,7 +44,8 @@ const PAPER_OUTAGES: [Window; 2] = [Window { from_s: 4.0, to_s: 6.0 }, Window { 
 const SPEED_SPREAD_MPS: f64 = 1.0;
 
 pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenario, Error> {
-    let document = Document::new(file, text);
+    let sets = Sets::read(&overrides.set)?;
+    let document = Document::new(file, text, &sets);
     let table = document.parse()?;
     let mut top = document.top(&table);
     let _ = (top.value("kind"), top.text("about")?); // the kind has been read already

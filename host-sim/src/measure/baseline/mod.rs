@@ -66,6 +66,17 @@ pub fn all(target: usize, step_s: f64) -> Vec<Box<dyn Baseline>> {
     ]
 }
 
+/// The name of a method as people read it, in tables, reports and `--help`: the only one beside the key in JSON and CSV.
+#[must_use]
+pub fn spoken(name: &str) -> String {
+    match name {
+        "paper" => "literal paper".into(),
+        "kalman" => "Kalman filter".into(),
+        "singer" => "Singer's model".into(),
+        other => other.replace('_', " "),
+    }
+}
+
 /// The newest sample of one vehicle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Newest {

@@ -1,5 +1,5 @@
-//! The bounds of the targets: a trace enters; how often a target was outside its bound, and how wide the bounds were,
-//! leave.
+//! The bounds of the targets: the ticks of all vehicles enter, one after the other; how often a target was outside its bound, and how wide
+//! the bounds were, leave.
 
 use holdover::model::bound::AccelerationRange;
 use holdover::parameters::RECOVERY_SAMPLES;
@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use crate::input::scenario::Scenario;
 use crate::measure::metrics::{SETTLED_FROM_S, percentile_abs};
-use crate::sim::world::{Bounds, Tick, Trace};
+use crate::sim::world::{Measured, Tick, Trace};
+use crate::thinned::Thinned;
 
 /// The figures of the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -21,60 +22,100 @@ pub struct BoundFigures {
     pub beyond_limits: usize,
 }
 
-/// The bound of the measured vehicle over time, from the time on from which errors count.
-pub fn bounds(trace: &Trace) -> impl Iterator<Item = (f64, Option<Bounds>)> + '_ {
-    let seen = &trace.vehicles[trace.measured.by];
-    let bound = |tick: &Tick| tick.target.and_then(|target| target.bound);
-    let bounds = trace.times_s.iter().zip(seen).map(move |(at_s, tick)| (*at_s, bound(tick)));
-    bounds.filter(|(at_s, _)| *at_s >= SETTLED_FROM_S - 1e-9)
-}
+/// The most widths of which the median is taken.
+const MOST: usize = 200_000;
 
 impl BoundFigures {
     /// The figures of a trace.
     #[must_use]
     pub fn of(scenario: &Scenario, trace: &Trace) -> Self {
-        let widths: Vec<f64> = bounds(trace).filter_map(|(_, bound)| Some(bound?.width_m())).collect();
-        let mut figures = Self { violations: 0, median_width_m: percentile_abs(&widths, 50.0), beyond_limits: 0 };
-        for target in 0..trace.vehicles.len() - 1 {
-            let outside = outside(trace, target);
-            let excused = if target == 0 { impossible(scenario, trace, &outside) } else { 0 };
-            figures.beyond_limits += excused;
-            figures.violations += outside.len() - excused;
+        let mut tally = BoundTally::new(scenario);
+        trace.each(|at_s, ticks, _| tally.note(at_s, ticks));
+        tally.finish()
+    }
+}
+
+/// The running figures.
+#[derive(Clone, Debug)]
+pub struct BoundTally<'a> {
+    scenario: &'a Scenario,
+    by: usize,
+    widths_m: Thinned<f64>,
+    violations: usize,
+    beyond_limits: usize,
+    /// The leader's speed at the last tick.
+    leader_mps: Option<f64>,
+    /// When the recorded leader last changed its speed more than any road vehicle can.
+    leapt_s: Option<f64>,
+}
+
+impl<'a> BoundTally<'a> {
+    /// Before the first tick.
+    #[must_use]
+    pub fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            scenario,
+            by: Measured::of(scenario).by,
+            widths_m: Thinned::to(MOST),
+            violations: 0,
+            beyond_limits: 0,
+            leader_mps: None,
+            leapt_s: None,
         }
-        figures
     }
-}
 
-/// The ticks at which a vehicle was outside the bound that its follower's unit sent.
-fn outside(trace: &Trace, target: usize) -> Vec<usize> {
-    let ticks = trace.vehicles[target].iter().zip(&trace.vehicles[target + 1]).enumerate();
-    let is_outside = |(truth, seen): (&Tick, &Tick)| {
-        let bound = seen.target.and_then(|target| target.bound);
-        bound.is_some_and(|bound| !bound.hold(truth.position_m, truth.speed_mps))
-    };
-    ticks.filter(|(_, pair)| is_outside(*pair)).map(|(tick, _)| tick).collect()
-}
-
-/// The number of these ticks that follow a change of the recorded leader's speed that no road vehicle is capable of, so
-/// soon that the unit cannot yet have received enough samples to accept the leader's motion again.
-fn impossible(scenario: &Scenario, trace: &Trace, outside: &[usize]) -> usize {
-    if scenario.leader.motion.is_none() {
-        return 0;
+    /// A tick of every vehicle.
+    pub fn note(&mut self, at_s: f64, ticks: &[Tick]) {
+        let bound = |tick: &Tick| tick.target.and_then(|target| target.bound);
+        if at_s >= SETTLED_FROM_S - 1e-9
+            && let Some(bound) = bound(&ticks[self.by])
+        {
+            self.widths_m.push(bound.width_m());
+        }
+        self.watch_leader(at_s, ticks[0].speed_mps);
+        for (target, pair) in ticks.windows(2).enumerate() {
+            let (truth, seen) = (&pair[0], &pair[1]);
+            if bound(seen).is_none_or(|bound| bound.hold(truth.position_m, truth.speed_mps)) {
+                continue;
+            }
+            if target == 0 && self.is_excused(at_s, seen) {
+                self.beyond_limits += 1;
+            } else {
+                self.violations += 1;
+            }
+        }
     }
-    let leader = &trace.vehicles[0];
-    let (up, down): (f64, f64) =
-        (AccelerationRange::WORST.acceleration.get().to_num(), AccelerationRange::WORST.braking.get().to_num());
-    let is_possible = |tick: usize| {
-        let slope = (leader[tick].speed_mps - leader[tick - 1].speed_mps) / scenario.period_s;
-        (-down - 1e-6..=up + 1e-6).contains(&slope)
-    };
-    let jumps: Vec<f64> =
-        (1..leader.len()).filter(|tick| !is_possible(*tick)).map(|tick| trace.times_s[tick]).collect();
-    let recovery_s = 2.0 * f64::from(RECOVERY_SAMPLES) / scenario.message_rate_hz;
-    let follows = |tick: &&usize| {
-        let at_s = trace.times_s[**tick];
-        let age_s = trace.vehicles[1][**tick].target.map_or(0.0, |target| target.age_s);
-        jumps.iter().any(|jump_s| (*jump_s..=jump_s + age_s + recovery_s).contains(&at_s))
-    };
-    outside.iter().filter(follows).count()
+
+    fn watch_leader(&mut self, at_s: f64, speed_mps: f64) {
+        if self.scenario.leader.motion.is_none() {
+            return;
+        }
+        let (up, down): (f64, f64) =
+            (AccelerationRange::WORST.acceleration.get().to_num(), AccelerationRange::WORST.braking.get().to_num());
+        if let Some(before_mps) = self.leader_mps {
+            let slope = (speed_mps - before_mps) / self.scenario.period_s;
+            if !(-down - 1e-6..=up + 1e-6).contains(&slope) {
+                self.leapt_s = Some(at_s);
+            }
+        }
+        self.leader_mps = Some(speed_mps);
+    }
+
+    /// Whether a change of the recorded leader's speed that no road vehicle is capable of is so recent that the unit cannot yet have
+    /// received enough samples to accept the leader's motion again.
+    fn is_excused(&self, at_s: f64, seen: &Tick) -> bool {
+        let recovery_s = 2.0 * f64::from(RECOVERY_SAMPLES) / self.scenario.message_rate_hz;
+        let age_s = seen.target.map_or(0.0, |target| target.age_s);
+        self.leapt_s.is_some_and(|leapt_s| at_s <= leapt_s + age_s + recovery_s)
+    }
+
+    /// The figures of all ticks.
+    #[must_use]
+    pub fn finish(self) -> BoundFigures {
+        BoundFigures {
+            violations: self.violations,
+            median_width_m: percentile_abs(self.widths_m.values(), 50.0),
+            beyond_limits: self.beyond_limits,
+        }
+    }
 }

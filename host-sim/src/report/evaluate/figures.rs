@@ -1,6 +1,7 @@
 //! The figures of an evaluation's report: series enter, figures with their captions leave onto the page.
 
-use super::{Classes, Drive, EvaluateReport, Method, spoken};
+use super::{Classes, Drive, EvaluateReport, Method};
+use crate::measure::baseline::spoken;
 use crate::measure::metrics::max_abs;
 use crate::report::{
     page::Page,

@@ -3,6 +3,8 @@
 mod figures;
 mod prose;
 
+use crate::measure::baseline::spoken;
+
 use super::{
     markup::{count, significant},
     page::{Cell, Page},
@@ -69,6 +71,8 @@ pub struct EvaluateReport {
     pub class_names: Vec<(String, usize)>,
     /// The methods; the unit is first.
     pub methods: Vec<Method>,
+    /// The drives of which nothing could be compared, and why.
+    pub failures: Vec<String>,
     /// The drives.
     pub drives: Vec<Drive>,
 }
@@ -79,7 +83,15 @@ const MOST_DRIVES: usize = 6;
 impl EvaluateReport {
     /// The page, as one self-contained HTML document. The same report is always the same bytes.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut page = Page::new("holdover-sim · report of an evaluation", &self.title);
+        if !self.failures.is_empty() {
+            page.verdict(false, &self.failures);
+        }
         page.paragraph(&self.say_result());
         self.list_methods(&mut page);
         page.section("Error by class");
@@ -101,7 +113,7 @@ impl EvaluateReport {
         page.command(&self.command);
         page.section("Notes");
         page.list(&self.notes());
-        page.finish()
+        page
     }
 
     /// The drive during which most messages were sent. All drives use the same link from its beginning.
@@ -110,9 +122,9 @@ impl EvaluateReport {
     }
 
     fn list_methods(&self, page: &mut Page) {
-        let row = |(index, method): (usize, &Method)| {
+        let row = |method: &Method| {
             let best = |of: fn(&Method) -> Option<f64>| is_least(of(method), self.methods.iter().map(of));
-            let cell = |of: fn(&Method) -> Option<f64>| number(of(method), best(of) || index == 0);
+            let cell = |of: fn(&Method) -> Option<f64>| number(of(method), best(of));
             vec![
                 Cell::text(spoken(&method.name)),
                 cell(|method| method.rms_m),
@@ -121,7 +133,7 @@ impl EvaluateReport {
                 cell(|method| method.rms_mps),
             ]
         };
-        let rows: Vec<Vec<Cell>> = self.methods.iter().enumerate().map(row).collect();
+        let rows: Vec<Vec<Cell>> = self.methods.iter().map(row).collect();
         page.table(self.say_table(), &["Method", "rms, m", "99 %, m", "largest, m", "speed rms, m/s"], &rows);
     }
 
@@ -129,10 +141,10 @@ impl EvaluateReport {
         let names: Vec<String> = self.class_names.iter().map(|(name, _)| name.clone()).collect();
         let header: Vec<&str> = std::iter::once("Method").chain(names.iter().map(String::as_str)).collect();
         let mut rows: Vec<Vec<Cell>> = Vec::new();
-        for (index, method) in self.methods.iter().enumerate() {
+        for method in &self.methods {
             let cells = method.classes.iter().enumerate().map(|(class, (rms_m, _))| {
                 let others = self.methods.iter().map(|other| other.classes.get(class).and_then(|class| class.0));
-                number(*rms_m, index == 0 || is_least(*rms_m, others))
+                number(*rms_m, is_least(*rms_m, others))
             });
             rows.push(std::iter::once(Cell::text(spoken(&method.name))).chain(cells).collect());
         }
@@ -142,7 +154,7 @@ impl EvaluateReport {
         }
         let counts = self.class_names.iter().map(|(_, samples)| Cell::number(count(*samples as u64)));
         rows.push(std::iter::once(Cell::text("comparisons")).chain(counts).collect());
-        page.table("Position error, rms, in metres; bold: ours and the least.", &header, &rows);
+        page.table("Position error, rms, in metres; bold: the least.", &header, &rows);
     }
 
     /// The colour of a method.
@@ -165,14 +177,4 @@ fn is_least(value: Option<f64>, all: impl Iterator<Item = Option<f64>>) -> bool 
 fn number(value: Option<f64>, strong: bool) -> Cell {
     let spelled = value.map_or("–".into(), |value| significant(value, 3));
     if strong { Cell::strong(spelled) } else { Cell::number(spelled) }
-}
-
-/// A method's name in prose.
-fn spoken(name: &str) -> String {
-    match name {
-        "paper" => "literal paper".into(),
-        "kalman" => "Kalman filter".into(),
-        "singer" => "Singer model".into(),
-        other => other.replace('_', " "),
-    }
 }

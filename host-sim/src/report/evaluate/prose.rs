@@ -1,6 +1,7 @@
 //! The captions of an evaluation's report: figures enter; a sentence or two with their numbers leave.
 
-use super::{Classes, Drive, EvaluateReport, Method, spoken};
+use super::{Classes, Drive, EvaluateReport, Method};
+use crate::measure::baseline::spoken;
 use crate::report::markup::{count, quantity, significant};
 
 impl EvaluateReport {
@@ -34,10 +35,8 @@ impl EvaluateReport {
 
     pub(super) fn say_table(&self) -> &'static str {
         match self.classes {
-            Classes::Age => "Error of the estimate at every tick; bold: ours and the least.",
-            Classes::Outage(_) => {
-                "Error of the estimate after all lengths of silence together; bold: ours and the least."
-            }
+            Classes::Age => "Error of the estimate at every tick; bold: the least.",
+            Classes::Outage(_) => "Error of the estimate after all lengths of silence together; bold: the least.",
         }
     }
 
@@ -117,7 +116,7 @@ impl EvaluateReport {
             "All methods work on the same messages as they were decoded from the bus: positions to 1 mm, speeds to 2 mm/s, \
              accelerations to 0.02 m/s². The truth is the recording, linear between its samples."
                 .to_owned(),
-            "freeze: position held, speed 0. constant speed, constant acceleration: held, until the vehicle stops. Singer \
+            "freeze: position held, speed 0. constant speed, constant acceleration: held, until the vehicle stops. Singer's \
              model: the acceleration fades with 1.5 s. Kalman filter: constant acceleration on position and speed. literal \
              paper: its equations as printed; of a vehicle that says nothing of how it drives it assumes that it heads for 13.4 m/s."
                 .to_owned(),

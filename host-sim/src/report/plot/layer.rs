@@ -116,7 +116,10 @@ impl Layer {
             |&(across, up): &(f64, f64)| (axes.0.draws(across) && axes.1.draws(up)).then(|| (x.at(across), y.at(up)));
         match self {
             Self::Line { series, tone, marked } => {
-                svg.path(&format!("line {}", tone.class()), &path::line(series.points.iter().map(place)));
+                svg.path(
+                    &format!("line {}", tone.class()),
+                    &path::line(series.runs().iter().map(|point| place(point.as_ref()?))),
+                );
                 if *marked {
                     svg.path(
                         &format!("dots big {}", tone.class()),

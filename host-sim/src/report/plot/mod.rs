@@ -39,12 +39,33 @@ pub struct Series {
     pub name: String,
     /// The points; lines follow their order.
     pub points: Vec<(f64, f64)>,
+    /// Points that are farther apart on x are not joined, because data are missing between them; `None`: all are joined.
+    pub joined_within: Option<f64>,
 }
 
 impl Series {
     /// A series of `points` called `name`.
     pub fn new(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        Self { name: name.into(), points: points.into_iter().collect() }
+        Self { name: name.into(), points: points.into_iter().collect(), joined_within: None }
+    }
+
+    /// The same, and points that are farther apart on x than this are not joined.
+    #[must_use]
+    pub fn joined_within(self, apart: f64) -> Self {
+        Self { joined_within: Some(apart), ..self }
+    }
+
+    /// The points with a `None` wherever the line is interrupted for want of data.
+    pub(super) fn runs(&self) -> Vec<Option<(f64, f64)>> {
+        let apart = self.joined_within.unwrap_or(f64::INFINITY);
+        let mut runs = Vec::with_capacity(self.points.len());
+        for (index, point) in self.points.iter().enumerate() {
+            if index > 0 && (point.0 - self.points[index - 1].0).abs() > apart {
+                runs.push(None);
+            }
+            runs.push(Some(*point));
+        }
+        runs
     }
 
     /// The ordinates, in order.

@@ -50,7 +50,7 @@ impl RunReport {
             layers.push(Layer::Band { name: name.into(), edges, tone: Tone::Ours });
         }
         let points = self.bound.iter().map(|sample| (sample.at_s, sample.truth_m));
-        layers.push(Layer::line(Series::new(truth, points), Tone::Ego));
+        layers.push(Layer::line(Series::new(truth, points).joined_within(joined_s), Tone::Ego));
         layers
     }
 

@@ -83,7 +83,7 @@ impl RunReport {
         }
         let mut zoomed = self.over_time("Our position error, enlarged", Axis::linear("ours, enlarged", "m"), &caption);
         zoomed.height = 150.0;
-        zoomed.layers = vec![Layer::line(Series::new("", self.error_ours.points.iter().copied()), Tone::Ours)];
+        zoomed.layers = vec![Layer::line(Series { name: String::new(), ..self.error_ours.clone() }, Tone::Ours)];
         zoomed.shades = unlabelled(&self.silences);
         page.figure(title, &caption, &[&both, &zoomed]);
     }

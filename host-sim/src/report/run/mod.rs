@@ -1,6 +1,7 @@
 //! The report of one run: its series and figures of merit enter, an HTML page leaves.
 
 mod certainty;
+mod crash;
 mod figures;
 mod prose;
 
@@ -9,6 +10,8 @@ use super::{
     page::{Cell, Page},
     plot::{Interval, Series},
 };
+
+pub use crash::{Crash, Crashes};
 
 /// Whether the run passed, with the reasons.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -106,6 +109,8 @@ pub struct RunReport {
     pub command: String,
     /// The figures of merit.
     pub summary: Vec<SummaryRow>,
+    /// The collisions, if there were any.
+    pub crashes: Option<Crashes>,
     /// Position over time of each vehicle, in metres along the virtual lane, leader first.
     pub trajectories: Vec<Series>,
     /// Index of the ego in `trajectories`.
@@ -137,10 +142,20 @@ pub struct RunReport {
 impl RunReport {
     /// The page, as one self-contained HTML document. The same report is always the same bytes.
     pub fn render(&self) -> String {
+        self.page().finish()
+    }
+
+    /// The page, to which more can be added.
+    pub fn page(&self) -> Page {
         let mut page = Page::new("holdover-sim · report of a run", &self.title);
         page.verdict(self.verdict.passed, &self.verdict.reasons);
         let rows: Vec<Vec<Cell>> = self.summary.iter().map(summary_cells).collect();
-        page.table("Figures of merit", &["Measure", "Ours", "Literal paper", "Unit", "Limit"], &rows);
+        page.table(
+            "Figures of merit; bold: the smaller of two errors.",
+            &["Measure", "Ours", "Literal paper", "Unit", "Limit"],
+            &rows,
+        );
+        self.draw_crashes(&mut page);
         page.section("Scenario");
         page.facts(&self.facts);
         page.command(&self.command);
@@ -162,7 +177,7 @@ impl RunReport {
             page.section("Notes");
             page.list(&self.notes);
         }
-        page.finish()
+        page
     }
 
     fn list_refusals(&self, page: &mut Page) {
@@ -198,7 +213,12 @@ fn summary_cells(row: &SummaryRow) -> Vec<Cell> {
         }
     };
     let unit = Cell::text(row.unit.clone());
-    vec![Cell::text(row.metric.clone()), Cell::strong(spelled(row.ours)), Cell::number(spelled(row.paper)), unit, limit]
+    // The smaller of two errors is the better one.
+    let cell = |value: Option<f64>, other: Option<f64>| match (value, other) {
+        (Some(value), Some(other)) if value <= other => Cell::strong(spelled(Some(value))),
+        _ => Cell::number(spelled(value)),
+    };
+    vec![Cell::text(row.metric.clone()), cell(row.ours, row.paper), cell(row.paper, row.ours), unit, limit]
 }
 
 /// A whole number without a unit is a count. Any other value is a measurement with three significant digits.

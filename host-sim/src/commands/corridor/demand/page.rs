@@ -11,7 +11,7 @@ use crate::roads::capacity::Capacity;
 
 /// The page.
 #[must_use]
-pub fn render(options: &CorridorOptions, sensors: &Sensors, rows: &[Row]) -> String {
+pub fn render(options: &CorridorOptions, sensors: &Sensors, rows: &[Row]) -> Page {
     let failures = failures(rows);
     let mut page = Page::new("holdover-sim · report of a corridor over demand", &options.name);
     let passed = ["No collision on any side that is judged, and every vehicle was served.".to_owned()];
@@ -29,7 +29,7 @@ pub fn render(options: &CorridorOptions, sensors: &Sensors, rows: &[Row]) -> Str
     page.section("Scenario");
     page.facts(&facts(options, sensors));
     page.command(&options.command);
-    page.finish()
+    page
 }
 
 fn table(page: &mut Page, rows: &[Row], slots: usize) {

@@ -1,0 +1,199 @@
+//! A file that is written whole or not at all: bytes enter, and the file is there when they are complete.
+//!
+//! The bytes go to a draft beside the file, which takes the file's name at the end. A full disk or a kill leaves the file that was there
+//! before. What is no regular file, such as a pipe or `/dev/stdout`, has nothing to keep, and is written straight.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use crate::error::Error;
+
+/// The beginning of the name of every draft.
+const PREFIX: &str = ".holdover-sim-";
+
+/// A file that is being written.
+#[derive(Debug)]
+pub struct Draft {
+    file: PathBuf,
+    out: BufWriter<Out>,
+}
+
+#[derive(Debug)]
+enum Out {
+    /// Beside the file of this path.
+    Beside(NamedTempFile, PathBuf),
+    /// Into the file itself.
+    Straight(File),
+}
+
+impl Draft {
+    /// A draft of the file.
+    ///
+    /// # Errors
+    /// A folder that cannot be written.
+    pub fn of(file: &Path) -> Result<Self, Error> {
+        let out = Out::of(file).map_err(|error| Error::unwritable(file, &error))?;
+        Ok(Self { file: file.to_owned(), out: BufWriter::new(out) })
+    }
+
+    /// Gives the draft its name. Without this the draft is dropped, and the old file stays.
+    ///
+    /// # Errors
+    /// A rest that cannot be written, such as on a full disk.
+    pub fn finish(self) -> Result<(), Error> {
+        let Self { file, out } = self;
+        let out = out.into_inner().map_err(io::IntoInnerError::into_error);
+        out.and_then(Out::finish).map_err(|error| Error::unwritable(&file, &error))
+    }
+
+    /// Writes a whole file.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn whole(file: &Path, content: &str) -> Result<(), Error> {
+        let mut draft = Self::of(file)?;
+        draft.write_all(content.as_bytes()).map_err(|error| Error::unwritable(file, &error))?;
+        draft.finish()
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl Out {
+    fn of(file: &Path) -> io::Result<Self> {
+        if is_straight(file) {
+            return OpenOptions::new().write(true).open(file).map(Self::Straight);
+        }
+        // The file that a link leads to is written, and the link stays.
+        let place = file.canonicalize().unwrap_or_else(|_| file.to_owned());
+        let draft = draft_in(&folder_of(&place))?;
+        if let Ok(old) = fs::metadata(&place) {
+            draft.as_file().set_permissions(old.permissions())?;
+        }
+        Ok(Self::Beside(draft, place))
+    }
+
+    fn finish(self) -> io::Result<()> {
+        match self {
+            Self::Straight(mut file) => file.flush(),
+            Self::Beside(draft, place) => {
+                // Some file systems say only here that they are full.
+                draft.as_file().sync_data()?;
+                draft.persist(place).map(|_| ()).map_err(|error| error.error)
+            }
+        }
+    }
+}
+
+impl Write for Out {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Beside(draft, _) => draft.write(bytes),
+            Self::Straight(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Self::Beside(draft, _) => draft.flush(),
+            Self::Straight(file) => file.flush(),
+        }
+    }
+}
+
+/// Whether a file is written as it stands: a device, a pipe, or the terminal by one of its names.
+#[must_use]
+pub fn is_straight(file: &Path) -> bool {
+    let is_there = fs::metadata(file).ok();
+    file.starts_with("/dev") && is_there.is_some() || is_there.is_some_and(|there| !there.is_file() && !there.is_dir())
+}
+
+/// An empty draft in a folder, which goes when it is dropped.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Less what the user's mask takes away, as any other file.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// The folder of a file.
+#[must_use]
+pub fn folder_of(file: &Path) -> PathBuf {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_draft_that_is_dropped_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.csv");
+        fs::write(&file, "old").unwrap();
+        let mut draft = Draft::of(&file).unwrap();
+        draft.write_all(&[b'x'; 100_000]).unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "old");
+        drop(draft);
+        assert_eq!(fs::read_to_string(&file).unwrap(), "old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_draft_that_is_finished_is_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.csv");
+        Draft::whole(&file, "new").unwrap();
+        Draft::whole(&file, "newer").unwrap();
+        assert_eq!(fs::read_to_string(&file).unwrap(), "newer");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_the_rights_stay_the_files() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("a.csv"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        Draft::whole(&link, "new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_written_and_stays() {
+        let null = Path::new("/dev/null");
+        Draft::whole(null, "anything").unwrap();
+        assert!(is_straight(null) && !fs::metadata(null).unwrap().is_file());
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_is_said_in_plain_words() {
+        let error = Draft::of(Path::new("/no/such/folder/a.csv")).unwrap_err().to_string();
+        assert!(error.starts_with("/no/such/folder/a.csv: cannot be written (No such file or directory); "), "{error}");
+    }
+}
