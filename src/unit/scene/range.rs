@@ -85,11 +85,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, free);
         }
-        if let Some((index, whose)) = visible.and_then(|index| Some((index, self.whose(index)?))) {
+        // What was free before the driver named a vehicle may have been so because that one was not on the path yet.
+        let named = visible.filter(|_| self.ranging.is_of_named(free.at.minus(ON_BUS)));
+        if let Some((index, whose)) = named.and_then(|index| Some((index, self.whose(index)?))) {
             let heard = self.heard_of(index).and_then(|(_, heard)| heard);
             let verdict = if self.raise(index, free) { Verdict::Agrees } else { Verdict::SeesPast };
-            let is_named = self.ranging.is_of_named(free.at.minus(ON_BUS));
-            if is_named && self.ranging.judge(whose, now, verdict, heard) {
+            if self.ranging.judge(whose, now, verdict, heard) {
                 health.count(Cause::RangeDisagrees);
             }
         }
