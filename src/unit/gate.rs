@@ -225,7 +225,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         let (scene, now) = (self.scene, self.now);
         let stop = scene.stop_before_area(index, now, self.rearmost)?;
         // Once it is committed, it does not stop because the sensor falls silent.
-        let sees = scene.config.range_sensor && (self.entrance.is_committed || scene.ranging.is_alive(now));
+        let ends = scene.coordination.end_of(scene.coordination.next());
+        let is_seen = ends.is_some_and(|ends| scene.ranging.sees_up_to(ends, now));
+        let sees = scene.config.range_sensor && (self.entrance.is_committed || is_seen);
         let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && sees;
         let then = now.plus(self.entrance.opens_in);
         (!is_trusted || !scene.has_pass(index) || scene.is_in_area_until(index, now, then)).then_some(stop)

@@ -57,11 +57,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
         let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
         let mut sight = Sight { at, rear, speed, uncertainty, excess, whose: None };
-        self.ranging.note_alive(at);
         if seen.nobody {
             self.take_nobody(received, &sight, health);
             return Ok(());
         }
+        self.ranging.note_seen(at);
         let (visible, leading) = (self.visible(), self.coordination.choice().leading);
         for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
             self.raise(index, &sight);

@@ -100,8 +100,8 @@ struct Contradiction {
 #[derive(Clone, Debug, Default)]
 pub(in crate::unit) struct Ranging {
     newest: Held<Sight>,
-    /// The instant of the newest view, or of the newest that shows nobody.
-    alive: Held<Instant>,
+    /// The instant of the newest view of a vehicle, whether it is remembered or not.
+    seen: Held<Instant>,
     /// No vehicle is nearer than this place, by the newest view that shows nobody.
     free: Held<(Instant, Position)>,
     /// The last views of vehicles that a nearer one has hidden since, until a view shows that they are not there.
@@ -123,7 +123,7 @@ impl Ranging {
     pub(in crate::unit) const fn new() -> Self {
         Self {
             newest: Held::Nothing,
-            alive: Held::Nothing,
+            seen: Held::Nothing,
             free: Held::Nothing,
             hidden: [Held::Nothing; HIDDEN],
             crossing: Held::Nothing,
@@ -146,14 +146,15 @@ impl Ranging {
         seen >= self.named
     }
 
-    /// Notes that the sensor sees, at this instant.
-    pub(in crate::unit) fn note_alive(&mut self, at: Instant) {
-        self.alive.set(self.alive.get().unwrap_or(at).max(at));
+    /// Notes that the sensor saw a vehicle, at this instant.
+    pub(in crate::unit) fn note_seen(&mut self, at: Instant) {
+        self.seen.set(self.seen.get().unwrap_or(at).max(at));
     }
 
-    /// Whether the sensor sees.
-    pub(in crate::unit) fn is_alive(&self, now: Instant) -> bool {
-        self.alive.as_ref().is_some_and(|alive| now.since(*alive) <= BLIND)
+    /// Whether the sensor would see a vehicle that is nearer than this place, or one that hides it.
+    pub(in crate::unit) fn sees_up_to(&self, place: Position, now: Instant) -> bool {
+        let is_young = |at: Instant| now.since(at) <= BLIND;
+        self.seen.get().is_some_and(is_young) || self.free.get().is_some_and(|(at, near)| is_young(at) && near >= place)
     }
 
     /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.

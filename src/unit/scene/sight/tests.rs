@@ -65,12 +65,17 @@ fn what_was_seen_since_then_has_not_gone() {
 }
 
 #[test]
-fn a_sensor_is_relied_on_for_a_quarter_of_a_second_after_its_last_view() {
+fn a_sensor_is_relied_on_for_a_quarter_of_a_second_after_a_view_and_no_farther_than_it_sees() {
+    let place = Position::from_mm(40_000);
     let mut ranging = Ranging::new();
-    assert!(!ranging.is_alive(at(0)));
-    ranging.note_alive(at(100));
-    ranging.note_alive(at(60));
-    assert!(ranging.is_alive(at(350)) && !ranging.is_alive(at(351)));
+    assert!(!ranging.sees_up_to(place, at(0)));
+    ranging.note_seen(at(100));
+    ranging.note_seen(at(60));
+    assert!(ranging.sees_up_to(place, at(350)) && !ranging.sees_up_to(place, at(351)));
+    ranging.see_nobody(&sight(400, 39, 0));
+    assert!(!ranging.sees_up_to(place, at(400)));
+    ranging.see_nobody(&sight(420, 41, 0));
+    assert!(ranging.sees_up_to(place, at(670)) && !ranging.sees_up_to(place, at(671)));
 }
 
 #[test]
