@@ -159,10 +159,11 @@ impl Ranging {
 
     /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.
     pub(in crate::unit) fn see_nobody(&mut self, free: &Sight) {
-        let near = free.bound().lowest_position();
+        let bound = free.bound();
+        let near = bound.lowest_position();
         self.free.set((free.at, near));
         let is_gone = |held: &Sight| {
-            let then = held.bound().after(free.at, &AccelerationRange::WORST);
+            let then = held.bound().after(bound.at(), &AccelerationRange::WORST);
             held.at <= free.at && then.highest_position() < near
         };
         let held = self.hidden.iter_mut().chain([&mut self.newest, &mut self.crossing]);

@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn dropouts_come_at_the_stated_rate_and_last_for_the_stated_time() {
         let views = an_hour(Faults { dropouts_per_min: 6.0, dropout_s: 0.5, ..Faults::NONE });
-        let begins = views.windows(2).filter(|pair| pair[0] == Shows::What && pair[1] == Shows::Nothing).count();
+        let begins = views.windows(2).filter(|pair| pair[0] == Shows::What && pair[1] == Shows::Blind).count();
         // Six in a minute in which the sensor works, which is 57 s of every minute: 343 in an hour, give or take 19.
         assert!((286..=400).contains(&begins), "{begins}");
         let runs: Vec<usize> =
