@@ -64,10 +64,9 @@ fn each_demand_is_run_on_every_side_with_a_table_a_page_and_bounds() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(
-        said.contains("20 of 20 runs done (16 a minute, 8 slots, with envelope, silences of 12 s, seed 1)"),
-        "{said}"
-    );
+    // Which run ends last depends on the threads.
+    assert!(said.contains("20 of 20 runs done ("), "{said}");
+    assert!(said.contains("(16 a minute, 8 slots, with envelope, silences of 12 s, seed 1)"), "{said}");
     let rows: Vec<Value> = serde_json::from_slice(&output.stdout).unwrap();
     let identity = |row: &Value| {
         let switch = |key: &str| if row[key].as_bool().unwrap() { key.to_owned() } else { String::new() };

@@ -221,7 +221,8 @@ fn expected_of(message: &Message) -> Expected {
             .value("SpeedDifference", si!(r.speed_difference))
             .value("DistanceAccuracy", si!(r.distance_accuracy))
             .value("SpeedAccuracy", si!(r.speed_accuracy))
-            .value("Age", r.age.as_micros() as f64 / 1e6),
+            .value("Age", r.age.as_micros() as f64 / 1e6)
+            .name("Nobody", if r.nobody { "no vehicle nearer than Distance" } else { "vehicle at Distance" }),
         Message::Unserved(u) => e
             .value("Intersection", u.intersection)
             .value("Legs", u.legs)
