@@ -226,7 +226,7 @@ class Node:
         self.ego.tell(self.bus, "Ego", STATION, round(due / PERIOD) % 4, at)
         if self.turn("RangeSensor", due) is not None:
             view = {"Distance": self.gap(), "SpeedDifference": self.peer.speed - self.ego.speed, "Age": time.monotonic() - self.driven}
-            self.bus.send("RangeSensor", **view, DistanceAccuracy=0.1, SpeedAccuracy=0.1)
+            self.bus.send("RangeSensor", **view, Nobody="vehicle at Distance", DistanceAccuracy=0.1, SpeedAccuracy=0.1)
         if self.turn("DriverRequest", due) is not None:
             wish = {"Engaged": "drive" if ENGAGE <= due < RELEASE else "off", "TargetSpeed": 16.0, "TimeGap": TIME_GAP}
             self.bus.send("DriverRequest", PredecessorKind="station", PredecessorStation=PEER_STATION, **wish)
