@@ -496,7 +496,8 @@ typedef struct holdover_config_t {
   struct holdover_body_t body;
   // 1: what the body does not say, such as a grade, is measured and made up for; 0: it is not.
   uint8_t correction;
-  // 1: passes are kept at intersections while the envelope is engaged; 0: they are not, for studies and where the modem does not relay them.
+  // 1: passes are kept at intersections while the envelope is engaged; 0: they are not, for studies and where the modem does not relay
+  // them.
   uint8_t passes;
   // The law.
   struct holdover_law_t law;

@@ -204,8 +204,9 @@ impl Config {
         passes: false,
     };
 
-    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, passes kept, no range sensor. `δt` is 30 ms, and the horizon of
-    /// 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation needs these are 359 steps.
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, passes kept, no range sensor. `δt` is 30 ms, and the
+    /// horizon of 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation needs
+    /// these are 359 steps.
     #[must_use]
     pub const fn car(station: StationHash) -> Self {
         Self {

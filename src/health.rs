@@ -65,7 +65,8 @@ causes! {
     /// ([`Incident::Overrun`])
     Overrun = 21, "overrun", "No refusal: frames that the bus controller lost before they were taken.";
     ///
-    /// They waited too long on the platform, or it had no room for them ([`Incident::TransmitOverflow`]); or the unit's own answer had none.
+    /// They waited too long on the platform, or it had no room for them ([`Incident::TransmitOverflow`]); or the unit's own answer had
+    /// none.
     TransmitOverflow = 22, "transmit_overflow", "No refusal: frames of the unit that are lost before the bus.";
     ///
     /// ([`Incident::BusOff`])

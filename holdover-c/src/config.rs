@@ -32,7 +32,8 @@ pub struct Config {
     pub body: Body,
     /// 1: what the body does not say, such as a grade, is measured and made up for; 0: it is not.
     pub correction: u8,
-    /// 1: passes are kept at intersections while the envelope is engaged; 0: they are not, for studies and where the modem does not relay them.
+    /// 1: passes are kept at intersections while the envelope is engaged; 0: they are not, for studies and where the modem does not relay
+    /// them.
     pub passes: u8,
     /// The law.
     pub law: Law,

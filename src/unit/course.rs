@@ -107,7 +107,8 @@ fn hand_back<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 
 /// The rear bumper of the vehicle ahead as far as it is still known without its messages: as the range sensor sees it, or the near
 /// end of what it has seen standing, or the near end of what is certain of the target, unless the sensor sees that it is not there, or the
-/// end of what it sees to be free. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the one that is nearer.
+/// end of what it sees to be free. Never a stale sample. A target that comes by another leg is not what the sensor sees: of the two, the
+/// one that is nearer.
 fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,

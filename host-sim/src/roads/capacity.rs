@@ -19,8 +19,8 @@ pub struct Capacity {
     pub intersection: String,
     /// Share of all vehicles that pass it.
     pub share: f64,
-    /// So many vehicles pass it at once, if vehicles whose ways do not cross always pass together: its load over that of the busiest legs of
-    /// which each crosses all others. All the bounds then grow by this factor.
+    /// So many vehicles pass it at once, if vehicles whose ways do not cross always pass together: its load over that of the busiest legs
+    /// of which each crosses all others. All the bounds then grow by this factor.
     pub abreast: f64,
     /// Time that a vehicle has the conflict area for, from its front's entry until the next one may enter.
     pub conflict_s: f64,
@@ -69,7 +69,8 @@ impl Capacity {
     }
 }
 
-/// Vehicles a minute by the busiest legs of which each crosses all others; there are at least two of them. `None` if no vehicles come by any.
+/// Vehicles a minute by the busiest legs of which each crosses all others; there are at least two of them. `None` if no vehicles come by
+/// any.
 fn most_that_cross(junction: &Junction, rate: impl Fn(usize) -> f64) -> Option<f64> {
     let legs = junction.legs.len();
     let sets = (0..1_usize << legs).map(|set| (0..legs).filter(|leg| set >> leg & 1 == 1).collect::<Vec<usize>>());

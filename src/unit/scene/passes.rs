@@ -59,7 +59,8 @@ impl Passes {
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Whether the ego keeps passes where there is something to cross. Its own gate has to be engaged, because that is what keeps the promise.
+    /// Whether the ego keeps passes where there is something to cross. Its own gate has to be engaged, because that is what keeps the
+    /// promise.
     pub fn may_claim(&self) -> bool {
         self.config.passes && self.config.envelope.is_some()
     }

@@ -2,8 +2,9 @@
 //! corrected by it; whether the two agree leaves.
 //!
 //! The view shows the nearest vehicle on the ego's path. So no vehicle whose place is on that path is nearer, and the near ends of these
-//! vehicles are raised to it. A sensor that says that nobody is near raises them likewise, as far as it sees. A view from before the driver named the target is not of the target. While view and messages contradict one
-//! another, neither changes the other, and the unit drives by what it sees.
+//! vehicles are raised to it. A sensor that says that nobody is near raises them likewise, as far as it sees. A view from before the
+//! driver named the target is not of the target. While view and messages contradict one another, neither changes the other, and the unit
+//! drives by what it sees.
 //!
 //! Where the estimated speed may be right, a view moves the horizon by a part of the way: the target goes on as it said. Where that
 //! speed is certainly wrong, the horizon starts anew. The sensor's position and the estimated position are weighed by the squares of their

@@ -38,8 +38,8 @@ const CRAWL: Speed = Speed::from_mm_per_s(1_000);
 /// dropout of half a second.
 const CROSSING: Duration = Duration::from_millis(1_000);
 
-/// A sensor of which no view is younger than this is not relied on to see who crosses. What it says of nobody is up to 63 ms old, and it says
-/// so only some views after it has seen somebody.
+/// A sensor of which no view is younger than this is not relied on to see who crosses. What it says of nobody is up to 63 ms old, and it
+/// says so only some views after it has seen somebody.
 const BLIND: Duration = Duration::from_millis(250);
 
 /// This many views in a row that contradict what is certain of the target are a disagreement.
