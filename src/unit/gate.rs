@@ -131,13 +131,27 @@ impl Gate {
         let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
         if can_stop {
             let stay = scene.pass_time(range.now).map(|now| pass::stay_at_worst(scene, &area, range, now));
-            self.is_covered = stay.is_some_and(|stay| scene.is_stay_covered(range.now, &stay));
+            let is_covered = stay.is_some_and(|stay| scene.is_stay_covered(range.now, &stay));
+            self.is_covered = is_covered && is_left(limits, scene, &area, range);
         }
         let is_open = self.is_covered || !is_before;
         self.is_committed = is_open && !can_stop;
         let opens_in = pass::soonest(scene, &area, range);
         Entrance { area: Some(area), is_open, is_committed: self.is_committed, can_stop, opens_in }
     }
+}
+
+/// Whether the ego is certain to get out of the area behind the vehicles ahead on its leg. What it hears or sees ahead of it drives on.
+fn is_left<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    limits: &Envelope,
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    area: &Area,
+    range: &Range,
+) -> bool {
+    let room = range.foremost.ahead_of(range.rearmost).plus(limits.margin);
+    let place = area.is_left_at.ahead(room);
+    let is_seen = scene.config.range_sensor && scene.ranging.sees_up_to(place, range.now);
+    is_seen || lane::is_certain_to_leave(scene, range.now, place)
 }
 
 /// The next conflict area, and whether the ego may go into it.

@@ -98,9 +98,7 @@ pub(super) fn spare<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     now: Instant,
     spare: &impl Fn(Obstacle) -> Spare,
 ) -> Option<Spare> {
-    let choice = scene.coordination.choice();
-    let leading = (0..PEERS).filter(|index| choice.leading.contains(*index) && !choice.beyond.contains(*index));
-    let ahead = leading.chain(choice.lane.map(usize::from)).filter(|index| !scene.is_seen_past(*index, now));
+    let ahead = ahead(scene, now);
     // The rear of a vehicle is not behind its own near end, nor behind the place that it is known to have passed. So the better of both
     // holds.
     let behind = |index: usize| {
@@ -108,4 +106,26 @@ pub(super) fn spare<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
         [scene.obstacle(now, index), passed].into_iter().flatten().map(spare).max()
     };
     ahead.filter_map(behind).min()
+}
+
+/// The vehicles ahead on the same leg that are minded.
+fn ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+) -> impl Iterator<Item = usize> + use<'_, PEERS, SAMPLES, STEPS> {
+    let choice = scene.coordination.choice();
+    let leading = (0..PEERS).filter(|index| choice.leading.contains(*index) && !choice.beyond.contains(*index));
+    leading.chain(choice.lane.map(usize::from)).filter(move |index| !scene.is_seen_past(*index, now))
+}
+
+/// Whether no silent vehicle ahead on the same leg may have come to rest before a place, or may yet.
+pub(super) fn is_certain_to_leave<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    place: Position,
+) -> bool {
+    let is_silent =
+        |index: &usize| !scene.peers.get(*index).is_some_and(|track| track.link().is_on(now, &scene.config.link));
+    let rests = |index: usize| stop_behind(scene, index).max(scene.coordination.passed(index));
+    ahead(scene, now).filter(is_silent).all(|index| rests(index).is_some_and(|rests| rests >= place))
 }
