@@ -7,6 +7,7 @@ use holdover_sim::commands::cli::Cli;
 use holdover_sim::commands::options::Options;
 use holdover_sim::commands::string::options::{StringOptions, shipped_time_gap_s};
 use holdover_sim::commands::string::rows::{self, LIMIT, Row};
+use holdover_sim::input::scenario::Switch;
 
 fn options(arguments: &str) -> StringOptions {
     let words = ["holdover-sim", "string"].into_iter().chain(arguments.split_whitespace());
@@ -38,7 +39,7 @@ fn a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_not_at_a_ten
     let shipped = worst_place("--seed 5 --seeds 2");
     assert!(ratio(&shipped) <= 1.0039 + 0.00005, "{shipped:?}");
     assert!(rows::failures(std::slice::from_ref(&shipped)).is_empty(), "{shipped:?}");
-    let less = worst_place(&format!("--seed 6 --seeds 1 --time-gaps {:.1}", shipped_time_gap_s() - 0.1));
+    let less = worst_place(&format!("--seed 6 --seeds 1 --time-gaps {:.1}", shipped_time_gap_s(Switch::Off) - 0.1));
     assert!(ratio(&less) > LIMIT && ratio(&less) <= 1.0228 + 0.0001, "{less:?}");
     assert_eq!(rows::failures(std::slice::from_ref(&less)).len(), 1, "{less:?}");
 }
@@ -92,5 +93,39 @@ fn the_help_says_where_chance_decides_and_how_to_run_more() {
     let help = String::from_utf8(string("--help").stdout).unwrap();
     for wanted in ["Chance:", "run with 40", "--step-only --seeds 200"] {
         assert!(help.contains(wanted), "{wanted}: {help}");
+    }
+}
+
+#[test]
+fn range_sensors_are_on_or_off_and_each_has_a_shipped_time_gap() {
+    for (arguments, on) in [("", false), ("--range-sensors off", false), ("--range-sensors on", true)] {
+        let output = string(&format!("--delays 0 --losses 0 --step-only --json --no-report {arguments}"));
+        let said: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(said["range_sensors"], on, "{arguments}");
+        let gap = if on { "shipped_time_gap_with_sensor_s" } else { "shipped_time_gap_s" };
+        assert!(said[gap].is_number() && said["rows"][0]["time_gap_s"] == said[gap], "{arguments}: {said}");
+    }
+    let wrong = string("--range-sensors maybe");
+    assert_eq!(wrong.status.code(), Some(2));
+    let line = String::from_utf8(wrong.stderr).unwrap();
+    assert!(line.contains("--range-sensors") && line.lines().count() == 1, "{line}");
+}
+
+#[test]
+fn the_smallest_time_gap_of_each_link_is_that_from_which_on_every_row_holds() {
+    let rows = rows("--delays 0,0.1 --losses 0 --step-only --time-gaps 0.6,1,1.6");
+    let smallest = rows::smallest(&rows);
+    assert_eq!(smallest.len(), 2);
+    for link in &smallest {
+        let of_link = |row: &&Row| row.delay_s == link.delay_s;
+        let least = |of: fn(&Row) -> f64| {
+            let holds = |gap: &f64| {
+                rows.iter().filter(of_link).filter(|row| row.time_gap_s >= *gap).all(|row| of(row) <= LIMIT)
+            };
+            [0.6, 1.0, 1.6].into_iter().find(holds)
+        };
+        assert_eq!(link.holdover_s, least(|row| row.holdover.as_ref().unwrap().ratio));
+        assert_eq!(link.cacc_s, least(|row| row.cacc.as_ref().unwrap().ratio));
+        assert_eq!(link.degraded_cacc_s, least(|row| row.degraded_cacc.as_ref().unwrap().ratio));
     }
 }

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use crate::commands::ending::OutputArguments;
+use crate::input::scenario::Switch;
 
 /// The arguments of `string`.
 #[derive(Clone, Debug, Args)]
@@ -45,6 +46,10 @@ pub struct StringArguments {
     /// Run the step alone, without sines
     #[arg(long, conflicts_with = "frequencies")]
     pub step_only: bool,
+
+    /// Whether every follower has a range sensor
+    #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
+    pub range_sensors: Switch,
 
     /// Seed of the losses
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
@@ -89,6 +94,10 @@ Figures:
   holdover         the units, with all that they do
   as it stands     the same law on the newest message as it stands
   age times speed  the same law on the newest message, moved on by its age
+  CACC             the controller of Ploeg et al. (IEEE T-ITS 16, 2015): an ideal
+                   sensor for gap and speed, and the predecessor's demand by the
+                   newest message
+  degraded         the same without messages: it estimates that acceleration
 
 Exit codes:
   0  with holdover no ratio is above 1.01, and everybody follows all the time

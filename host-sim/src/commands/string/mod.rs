@@ -9,29 +9,37 @@ pub mod amplification;
 pub mod arguments;
 pub mod disturbance;
 pub mod options;
+pub mod others;
 mod page;
+pub mod ploeg;
 pub mod rows;
 pub mod table;
-pub mod uncompensated;
 
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::input::scenario::Switch;
 use crate::output;
 use crate::verdict::Verdict;
 use options::StringOptions;
-use rows::Row;
+use rows::{Row, Smallest};
 
 /// The results, as JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Results<'a> {
     /// The largest ratio allowed.
     limit: f64,
-    /// The shipped time gap.
+    /// Whether every follower has a range sensor.
+    range_sensors: bool,
+    /// The shipped time gap of a unit without a range sensor.
     shipped_time_gap_s: f64,
+    /// The shipped time gap of a unit with a range sensor.
+    shipped_time_gap_with_sensor_s: f64,
     /// The smallest time gap from which on the limit holds at every time gap; `None` if it does not hold at the
     /// largest.
     smallest_time_gap_s: Option<f64>,
+    /// The same for each link, and for the others.
+    smallest: Vec<Smallest>,
     /// The first seed.
     seed: u64,
     rows: &'a [Row],
@@ -48,8 +56,11 @@ pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let failures = rows::failures(&rows);
     let results = Results {
         limit: rows::LIMIT,
-        shipped_time_gap_s: options::shipped_time_gap_s(),
+        range_sensors: options.range_sensors.is_on(),
+        shipped_time_gap_s: options::shipped_time_gap_s(Switch::Off),
+        shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(Switch::On),
         smallest_time_gap_s: rows::smallest_time_gap_s(&rows),
+        smallest: rows::smallest(&rows),
         seed: options.seed,
         rows: &rows,
     };

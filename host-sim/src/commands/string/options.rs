@@ -6,6 +6,7 @@ use super::arguments::StringArguments;
 use super::disturbance::Disturbance;
 use crate::commands::ending::Destination;
 use crate::error::Error;
+use crate::input::scenario::Switch;
 use crate::seeds;
 
 /// Default number of seeds of a step, whose result depends on chance.
@@ -24,6 +25,8 @@ pub struct StringOptions {
     pub losses: Vec<f64>,
     /// The disturbances by the leader.
     pub disturbances: Vec<Disturbance>,
+    /// Whether every follower has a range sensor.
+    pub range_sensors: Switch,
     /// The first seed of the losses.
     pub seed: u64,
     /// Number of seeds, if it is given: from 1 to [`seeds::MOST`].
@@ -38,8 +41,9 @@ impl StringOptions {
     /// # Errors
     /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
-        let StringArguments { time_gaps, delays, losses, frequencies, step_only, seed, seeds, output } = arguments;
-        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
+        let StringArguments { time_gaps, delays, losses, frequencies, step_only, range_sensors, seed, seeds, output } =
+            arguments;
+        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s(range_sensors)] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
@@ -48,7 +52,16 @@ impl StringOptions {
         let destination = output.read()?;
         let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
         let disturbances = std::iter::once(Disturbance::Step).chain(sines).collect();
-        Ok(Self { time_gaps_s: time_gaps, delays_s: delays, losses, disturbances, seed, seeds, destination })
+        Ok(Self {
+            time_gaps_s: time_gaps,
+            delays_s: delays,
+            losses,
+            disturbances,
+            range_sensors,
+            seed,
+            seeds,
+            destination,
+        })
     }
 
     /// Number of seeds of a disturbance at a loss. Only losses are random, so without a loss one seed is enough.
@@ -68,18 +81,21 @@ impl StringOptions {
             if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
         let seeds = self.seeds.map_or(String::new(), |seeds| format!(" --seeds {seeds}"));
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --seed {}{seeds}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --range-sensors {} --seed {}{seeds}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),
+            self.range_sensors,
             self.seed
         )
     }
 }
 
-/// The default time gap of a unit.
+/// The default time gap of a unit with or without a range sensor. The law does not use what the sensor sees of the acceleration ahead, so
+/// both keep the same.
 #[must_use]
-pub fn shipped_time_gap_s() -> f64 {
+pub fn shipped_time_gap_s(range_sensors: Switch) -> f64 {
+    let (Switch::On | Switch::Off) = range_sensors;
     f64::from(parameters::TIME_GAP.to_millis()) / 1e3
 }
 

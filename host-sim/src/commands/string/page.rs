@@ -1,7 +1,7 @@
 //! The report of string stability: rows enter, an HTML page with a table and curves leaves.
 
 use super::options::{StringOptions, shipped_time_gap_s};
-use super::rows::{LIMIT, Row};
+use super::rows::{LIMIT, Row, Smallest, smallest};
 use super::table::{ratio, runs};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
@@ -23,7 +23,8 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Pag
     table(&mut page, rows);
     page.command(&options.command());
     if options.time_gaps_s.len() > 1 {
-        over_time_gap(&mut page, &options.time_gaps_s, rows);
+        smallest_gaps(&mut page, rows);
+        over_time_gap(&mut page, options, rows);
     }
     for &time_gap_s in &options.time_gaps_s {
         let rows: Vec<&Row> = rows.iter().filter(|row| row.time_gap_s == time_gap_s).collect();
@@ -49,6 +50,8 @@ fn table(page: &mut Page, rows: &[Row]) {
             Cell::number(row.runs_above.to_string()),
             Cell::number(ratio(row.as_it_stands.as_ref())),
             Cell::number(ratio(row.age_times_speed.as_ref())),
+            Cell::number(ratio(row.cacc.as_ref())),
+            Cell::number(ratio(row.degraded_cacc.as_ref())),
         ]
     };
     let header = [
@@ -61,9 +64,12 @@ fn table(page: &mut Page, rows: &[Row]) {
         "Runs above",
         "As it stands",
         "Age times speed",
+        "CACC",
+        "Degraded CACC",
     ];
     let caption = "Largest ratio of a vehicle’s speed amplitude to its predecessor’s, with holdover; and without it, by the \
-                   newest message as it stands, and moved on by its age times its speed.";
+                   newest message as it stands, and moved on by its age times its speed; and with the controller of Ploeg et al. (IEEE T-ITS 16, 2015), \
+                   which has a sensor without errors, and with that controller without messages.";
     page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
 }
 
@@ -71,7 +77,27 @@ fn guide() -> Guide {
     Guide { at: LIMIT, label: format!("limit {LIMIT}") }
 }
 
-fn over_time_gap(page: &mut Page, time_gaps_s: &[f64], rows: &[Row]) {
+fn smallest_gaps(page: &mut Page, rows: &[Row]) {
+    let caption =
+        format!("Smallest time gap of those that were run, in s, at and above which the ratio is at most {LIMIT}.");
+    let said = |gap: Option<f64>| Cell::number(gap.map_or("none".into(), |gap| gap.to_string()));
+    let cells = |link: &Smallest| {
+        vec![
+            Cell::number(link.delay_s.to_string()),
+            Cell::number(link.loss.to_string()),
+            said(link.holdover_s),
+            said(link.as_it_stands_s),
+            said(link.age_times_speed_s),
+            said(link.cacc_s),
+            said(link.degraded_cacc_s),
+        ]
+    };
+    let header = ["Delay, s", "Loss", "Holdover", "As it stands", "Age times speed", "CACC", "Degraded CACC"];
+    page.table(&caption, &header, &smallest(rows).iter().map(cells).collect::<Vec<_>>());
+}
+
+fn over_time_gap(page: &mut Page, options: &StringOptions, rows: &[Row]) {
+    let time_gaps_s = &options.time_gaps_s;
     let caption = "Largest ratio of all delays and losses over the time gap; the smallest at and above which it is within the \
                    limit is the smallest that can be shipped.";
     let line = |name: &str, tone: Tone, of: &dyn Fn(&Row) -> Option<f64>| {
@@ -82,10 +108,12 @@ fn over_time_gap(page: &mut Page, time_gaps_s: &[f64], rows: &[Row]) {
     };
     let layers = vec![
         line("age times speed", Tone::Other(1), &|row| Some(row.age_times_speed.as_ref()?.ratio)),
+        line("CACC", Tone::Other(2), &|row| Some(row.cacc.as_ref()?.ratio)),
+        line("degraded CACC", Tone::Other(3), &|row| Some(row.degraded_cacc.as_ref()?.ratio)),
         line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
     ];
     let axes = (Axis::linear("time gap", "s"), Axis::linear("largest ratio", "").including(1.0));
-    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s());
+    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s(options.range_sensors));
     let chart =
         Chart { description: caption.into(), layers, guides: vec![guide()], ..Chart::new(&title, axes.0, axes.1) };
     page.figure(&title, caption, &[&chart]);
@@ -101,6 +129,8 @@ fn over_delay(page: &mut Page, time_gap_s: f64, losses: &[f64], rows: &[&Row]) {
     let layers = vec![
         line("as it stands", Tone::Idle, &|row| Some(row.as_it_stands.as_ref()?.ratio)),
         line("age times speed", Tone::Other(1), &|row| Some(row.age_times_speed.as_ref()?.ratio)),
+        line("CACC", Tone::Other(2), &|row| Some(row.cacc.as_ref()?.ratio)),
+        line("degraded CACC", Tone::Other(3), &|row| Some(row.degraded_cacc.as_ref()?.ratio)),
         line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
     ];
     let axes = (Axis::linear("delay", "s"), Axis::linear("largest ratio", "").including(1.0));

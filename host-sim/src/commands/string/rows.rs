@@ -9,9 +9,9 @@ use serde::Serialize;
 use super::amplification::{Speeds, Worst};
 use super::disturbance::{CRUISE_MPS, Disturbance};
 use super::options::StringOptions;
-use super::uncompensated::{self, Reading};
+use super::others::{self, Other};
 use crate::error::Error;
-use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario};
+use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario, Switch};
 use crate::measure::simulate::simulate;
 use crate::parallel;
 use crate::sim::world::{Tick, Trace};
@@ -34,6 +34,10 @@ pub struct Row {
     pub as_it_stands: Option<Worst>,
     /// Largest ratio with the newest message, extrapolated by its age times its speed.
     pub age_times_speed: Option<Worst>,
+    /// Largest ratio with the controller of Ploeg et al.
+    pub cacc: Option<Worst>,
+    /// Largest ratio with that controller without messages.
+    pub degraded_cacc: Option<Worst>,
     /// Largest ratio of each disturbance, with holdover.
     pub by_disturbance: Vec<Option<Worst>>,
     /// Runs with holdover, one for each disturbance and seed.
@@ -54,6 +58,8 @@ struct Outcome {
     holdover: Option<Worst>,
     as_it_stands: Option<Worst>,
     age_times_speed: Option<Worst>,
+    cacc: Option<Worst>,
+    degraded_cacc: Option<Worst>,
     collisions: usize,
     not_following: usize,
 }
@@ -91,7 +97,7 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
         }
     }
     let one = |&(place, disturbance, seed)| {
-        let outcome = outcome(place, disturbance, seed);
+        let outcome = outcome(place, disturbance, seed, options.range_sensors);
         done();
         outcome
     };
@@ -118,6 +124,8 @@ fn row((time_gap_s, delay_s, loss): Place, outcomes: &[Vec<Outcome>]) -> Row {
         holdover: worst(|outcome| &outcome.holdover),
         as_it_stands: worst(|outcome| &outcome.as_it_stands),
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
+        cacc: worst(|outcome| &outcome.cacc),
+        degraded_cacc: worst(|outcome| &outcome.degraded_cacc),
         by_disturbance: outcomes.iter().map(|of| largest(&mut of.iter(), |outcome| &outcome.holdover)).collect(),
         runs: all().count(),
         runs_above: all().filter(|outcome| is_above(&outcome.holdover)).count(),
@@ -130,16 +138,23 @@ fn is_above(worst: &Option<Worst>) -> bool {
     worst.as_ref().is_some_and(|worst| worst.ratio > LIMIT)
 }
 
-fn outcome((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, seed: u64) -> Result<Outcome, Error> {
-    let scenario = scenario(time_gap_s, delay_s, loss, disturbance)?;
+fn outcome(
+    (time_gap_s, delay_s, loss): Place,
+    disturbance: Disturbance,
+    seed: u64,
+    sensors: Switch,
+) -> Result<Outcome, Error> {
+    let scenario = scenario((time_gap_s, delay_s, loss), disturbance, sensors)?;
     let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
     let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
     let units = Speeds { period_s: scenario.period_s, vehicles: trace.vehicles.iter().map(speeds).collect() };
-    let without = |reading| uncompensated::run(&scenario, seed, reading).worst(disturbance);
+    let without = |other| others::run(&scenario, seed, other).worst(disturbance);
     Ok(Outcome {
         holdover: units.worst(disturbance),
-        as_it_stands: without(Reading::AsItStands),
-        age_times_speed: without(Reading::AgeTimesSpeed),
+        as_it_stands: without(Other::AsItStands),
+        age_times_speed: without(Other::AgeTimesSpeed),
+        cacc: without(Other::Cacc),
+        degraded_cacc: without(Other::DegradedCacc),
         collisions: summary.collisions,
         not_following: not_following(&trace, disturbance.measured_from_s()),
     })
@@ -156,7 +171,7 @@ fn not_following(trace: &Trace, from_s: f64) -> usize {
 ///
 /// # Errors
 /// None for values within the options' limits.
-fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) -> Result<Scenario, Error> {
+fn scenario((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, sensors: Switch) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
     let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
     let vehicle = |gap: &str| {
@@ -171,7 +186,8 @@ fn scenario(time_gap_s: f64, delay_s: f64, loss: f64, disturbance: Disturbance) 
          applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
         vehicle(""),
     );
-    let mut scenario = Scenario::parse(Path::new("string"), &text, &Overrides::MESSAGES_ALONE)?;
+    let overrides = Overrides { range_sensors: Some(sensors), ..Overrides::MESSAGES_ALONE };
+    let mut scenario = Scenario::parse(Path::new("string"), &text, &overrides)?;
     scenario.leader.motion = Some(disturbance.motion(scenario.period_s));
     Ok(scenario)
 }
@@ -206,12 +222,59 @@ pub fn failures(rows: &[Row]) -> Vec<String> {
 /// The smallest time gap for which the limit holds there and at every larger one that was run.
 #[must_use]
 pub fn smallest_time_gap_s(rows: &[Row]) -> Option<f64> {
-    let holds = |gap: f64| {
-        rows.iter().filter(|row| row.time_gap_s == gap).all(|row| failures(std::slice::from_ref(row)).is_empty())
+    smallest_where(rows, |row| failures(std::slice::from_ref(row)).is_empty())
+}
+
+/// The smallest time gaps at one link; `None`: the limit does not hold at the largest that was run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Smallest {
+    /// Delay of every message.
+    pub delay_s: f64,
+    /// Fraction of messages lost.
+    pub loss: f64,
+    /// With holdover.
+    pub holdover_s: Option<f64>,
+    /// The same law on the newest message as it stands.
+    pub as_it_stands_s: Option<f64>,
+    /// The same law on the newest message, moved on by its age times its speed.
+    pub age_times_speed_s: Option<f64>,
+    /// The controller of Ploeg et al.
+    pub cacc_s: Option<f64>,
+    /// That controller without messages.
+    pub degraded_cacc_s: Option<f64>,
+}
+
+/// The smallest time gaps at each link.
+#[must_use]
+pub fn smallest(rows: &[Row]) -> Vec<Smallest> {
+    let mut links: Vec<(f64, f64)> = Vec::new();
+    for link in rows.iter().map(|row| (row.delay_s, row.loss)) {
+        if !links.contains(&link) {
+            links.push(link);
+        }
+    }
+    let of_link = |(delay_s, loss): (f64, f64)| {
+        let here: Vec<Row> = rows.iter().filter(|row| (row.delay_s, row.loss) == (delay_s, loss)).cloned().collect();
+        let other = |of: fn(&Row) -> &Option<Worst>| smallest_where(&here, |row| !is_above(of(row)));
+        Smallest {
+            delay_s,
+            loss,
+            holdover_s: smallest_time_gap_s(&here),
+            as_it_stands_s: other(|row| &row.as_it_stands),
+            age_times_speed_s: other(|row| &row.age_times_speed),
+            cacc_s: other(|row| &row.cacc),
+            degraded_cacc_s: other(|row| &row.degraded_cacc),
+        }
     };
+    links.into_iter().map(of_link).collect()
+}
+
+/// The smallest time gap for which something holds in all rows there, and at every larger time gap.
+fn smallest_where(rows: &[Row], holds: impl Fn(&Row) -> bool) -> Option<f64> {
     let mut gaps: Vec<f64> = rows.iter().map(|row| row.time_gap_s).collect();
     gaps.sort_by(|a, b| b.total_cmp(a));
-    gaps.into_iter().take_while(|gap| holds(*gap)).last()
+    let all = |gap: &f64| rows.iter().filter(|row| row.time_gap_s == *gap).all(&holds);
+    gaps.into_iter().take_while(all).last()
 }
 
 #[cfg(test)]
@@ -220,7 +283,15 @@ mod tests {
 
     fn outcome(ratio: f64, disturbance: &str) -> Outcome {
         let worst = Some(Worst { ratio, disturbance: disturbance.into(), vehicle: 1 });
-        Outcome { holdover: worst.clone(), as_it_stands: worst, age_times_speed: None, collisions: 1, not_following: 0 }
+        Outcome {
+            holdover: worst.clone(),
+            as_it_stands: worst,
+            age_times_speed: None,
+            cacc: None,
+            degraded_cacc: None,
+            collisions: 1,
+            not_following: 0,
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::amplification::Worst;
 use super::disturbance::Disturbance;
 use super::options::{StringOptions, shipped_time_gap_s};
-use super::rows::{LIMIT, Row, smallest_time_gap_s};
+use super::rows::{LIMIT, Row, Smallest, smallest, smallest_time_gap_s};
 use crate::verdict::Verdict;
 
 /// The table.
@@ -15,14 +15,24 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
-        "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>6}{:>12}{:>14}{:>17}",
-        "time gap, s", "delay, s", "loss", "holdover", "", "runs", "runs above", "as it stands", "age times speed"
+        "{:<12}{:<10}{:<6}{:>9}  {:<20}{:>6}{:>12}{:>14}{:>17}{:>8}{:>10}",
+        "time gap, s",
+        "delay, s",
+        "loss",
+        "holdover",
+        "",
+        "runs",
+        "runs above",
+        "as it stands",
+        "age times speed",
+        "CACC",
+        "degraded"
     );
     for row in rows {
         let place = row.holdover.as_ref().map(|worst| format!("({}, vehicle {})", worst.disturbance, worst.vehicle));
         let _ = writeln!(
             text,
-            "{:<12}{:<10}{:<8}{:>10}  {:<22}{:>6}{:>12}{:>14}{:>17}",
+            "{:<12}{:<10}{:<6}{:>9}  {:<20}{:>6}{:>12}{:>14}{:>17}{:>8}{:>10}",
             row.time_gap_s,
             row.delay_s,
             row.loss,
@@ -32,11 +42,16 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
             row.runs_above,
             ratio(row.as_it_stands.as_ref()),
             ratio(row.age_times_speed.as_ref()),
+            ratio(row.cacc.as_ref()),
+            ratio(row.degraded_cacc.as_ref()),
         );
+    }
+    if options.time_gaps_s.len() > 1 {
+        gaps(&mut text, rows);
     }
     match smallest_time_gap_s(rows) {
         Some(gap) => {
-            let shipped = shipped_time_gap_s();
+            let shipped = shipped_time_gap_s(options.range_sensors);
             let _ = writeln!(
                 text,
                 "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried; {shipped} s is shipped"
@@ -48,6 +63,25 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
     }
     let _ = writeln!(text, "{}", verdict(options, rows, failures));
     text
+}
+
+/// The smallest time gaps at each link.
+fn gaps(text: &mut String, rows: &[Row]) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "\nsmallest time gap tried, s, at and above which the ratio is at most {LIMIT}\n{:<10}{:<6}{:>9}{:>14}{:>17}{:>8}{:>10}",
+        "delay, s", "loss", "holdover", "as it stands", "age times speed", "CACC", "degraded"
+    );
+    let said = |gap: Option<f64>| gap.map_or("none".into(), |gap| gap.to_string());
+    for Smallest { delay_s, loss, holdover_s, as_it_stands_s, age_times_speed_s, cacc_s, degraded_cacc_s } in
+        smallest(rows)
+    {
+        let [ours, stands, moved, cacc, degraded] =
+            [holdover_s, as_it_stands_s, age_times_speed_s, cacc_s, degraded_cacc_s].map(said);
+        let _ = writeln!(text, "{delay_s:<10}{loss:<6}{ours:>9}{stands:>14}{moved:>17}{cacc:>8}{degraded:>10}");
+    }
+    text.push('\n');
 }
 
 /// The verdict, and what it is based on.
