@@ -8,3 +8,4 @@ pub mod observer;
 pub mod paper_beside;
 pub mod reference;
 pub mod simulate;
+pub mod trajectories;

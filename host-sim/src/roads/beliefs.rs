@@ -120,19 +120,19 @@ impl<'a> Beliefs<'a> {
             associations: BTreeMap::new(),
         }
     }
+}
 
-    /// The true position of a target, on the axis of the follower's way.
-    fn truth(&self, own: &Sighting, target: &Sighting) -> Option<f64> {
-        if own.road == target.road {
-            return Some(target.way_m);
-        }
-        let (own_stops, stops) = (&self.network.lanes[own.road].stops, &self.network.lanes[target.road].stops);
-        // The two directions of a street share several intersections, so there are several virtual lanes. This is the
-        // virtual lane of the intersection that the ego's unit takes for its next.
-        let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
-        let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
-        Some(here.at_m - there.at_m + target.way_m)
+/// The true position of a target, on the axis of the follower's way.
+pub(super) fn on_axis(network: &Network, own: &Sighting, target: &Sighting) -> Option<f64> {
+    if own.road == target.road {
+        return Some(target.way_m);
     }
+    let (own_stops, stops) = (&network.lanes[own.road].stops, &network.lanes[target.road].stops);
+    // The two directions of a street share several intersections, so there are several virtual lanes. This is the
+    // virtual lane of the intersection that the ego's unit takes for its next.
+    let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
+    let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
+    Some(here.at_m - there.at_m + target.way_m)
 }
 
 impl Watch for Beliefs<'_> {
@@ -148,7 +148,7 @@ impl Watch for Beliefs<'_> {
             let (Some(belief), Some(followed)) = (own.belief, own.followed) else { continue };
             // A target that has left is no longer evaluated.
             let Some(target) = sightings.iter().find(|other| other.station == followed) else { continue };
-            let Some(truth_m) = self.truth(own, target) else { continue };
+            let Some(truth_m) = on_axis(self.network, own, target) else { continue };
             let error_m = belief.position_m - own.odometer_m - truth_m;
             let worst = Worst { error_m, at_s, by: own.trip, target: target.trip, age_s: belief.age_s };
             let changed_s = self.associations.get(&target.trip).map_or(f64::NEG_INFINITY, |known| known.1);

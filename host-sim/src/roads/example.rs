@@ -9,6 +9,7 @@ use super::trips::Trip;
 use super::watch::Sighting;
 use crate::input::kind::Kind;
 use crate::sim::station::station;
+use holdover::wire::command::ModeCode;
 
 /// The scenario file that comes with the program.
 pub const TEXT: &str = include_str!("../../scenarios/corridor.toml");
@@ -37,6 +38,9 @@ pub fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
         way_m,
         length_m: 4.8,
         speed_mps: 10.0,
+        acceleration_mps2: 0.0,
+        command_mps2: 0.0,
+        mode: ModeCode::Cooperative,
         odometer_m: 0.0,
         next: None,
         followed: None,

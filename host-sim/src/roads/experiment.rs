@@ -100,12 +100,29 @@ impl Experiment {
     /// # Errors
     /// A scenario that the units refuse.
     pub fn run(&self, seed: u64, conditions: Conditions, journal: Option<&mut Journal>) -> Result<Outcome, Error> {
+        self.run_before(seed, conditions, journal, None)
+    }
+
+    /// The same before the eyes of one more observer.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn run_before(
+        &self,
+        seed: u64,
+        conditions: Conditions,
+        journal: Option<&mut Journal>,
+        another: Option<&mut dyn Watch>,
+    ) -> Result<Outcome, Error> {
         let (trips, _) = self.trips(seed);
         let logged = journal.as_ref().and_then(|journal| journal.ego);
         let (mut referee, mut beliefs) = (Referee::new(&self.network, &trips), Beliefs::new(&self.network, logged));
         let mut traffic = Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
         traffic.log(logged);
         let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs];
+        if let Some(another) = another {
+            watches.push(another);
+        }
         let mut log = Vec::new();
         let remains = match journal {
             Some(journal) => {

@@ -26,6 +26,7 @@ pub mod sight;
 pub mod tally;
 pub mod throughput;
 pub mod traffic;
+pub mod trajectories;
 pub mod trips;
 pub mod watch;
 

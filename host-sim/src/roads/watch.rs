@@ -1,6 +1,7 @@
 //! Observing a run: what the observers see of every vehicle at every tick.
 
 use holdover::wire::StationHash;
+use holdover::wire::command::ModeCode;
 
 use crate::sim::world::TargetBelief;
 
@@ -19,6 +20,12 @@ pub struct Sighting {
     pub length_m: f64,
     /// Its speed.
     pub speed_mps: f64,
+    /// Acceleration reached.
+    pub acceleration_mps2: f64,
+    /// Acceleration that its unit commanded.
+    pub command_mps2: f64,
+    /// Its unit's mode.
+    pub mode: ModeCode,
     /// Its odometer where the road begins.
     pub odometer_m: f64,
     /// The intersection that its unit takes for the next one, and whose virtual lane it uses. Between two reviews this

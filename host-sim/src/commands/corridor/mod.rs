@@ -27,6 +27,8 @@ use crate::roads::experiment::{Experiment, STEPS_S, Sides};
 use crate::roads::figures::{StepRow, WrongRow};
 use crate::roads::journal::Journal;
 use crate::roads::shares::{self, SHARES, ShareRow};
+use crate::roads::trajectories::Records;
+use crate::roads::watch::Watch;
 use crate::verdict::Verdict;
 use options::CorridorOptions;
 
@@ -126,7 +128,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     }
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
-    let logged = usize::from(options.candump.is_some());
+    let logged = usize::from(options.candump.is_some() || options.trajectories.is_some());
     let bar = ProgressBar::new(
         (Sides::COUNT * options.seeds.len() + WRONGS + SHARES.len() + drawn + options.vehicles.len() + logged) as u64,
     );
@@ -152,12 +154,18 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         })
         .collect();
     let mut logged_to = Ok(());
-    if let Some(candump) = &options.candump {
-        let mut journal = Journal::new(Some(candump.vehicle));
-        experiment.run(first, Conditions::of(&options.corridor), Some(&mut journal))?;
-        logged_to = candump.write(&journal.log);
+    let mut records = match &options.trajectories {
+        Some(wanted) => Some(Records::of(wanted, &experiment.network)?),
+        None => None,
+    };
+    if logged > 0 {
+        let mut journal = Journal::new(options.candump.as_ref().map(|candump| candump.vehicle));
+        let another = records.as_mut().map(|records| records as &mut dyn Watch);
+        experiment.run_before(first, Conditions::of(&options.corridor), Some(&mut journal), another)?;
+        logged_to = options.candump.as_ref().map_or(Ok(()), |candump| candump.write(&journal.log));
         done();
     }
+    let recorded = records.map_or(Ok(()), Records::finish);
     let mut loads = Vec::new();
     let timed = if engaged { &sides.envelope } else { &sides.holdover };
     if let Some(travel_s) = timed.mean_travel_time_s {
@@ -193,7 +201,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let delivered = options.destination.deliver(&results, &text, &text, page);
     let picture = || picture::draw(&experiment, &results, &steps);
     let drawn = options.picture.as_ref().map_or(Ok(()), |file| Draft::whole(file, &picture()));
-    delivered.and(drawn).and(logged_to)?;
+    delivered.and(drawn).and(logged_to).and(recorded)?;
     Ok(Verdict::of(&results.failures))
 }
 

@@ -8,6 +8,7 @@ use crate::commands::run::arguments::RunSettings;
 use crate::commands::run::candump::Candump;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Switch};
+use crate::measure::trajectories::{self, Wanted};
 use crate::places::can_be_file;
 use crate::provenance::shell_word;
 use crate::roads::description::Corridor;
@@ -42,6 +43,8 @@ pub struct CorridorOptions {
     pub slots: Vec<usize>,
     /// File for the one-page picture.
     pub picture: Option<PathBuf>,
+    /// File for the trajectories of all vehicles, of the first seed.
+    pub trajectories: Option<Wanted>,
     /// The bus to log, of the first seed; the vehicle is the index of its trip.
     pub candump: Option<Candump>,
 }
@@ -81,6 +84,9 @@ impl CorridorOptions {
         let count = settings.seeds.unwrap_or(1);
         let seeds = seeds::checked(corridor.seed, count)?.collect();
         let candump = candump(&corridor, &settings)?;
+        if settings.trajectories.is_some() && settings.demand.is_some() {
+            return Err(of_other_traffic("--trajectories"));
+        }
         let destination = settings.output.read()?.with_inputs([named])?;
         let mut taken = vec![named];
         for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
@@ -89,6 +95,7 @@ impl CorridorOptions {
                 taken.push(file);
             }
         }
+        let trajectories = trajectories::wanted(settings.trajectories.as_deref(), settings.trajectories_every, &taken)?;
         let usual = if destination.report.is_some() { VEHICLES.to_vec() } else { Vec::new() };
         let is_given = settings.vehicles.is_some();
         let vehicles = settings.vehicles.unwrap_or(usual);
@@ -132,6 +139,7 @@ impl CorridorOptions {
             demand,
             slots,
             picture: settings.picture,
+            trajectories,
             candump,
         })
     }
@@ -141,8 +149,7 @@ impl CorridorOptions {
 fn candump(corridor: &Corridor, settings: &RunSettings) -> Result<Option<Candump>, Error> {
     let Some(file) = settings.candump.clone() else { return Ok(None) };
     if settings.demand.is_some() {
-        let cause = "is for the scenario's own traffic, and --demand runs other traffic";
-        return Err(Error::new(cause, "leave one of the two out").in_option("--candump"));
+        return Err(of_other_traffic("--candump"));
     }
     let (trips, ego) = of_seed(corridor, corridor.seed);
     let Some(vehicle) = settings.candump_vehicle.or(ego) else {
@@ -151,6 +158,11 @@ fn candump(corridor: &Corridor, settings: &RunSettings) -> Result<Option<Candump
     };
     exists("--candump-vehicle", vehicle, trips.len())?;
     Ok(Some(Candump { file, vehicle }))
+}
+
+fn of_other_traffic(option: &str) -> Error {
+    let cause = "is for the scenario's own traffic, and --demand runs other traffic";
+    Error::new(cause, "leave one of the two out").in_option(option)
 }
 
 /// Whether there is a vehicle of that index among so many.

@@ -102,6 +102,21 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 
+    /// Write the trajectories of all vehicles: truth, estimate and bound, age, mode, as a table (.csv) or as the FCD of SUMO (.xml). Of
+    /// a corridor, those of the first seed as the scenario says
+    #[arg(long, value_name = "FILE")]
+    pub trajectories: Option<PathBuf>,
+
+    /// Time from one row of a vehicle to the next
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        requires = "trajectories",
+        default_value = "0.1",
+        allow_negative_numbers = true
+    )]
+    pub trajectories_every: f64,
+
     /// Write the frames on one vehicle's bus as a candump log. Of a corridor, that of the first seed as the scenario says
     #[arg(long, value_name = "FILE")]
     pub candump: Option<PathBuf>,

@@ -13,7 +13,8 @@ use indicatif::ProgressBar;
 use crate::error::Error;
 use crate::measure::figures::failures;
 use crate::measure::simulate::simulate_beside;
-use crate::sim::world::Trace;
+use crate::measure::trajectories::{Moves, Seen, Trajectories};
+use crate::sim::world::{Tick, Trace};
 use crate::verdict::Verdict;
 use candump::Candump;
 use files::TraceFile;
@@ -29,10 +30,14 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
     let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
+    let mut trajectories = options.trajectories.as_ref().map(Trajectories::of).transpose()?;
     let mut candump = options.candump.as_ref().map(Candump::begin).transpose()?;
     let each = |at_s: f64, trace: &mut Trace, paper_m| {
         if let Some(file) = &mut traced {
             file.note(at_s, &trace.latest, paper_m);
+        }
+        if let Some(file) = &mut trajectories {
+            file.note(at_s, string(&trace.latest));
         }
         if let Some(log) = &mut candump {
             log.note(&trace.log);
@@ -48,10 +53,32 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     // One file that cannot be written does not keep the others away.
     let delivered = options.destination.deliver(&summary, &text, &text, page);
     let traced = traced.map_or(Ok(()), TraceFile::finish);
+    let recorded = trajectories.map_or(Ok(()), Trajectories::finish);
     let logged = candump.map_or(Ok(()), |mut log| {
         log.note(&trace.log);
         log.finish()
     });
-    delivered.and(traced).and(logged)?;
+    delivered.and(traced).and(recorded).and(logged)?;
     Ok(Verdict::of(&failures))
+}
+
+/// The vehicles of a string at a tick. Each follows the one before it, on a lane to the east.
+fn string(ticks: &[Tick]) -> impl Iterator<Item = Seen> {
+    let moves = |tick: &Tick| Moves { position_m: tick.position_m, speed_mps: tick.speed_mps };
+    ticks.iter().enumerate().map(move |(vehicle, tick)| {
+        let ahead = vehicle.checked_sub(1).and_then(|ahead| Some((ahead, moves(ticks.get(ahead)?))));
+        Seen {
+            vehicle,
+            road: 0,
+            place_m: (tick.position_m, 0.0),
+            heading_deg: 90.0,
+            moves: moves(tick),
+            acceleration_mps2: tick.acceleration_mps2,
+            command_mps2: tick.command_mps2,
+            mode: tick.mode,
+            limited: tick.limited,
+            target: ahead,
+            belief: tick.target,
+        }
+    })
 }

@@ -7,6 +7,7 @@ use super::candump::Candump;
 use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario};
+use crate::measure::trajectories::{self, Wanted};
 use crate::places::can_be_file;
 use crate::provenance::shell_word;
 
@@ -23,6 +24,8 @@ pub struct RunOptions {
     pub destination: Destination,
     /// File for the trace of every tick.
     pub trace: Option<PathBuf>,
+    /// File for the trajectories of all vehicles.
+    pub trajectories: Option<Wanted>,
     /// The bus to log.
     pub candump: Option<Candump>,
 }
@@ -73,8 +76,9 @@ impl RunOptions {
                 taken.push(file);
             }
         }
+        let trajectories = trajectories::wanted(settings.trajectories.as_deref(), settings.trajectories_every, &taken)?;
         let candump = settings.candump.map(|file| Candump { file, vehicle });
-        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
+        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, trajectories, candump })
     }
 }
 

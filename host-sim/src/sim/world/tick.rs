@@ -53,6 +53,19 @@ pub struct Bounds {
     pub highest_speed_mps: f64,
 }
 
+impl TargetBelief {
+    /// The same on an axis that begins so far ahead.
+    #[must_use]
+    pub fn behind(self, way_m: f64) -> Self {
+        let bound = self.bound.map(|bound| Bounds {
+            lowest_position_m: bound.lowest_position_m - way_m,
+            highest_position_m: bound.highest_position_m - way_m,
+            ..bound
+        });
+        Self { position_m: self.position_m - way_m, bound, ..self }
+    }
+}
+
 impl Bounds {
     /// Whether a vehicle with this motion is inside the bound.
     #[must_use]
