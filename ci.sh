@@ -123,6 +123,10 @@ step_cross() {
     printf '  %-28s %7d of at most 65536\n' 'OnboardUnit<8, 8, 400>' "$unit"
     [ "$unit" -le 65536 ]
     cargo clippy --locked --release --target "$target" -- -D warnings
+    local board
+    for board in feather_stm32f405 pyboard nucleo_g474re; do
+        HOLDOVER_BOARD=$board cargo clippy --locked --release --target "$target" --bin holdover-ecu --features bxcan -- -D warnings
+    done
 }
 
 step_firmware() {
@@ -146,7 +150,7 @@ step_package() {
     contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
     for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
         src/lib.rs src/main.rs src/board/mod.rs \
-        src/board/stm32f405/memory.x src/board/zynqmp_r5/link.x; do
+        src/board/stm32f405/memory.x src/board/stm32g474/memory.x src/board/zynqmp_r5/link.x; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
     if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then

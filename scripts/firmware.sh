@@ -31,14 +31,23 @@ emulate() {
 }
 
 echo "-- the image in its forms"
-for features in bxcan log bxcan,log fd ''; do
-    cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$features" -- -D warnings
-    firmware --features "$features"
-    size -A "$built/$ecu/firmware/holdover-ecu" | awk -v features="${features:-none}" '
+form() { # BOARD FEATURES
+    export HOLDOVER_BOARD=$1
+    cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$2" -- -D warnings
+    firmware --features "$2"
+    size -A "$built/$ecu/firmware/holdover-ecu" | awk -v board="$1" -v features="${2:-none}" '
         $1 == ".vector_table" || $1 == ".text" || $1 == ".rodata" || $1 == ".data" { flash += $2 }
         $1 == ".data" || $1 == ".bss" || $1 == ".uninit" { ram += $2 }
-        END { printf "  features %-10s flash %6d  static RAM %6d\n", features, flash, ram }'
+        END { printf "  %-17s features %-10s flash %6d  static RAM %6d\n", board, features, flash, ram }'
+}
+form feather_stm32f405 bxcan
+form pyboard bxcan
+form nucleo_g474re log
+form nucleo_g474re ''
+for features in bxcan log bxcan,log fd ''; do
+    form stm32f405 "$features"
 done
+unset HOLDOVER_BOARD
 image=$built/$ecu/firmware/holdover-ecu
 # The idle unit is zero throughout. A field whose nothing is not zero would put the whole unit into flash as well.
 arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
@@ -47,6 +56,7 @@ arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
 }
 
 echo "-- no panic in the image, from its start on"
+HOLDOVER_BOARD=nucleo_g474re firmware --features no-panic
 firmware --features no-panic,fd
 firmware --features no-panic,bxcan
 firmware --features no-panic

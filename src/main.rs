@@ -18,7 +18,7 @@ mod firmware {
     pub type Unit = OnboardUnit<8, 8, 400>;
 
     /// What an integrator calibrates.
-    const CONFIG: Config = Config::car(StationHash(1));
+    pub const CONFIG: Config = Config::car(StationHash(1));
 
     /// Called by the board when it has started.
     pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {

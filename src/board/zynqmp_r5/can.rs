@@ -6,9 +6,11 @@
 //! one is chosen when the bus is there for it. A frame that is too old comes back by a reset of the whole controller.
 
 use super::layout::Layout;
+use crate::board::acceptance::{Pattern, Patterns};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::registers::Registers;
+use heapless::Vec;
 
 /// Byte offsets.
 pub mod offset {
@@ -34,6 +36,8 @@ pub mod offset {
     pub const RECEIVE: [usize; 4] = [0x50, 0x54, 0x58, 0x5c];
     /// Which acceptance filters are on; with none everything is received.
     pub const FILTERS: usize = 0x60;
+    /// The two words of the first one, mask and identifier; the others follow.
+    pub const FILTER: usize = 0x64;
 }
 
 /// Bits of the control register.
@@ -58,10 +62,14 @@ const BIT: u32 = (16 - 1) | (3 - 1) << 4 | (3 - 1) << 7;
 /// be closer together than that, if the first one is late; those of three cannot.
 const ABSENCE: u32 = 2;
 
+/// Acceptance filters that it has.
+pub const ACCEPTANCE: usize = 4;
+
 /// The controller as a port.
 pub struct Controller<R> {
     registers: R,
     layout: Layout,
+    filters: Vec<Pattern, ACCEPTANCE>,
     /// How many periods it still keeps away from the bus.
     absent: u32,
     /// A reset did not end, and nobody has been told.
@@ -71,9 +79,10 @@ pub struct Controller<R> {
 }
 
 impl<R: Registers> Controller<R> {
-    /// Puts it into operation.
-    pub fn start(registers: R, layout: Layout) -> Self {
-        let mut controller = Self { registers, layout, absent: 0, is_stuck: false, sending: None };
+    /// Puts it into operation; it lets in what is wanted, at least.
+    pub fn start(registers: R, layout: Layout, wanted: Patterns) -> Self {
+        let filters = wanted.at_most();
+        let mut controller = Self { registers, layout, filters, absent: 0, is_stuck: false, sending: None };
         controller.leave();
         controller.join();
         controller
@@ -99,14 +108,24 @@ impl<R: Registers> Controller<R> {
         self.absent = 0;
         self.registers.write(offset::PRESCALER, QUANTUM);
         self.registers.write(offset::TIMING, BIT);
-        self.registers.write(offset::FILTERS, 0);
+        self.filter();
         self.registers.write(offset::INTERRUPTS, NOT_EMPTY | OVERRUN);
         self.registers.write(offset::MODE, 0);
         self.registers.write(offset::CONTROL, ENABLE);
     }
-}
 
-impl<R: Registers> Controller<R> {
+    /// Sets the filters up, while the controller is. All are off after its reset, and so not busy.
+    fn filter(&mut self) {
+        let mut used = 0;
+        for (number, pattern) in self.filters.iter().enumerate() {
+            for (word, place) in self.layout.filter(pattern).into_iter().zip([0, 4]) {
+                self.registers.write(offset::FILTER + 8 * number + place, word);
+            }
+            used |= 1 << number;
+        }
+        self.registers.write(offset::FILTERS, used);
+    }
+
     /// Takes note that the frame in the transmit queue has been sent.
     fn settle(&mut self) {
         if self.sending == Some(Fate::Underway) && self.registers.read(offset::EVENTS) & EMPTIED != 0 {

@@ -13,8 +13,10 @@ mod pin;
 mod registers;
 mod start;
 
+use super::acceptance::Patterns;
 use super::outbox::{self, Outbox, Pass};
 use super::port::{Overrun, Port};
+use crate::firmware::CONFIG;
 use alarm::Alarm;
 use can::Controller;
 use clock::Clock;
@@ -58,7 +60,7 @@ impl Board {
             busy: Pin::start(pins),
             watchdog: Watchdog,
             restarts: 0,
-            port: Controller::start(Block::CAN0, layout),
+            port: Controller::start(Block::CAN0, layout, Patterns::of(CONFIG.identifiers.heard_by_unit())),
             outbox: outbox::of_the_shell(),
             overruns: 0,
             clock,
