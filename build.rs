@@ -44,7 +44,7 @@ fn main() {
     println!("cargo::rustc-cfg=chip=\"{chip}\"");
     println!("cargo::rustc-link-search={}", ours.parent().expect("a file lies in a folder").display());
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
-    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+    if env::var_os("CARGO_FEATURE__LOG").is_some() {
         println!("cargo::rustc-link-arg-bins=-Tdefmt.x");
     }
     // Sections need not be aligned to the pages of a system that has none.

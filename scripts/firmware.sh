@@ -44,7 +44,7 @@ form feather_stm32f405 bxcan
 form pyboard bxcan
 form nucleo_g474re log
 form nucleo_g474re ''
-for features in bxcan log bxcan,log fd ''; do
+for features in bxcan log bxcan,log log-semihosting fd ''; do
     form stm32f405 "$features"
 done
 unset HOLDOVER_BOARD
@@ -91,6 +91,20 @@ echo "-- the image in the emulator, for 5 s"
 firmware # the one without features again
 # The emulator keeps to the wall clock: on a machine that is busy with something else it may get too little of it once.
 for_5_s || for_5_s || for_5_s
+
+echo "-- the image that logs, for 3 s without a debugger"
+firmware --features log
+rtt=$(arm-none-eabi-nm "$image" | awk '$3 == "_SEGGER_RTT" { print $1 }')
+{
+    sleep 3
+    printf 'pmemsave 0x%s 48 "%s"\nquit\n' "$rtt" "$work/rtt.bin"
+} | timeout 20 qemu-system-arm -display none -M netduinoplus2 -serial "file:$work/logging.txt" -monitor stdio -kernel "$image" \
+    >/dev/null
+commands=$(tr '\r' '\n' <"$work/logging.txt" | grep -c '^t4828')
+# Of the buffer for a probe: how much was written into it, and how much of that was read.
+read -r written unread <<<"$(od -A n -t u4 -j 36 -N 8 "$work/rtt.bin")"
+echo "  $commands commands; $written bytes of log wait for a probe"
+[ "$commands" -gt 100 ] && [ "$written" -gt 0 ] && [ "$unread" = 0 ]
 
 echo "-- logs replayed, against this host"
 cd tests/embedded

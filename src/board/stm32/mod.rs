@@ -8,7 +8,7 @@ pub mod port;
 pub mod register;
 pub mod watchdog;
 
-#[cfg(feature = "log")]
+#[cfg(feature = "_log")]
 pub use clock::now;
 
 use crate::board::acceptance::Patterns;
@@ -21,6 +21,8 @@ use cortex_m::interrupt;
 use cortex_m::peripheral::{NVIC, Peripherals};
 use cortex_m_rt::exception;
 #[cfg(feature = "log")]
+use defmt_rtt as _;
+#[cfg(feature = "log-semihosting")]
 use defmt_semihosting as _;
 use embedded_can::Frame;
 use holdover::health::Incident;
@@ -28,6 +30,9 @@ use holdover::time::Instant;
 use pin::Pin;
 use port::{Arrivals, Inbox, Select};
 use watchdog::Watchdog;
+
+#[cfg(all(feature = "log", feature = "log-semihosting"))]
+compile_error!("there is one way out for a log: the feature `log` or the feature `log-semihosting`");
 
 /// Everything that the shell needs of the hardware.
 pub struct Board {
@@ -59,6 +64,8 @@ impl Board {
         let restarts = watchdog::restarts()?;
         // It watches over the start as well.
         let mut watchdog = Watchdog::start();
+        #[cfg(feature = "_log")]
+        register::DBGMCU_CR.set(0, 1); // memory can be read while the core sleeps
         let clocks = Clocks::start(&mut watchdog);
         let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
         let inbox = port::start(&clocks, wanted, arrivals, outbox);

@@ -14,7 +14,7 @@ pub const IWDG_KR: Register = common(0x4000_3000);
 pub const IWDG_PR: Register = common(0x4000_3004);
 pub const IWDG_RLR: Register = common(0x4000_3008);
 /// What goes on while the core sleeps, and what stops while a debugger has halted it.
-#[cfg(feature = "log")]
+#[cfg(feature = "_log")]
 pub const DBGMCU_CR: Register = common(0xe004_2004);
 pub const DBGMCU_APB1_FREEZE: Register = common(0xe004_2008);
 

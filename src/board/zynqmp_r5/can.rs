@@ -56,7 +56,15 @@ pub const EMPTIED: u32 = 1 << 14;
 /// 500 kbit/s from the 100 MHz that the boot loader gives the controller: quanta of 0.1 µs, 20 a bit, sampled after 17 (85 %).
 const QUANTUM: u32 = 10 - 1;
 /// Before and after the sample point, and how far a resynchronisation moves it; each less one.
-const BIT: u32 = (16 - 1) | (3 - 1) << 4 | (3 - 1) << 7;
+const BIT: u32 = (BEFORE - 1) | (BEHIND - 1) << 4 | (JUMP - 1) << 7;
+const BEFORE: u32 = 16;
+const BEHIND: u32 = 3;
+const JUMP: u32 = 3;
+const QUANTA: u32 = 1 + BEFORE + BEHIND;
+/// By ISO 11898-1, in millionths: over the ten bits from one edge to the next at the latest, and over the thirteen from an error to the
+/// sample point that judges it.
+const TOLERANCES: [u32; 2] = [JUMP * 1_000_000 / (20 * QUANTA), BEHIND * 1_000_000 / (2 * (13 * QUANTA - BEHIND))];
+const _: () = assert!(TOLERANCES[0] >= 5_000 && TOLERANCES[1] >= 5_000, "CAN has to bear clocks that are 0.5 % off");
 
 /// Periods to stay away after a bus-off. ISO 11898-1 asks for 128 times 11 bits, which are 2.8 ms. The calls of two periods can
 /// be closer together than that, if the first one is late; those of three cannot.
