@@ -29,7 +29,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
             a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; the first node, a
             program in Python, against the process and the Cortex-M4F; scripts/hil.sh runs parts
-  c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
+  c         the C examples say what the Rust core says, on the host and in the emulator, over the whole way of the corridor's ego
+            too; the header is one for C99, C11, C++ and MISRA C, for each capacity
   package   the package that would be published builds by itself and holds what it should
 
 exit code: 0 all passed; 1 a step failed; 2 no such step

@@ -994,6 +994,10 @@ holdover_status_t holdover_set_out(void *unit, const struct holdover_itinerary_t
 // `count` has to point to memory for a number that nobody else uses during the call; `unit` as in `holdover_tick`.
 holdover_status_t holdover_count(void *unit, int32_t cause, uint32_t *count);
 
+// Not of the library: a program on a bare machine may have it. A panic of the library calls it, and when it returns the processor stays
+// where it is. Whoever links as docs/INTEGRATION.md says can see that nothing reaches a panic.
+void holdover_panicked(void);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus

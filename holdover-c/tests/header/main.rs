@@ -5,6 +5,13 @@ mod layout;
 
 use std::path::Path;
 
+/// What the program may have for the library.
+const HOOK: &str = "
+// Not of the library: a program on a bare machine may have it. A panic of the library calls it, and when it returns the processor stays
+// where it is. Whoever links as docs/INTEGRATION.md says can see that nothing reaches a panic.
+void holdover_panicked(void);
+";
+
 fn header() -> String {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(package.join("cbindgen.toml")).unwrap();
@@ -20,7 +27,8 @@ fn header() -> String {
         text.replace("HOLDOVER_STATUS_T_", "HOLDOVER_").replace("_T_", "_").replace("[`", "`").replace("`]", "`");
     let text = enumerations::as_constants(&text);
     let (text, end) = text.split_once("#ifdef __cplusplus\nextern").expect("the functions");
-    format!("{text}{}\n#ifdef __cplusplus\nextern{end}", layout::assertions())
+    let (functions, end) = end.split_once("\n#ifdef __cplusplus\n}").expect("the end");
+    format!("{text}{}\n#ifdef __cplusplus\nextern{functions}{HOOK}\n#ifdef __cplusplus\n}}{end}", layout::assertions())
 }
 
 /// Every field of every struct is in it, so that none goes unasserted.
