@@ -42,7 +42,9 @@ fn main() {
     println!("cargo::rerun-if-changed={}", ours.display());
     println!("cargo::rustc-cfg=board=\"{board}\"");
     println!("cargo::rustc-cfg=chip=\"{chip}\"");
-    println!("cargo::rustc-link-search={}", ours.parent().expect("a file lies in a folder").display());
+    // For this image alone: a link search would be handed on to the images of those who use the library, which have a script of their
+    // own.
+    println!("cargo::rustc-link-arg-bins=-L{}", ours.parent().expect("a file lies in a folder").display());
     println!("cargo::rustc-link-arg-bins=-Tlink.x");
     if env::var_os("CARGO_FEATURE__LOG").is_some() {
         println!("cargo::rustc-link-arg-bins=-Tdefmt.x");

@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study cross firmware vcan c package)
+steps=(fmt lint doc test dbc study cross tasks firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -25,6 +25,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
             the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
+  tasks     the unit as a task of RTIC and of Embassy compiles and links, by locked versions
   firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
             a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; the first node, a
@@ -45,6 +46,8 @@ skip() {
 step_fmt() {
     cargo fmt --all --check
     cargo fmt --all --check --manifest-path tests/embedded/Cargo.toml
+    cargo fmt --check --manifest-path examples/rtic/Cargo.toml
+    cargo fmt --check --manifest-path examples/embassy/Cargo.toml
 }
 
 step_lint() {
@@ -130,6 +133,23 @@ step_cross() {
     done
 }
 
+step_tasks() {
+    local bin tasks example
+    bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
+    PATH=$bin:$PATH
+    # They have most of their dependencies in common.
+    tasks=$(realpath -m "${CARGO_TARGET_DIR:-target}/tasks")
+    for example in rtic embassy; do
+        (
+            cd "examples/$example"
+            export CARGO_TARGET_DIR=$tasks
+            cargo clippy --locked --release --target "$target" -- -D warnings
+            cargo build --locked --release --target "$target"
+            size "$tasks/$target/release/holdover-$example"
+        )
+    done
+}
+
 step_firmware() {
     scripts/firmware.sh
 }
@@ -165,7 +185,7 @@ step_package() {
 
 # Every source file that is ours.
 source_files() {
-    find src host-sim holdover-c tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
+    find src host-sim holdover-c tests examples build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
 }
 
 # A step runs as a process of its own (`--one`), so that its first failing command ends it and nothing of it reaches the next.
