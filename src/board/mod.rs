@@ -6,6 +6,7 @@
 //! A board calls `firmware::run` once, with the unit's memory and itself: `Board` has `receive`, `send`, `tick`,
 //! `incidents` and `idle`, a pin `busy` and a `watchdog`.
 
+#[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
 mod acceptance;
 mod frame;
 mod outbox;

@@ -11,11 +11,10 @@ pub mod watchdog;
 #[cfg(feature = "_log")]
 pub use clock::now;
 
-use crate::board::acceptance::Patterns;
 use crate::board::chip::Selected;
 use crate::board::chip::clocks::Clocks;
 use crate::board::outbox::{self, Outbox, Pass};
-use crate::firmware::{self, CONFIG, Unit};
+use crate::firmware::{self, Unit};
 use clock::Ticks;
 use cortex_m::interrupt;
 use cortex_m::peripheral::{NVIC, Peripherals};
@@ -67,8 +66,7 @@ impl Board {
         #[cfg(feature = "_log")]
         register::DBGMCU_CR.set(0, 1); // memory can be read while the core sleeps
         let clocks = Clocks::start(&mut watchdog);
-        let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
-        let inbox = port::start(&clocks, wanted, arrivals, outbox);
+        let inbox = port::start(&clocks, arrivals, outbox);
         clock::start(peripherals.SYST, &clocks);
         for number in Selected::INTERRUPTS {
             // SAFETY: the port's interrupts have their handler, below, and nothing relies on their being off.

@@ -3,7 +3,6 @@
 //! give it to the port. So what a tick has sent leaves while the next one runs.
 
 use super::clock;
-use crate::board::acceptance::Patterns;
 use crate::board::chip::Selected;
 use crate::board::chip::clocks::Clocks;
 use crate::board::frame::CanFrame;
@@ -23,8 +22,8 @@ pub trait Select: Port + Sized {
     const INTERRUPTS: &'static [i16];
     /// Whether one comes when a frame has been sent.
     const TELLS_WHEN_SENT: bool;
-    /// Puts it into operation, and lets in these identifiers at least.
-    fn start(clocks: &Clocks, wanted: Patterns) -> Self;
+    /// Puts it into operation. It lets in what the unit takes in, at least.
+    fn start(clocks: &Clocks) -> Self;
 }
 
 /// Frames that may wait for the shell: 8 ms of a full bus at 500 kbit/s bring 36, and the longest tick takes less.
@@ -95,9 +94,9 @@ pub fn pass() -> Pass {
 pub struct Inbox(Consumer<'static, (Instant, CanFrame)>);
 
 /// Starts the port.
-pub fn start(clocks: &Clocks, wanted: Patterns, arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Inbox {
+pub fn start(clocks: &Clocks, arrivals: &'static mut Arrivals, outbox: &'static mut Outbox) -> Inbox {
     let (producer, consumer) = arrivals.split();
-    let port = <Selected as Select>::start(clocks, wanted);
+    let port = <Selected as Select>::start(clocks);
     interrupt::free(|token| {
         if let Ok(mut line) = LINE.borrow(token).try_borrow_mut() {
             *line = Some(Line { port, arrivals: producer, outbox });

@@ -38,10 +38,11 @@ pub struct Watchdog(());
 impl Watchdog {
     pub fn start() -> Self {
         DBGMCU_APB1_FREEZE.set(0, FREEZE);
+        // First, as this starts the oscillator that takes the two others over; until then it waits for half a second.
+        IWDG_KR.write(0xcccc);
         IWDG_KR.write(0x5555); // unlocks the two
         IWDG_PR.write(3); // 32 kHz / 32
         IWDG_RLR.write(TIMEOUT_MS);
-        IWDG_KR.write(0xcccc);
         Self(())
     }
 

@@ -9,6 +9,7 @@ use super::wiring::WIRING;
 use crate::board::acceptance::Patterns;
 use crate::board::registers::Registers;
 use crate::board::stm32::port::Select;
+use crate::firmware::CONFIG;
 
 /// The registers of CAN1.
 pub struct Can1;
@@ -28,11 +29,12 @@ impl Select for Controller<Can1> {
     const INTERRUPTS: &'static [i16] = &[19, 20];
     const TELLS_WHEN_SENT: bool = true;
 
-    fn start(clocks: &Clocks, wanted: Patterns) -> Self {
+    fn start(clocks: &Clocks) -> Self {
         let (pins, function) = WIRING.can;
         pins.into_iter().for_each(|pin| pin.start_function(function));
         RCC_APB1ENR.enable(1 << 25); // CAN1
         // Without the crystal the bit rate would be off by more than a bus bears.
+        let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
         Self::start(Can1, if clocks.is_by_crystal { clocks.slow_bus_hz } else { 0 }, wanted)
     }
 }

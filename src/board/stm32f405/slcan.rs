@@ -3,7 +3,6 @@
 use super::clocks::Clocks;
 use super::line::{self, Line, Text};
 use super::serial::{self, Serial};
-use crate::board::acceptance::Patterns;
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::stm32::port::Select;
@@ -35,7 +34,7 @@ impl Select for Slcan {
     const TELLS_WHEN_SENT: bool = false;
 
     /// An adapter passes everything: what it would take to filter differs from one to the next.
-    fn start(clocks: &Clocks, _: Patterns) -> Self {
+    fn start(clocks: &Clocks) -> Self {
         // It is shorter than the longest line.
         let mut outgoing = Text::from_slice(line::OPENING).unwrap_or_default();
         outgoing.reverse();

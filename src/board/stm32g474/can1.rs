@@ -8,6 +8,7 @@ use super::wiring::WIRING;
 use crate::board::acceptance::Patterns;
 use crate::board::registers::Registers;
 use crate::board::stm32::port::Select;
+use crate::firmware::CONFIG;
 
 /// The registers and the message RAM of FDCAN1.
 pub struct Can1;
@@ -27,10 +28,11 @@ impl Select for Controller<Can1> {
     const INTERRUPTS: &'static [i16] = &[21];
     const TELLS_WHEN_SENT: bool = true;
 
-    fn start(clocks: &Clocks, wanted: Patterns) -> Self {
+    fn start(clocks: &Clocks) -> Self {
         let (pins, function) = WIRING.can;
         pins.into_iter().for_each(|pin| pin.start_function(function));
         RCC_APB1ENR.enable(1 << 25); // FDCAN
+        let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
         Self::start(Can1, clocks.can_hz, wanted)
     }
 }

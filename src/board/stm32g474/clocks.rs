@@ -59,6 +59,7 @@ impl Clocks {
         PWR_CR5.set(1 << 8, 0);
         // Four wait states at 170 MHz; caches and prefetch on.
         FLASH_ACR.set(0xf, 4 | 0b111 << 8);
+        FLASH_ACR.read(); // then they are there
         RCC_CFGR.write(0b1000 << 4 | 0b11);
         cortex_m::asm::delay(CORE_HZ / 1_000_000);
         RCC_CFGR.write(0b11);
