@@ -33,8 +33,8 @@ impl Select for Controller<Can1> {
         let (pins, function) = WIRING.can;
         pins.into_iter().for_each(|pin| pin.start_function(function));
         RCC_APB1ENR.enable(1 << 25); // CAN1
-        // Without the crystal the bit rate would be off by more than a bus bears.
         let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
+        // Without the crystal the bit rate would be off by more than a bus bears.
         Self::start(Can1, if clocks.is_by_crystal { clocks.slow_bus_hz } else { 0 }, wanted)
     }
 }
