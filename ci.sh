@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study cross firmware vcan c package)
+steps=(fmt lint doc test dbc study cross tasks firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -25,11 +25,13 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
             the worst link of the string of ten
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
+  tasks     the unit as a task of RTIC and of Embassy compiles and links, by locked versions
   firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
   vcan      hardware in the loop on a CAN interface of Linux: the SocketCAN tests, and the paper's scenario against the unit as
             a process, on an emulated Cortex-M4F, and on an emulated Cortex-R5F with a CAN controller; the first node, a
             program in Python, against the process and the Cortex-M4F; scripts/hil.sh runs parts
-  c         the C example says what the Rust core says, on the host and in the emulator; the header is one for C99 and C++
+  c         the C examples say what the Rust core says, on the host and in the emulator, over the whole way of the corridor's ego
+            too; the header is one for C99, C11, C++ and MISRA C, for each capacity
   package   the package that would be published builds by itself and holds what it should
 
 exit code: 0 all passed; 1 a step failed; 2 no such step
@@ -44,12 +46,14 @@ skip() {
 step_fmt() {
     cargo fmt --all --check
     cargo fmt --all --check --manifest-path tests/embedded/Cargo.toml
+    cargo fmt --check --manifest-path examples/rtic/Cargo.toml
+    cargo fmt --check --manifest-path examples/embassy/Cargo.toml
 }
 
 step_lint() {
     cargo clippy --locked --workspace --all-targets -- -D warnings
     cargo clippy --locked -p holdover --lib --features defmt -- -D warnings
-    local outside unsafe='^src/board/|^tests/embedded/|^holdover-c/(src/(doors|memory|pointer)\.rs|tests/)'
+    local outside unsafe='^src/board/|^tests/embedded/|^holdover-c/(src/(doors|map|memory|panic|pointer|room)\.rs|tests/)'
     outside=$(source_files | grep -vE "$unsafe" | xargs grep -nE '\bunsafe\s*(\{|fn|impl|extern)' || true)
     [ -z "$outside" ] || {
         printf 'unsafe code where there is to be none:\n%s\n' "$outside"
@@ -123,6 +127,27 @@ step_cross() {
     printf '  %-28s %7d of at most 65536\n' 'OnboardUnit<8, 8, 400>' "$unit"
     [ "$unit" -le 65536 ]
     cargo clippy --locked --release --target "$target" -- -D warnings
+    local board
+    for board in feather_stm32f405 pyboard nucleo_g474re; do
+        HOLDOVER_BOARD=$board cargo clippy --locked --release --target "$target" --bin holdover-ecu --features bxcan -- -D warnings
+    done
+}
+
+step_tasks() {
+    local bin tasks example
+    bin=$(scripts/install-target.sh "$target") || skip "no standard library for $target can be had on this machine"
+    PATH=$bin:$PATH
+    # They have most of their dependencies in common.
+    tasks=$(realpath -m "${CARGO_TARGET_DIR:-target}/tasks")
+    for example in rtic embassy; do
+        (
+            cd "examples/$example"
+            export CARGO_TARGET_DIR=$tasks
+            cargo clippy --locked --release --target "$target" -- -D warnings
+            cargo build --locked --release --target "$target"
+            size "$tasks/$target/release/holdover-$example"
+        )
+    done
 }
 
 step_firmware() {
@@ -146,7 +171,7 @@ step_package() {
     contents=$(cargo package --locked -p holdover --list "${dirty[@]}")
     for name in Cargo.toml README.md ARCHITECTURE.md CHANGELOG.md LICENSE-MIT LICENSE-APACHE holdover.dbc build.rs \
         src/lib.rs src/main.rs src/board/mod.rs \
-        src/board/stm32f405/memory.x src/board/zynqmp_r5/link.x; do
+        src/board/stm32f405/memory.x src/board/stm32g474/memory.x src/board/zynqmp_r5/link.x; do
         grep -qxF "$name" <<<"$contents" || { echo "the package lacks $name" && wanted=1; }
     done
     if grep -E '^(host-sim|holdover-c|scripts|\.ci|target)/|^ci\.sh$' <<<"$contents"; then
@@ -160,7 +185,7 @@ step_package() {
 
 # Every source file that is ours.
 source_files() {
-    find src host-sim holdover-c tests build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
+    find src host-sim holdover-c tests examples build.rs -name '*.rs' -not -path '*/target/*' 2>/dev/null | sort
 }
 
 # A step runs as a process of its own (`--one`), so that its first failing command ends it and nothing of it reaches the next.

@@ -31,14 +31,23 @@ emulate() {
 }
 
 echo "-- the image in its forms"
-for features in bxcan log bxcan,log fd ''; do
-    cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$features" -- -D warnings
-    firmware --features "$features"
-    size -A "$built/$ecu/firmware/holdover-ecu" | awk -v features="${features:-none}" '
+form() { # BOARD FEATURES
+    export HOLDOVER_BOARD=$1
+    cargo clippy --locked --quiet --profile firmware --target $ecu --bin holdover-ecu --features "$2" -- -D warnings
+    firmware --features "$2"
+    size -A "$built/$ecu/firmware/holdover-ecu" | awk -v board="$1" -v features="${2:-none}" '
         $1 == ".vector_table" || $1 == ".text" || $1 == ".rodata" || $1 == ".data" { flash += $2 }
         $1 == ".data" || $1 == ".bss" || $1 == ".uninit" { ram += $2 }
-        END { printf "  features %-10s flash %6d  static RAM %6d\n", features, flash, ram }'
+        END { printf "  %-17s features %-10s flash %6d  static RAM %6d\n", board, features, flash, ram }'
+}
+form feather_stm32f405 bxcan
+form pyboard bxcan
+form nucleo_g474re log
+form nucleo_g474re ''
+for features in bxcan log bxcan,log log-semihosting fd ''; do
+    form stm32f405 "$features"
 done
+unset HOLDOVER_BOARD
 image=$built/$ecu/firmware/holdover-ecu
 # The idle unit is zero throughout. A field whose nothing is not zero would put the whole unit into flash as well.
 arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
@@ -47,6 +56,7 @@ arm-none-eabi-nm "$image" | grep -E ' [bB] .*4UNIT' >/dev/null || {
 }
 
 echo "-- no panic in the image, from its start on"
+HOLDOVER_BOARD=nucleo_g474re firmware --features no-panic
 firmware --features no-panic,fd
 firmware --features no-panic,bxcan
 firmware --features no-panic
@@ -81,6 +91,20 @@ echo "-- the image in the emulator, for 5 s"
 firmware # the one without features again
 # The emulator keeps to the wall clock: on a machine that is busy with something else it may get too little of it once.
 for_5_s || for_5_s || for_5_s
+
+echo "-- the image that logs, for 3 s without a debugger"
+firmware --features log
+rtt=$(arm-none-eabi-nm "$image" | awk '$3 == "_SEGGER_RTT" { print $1 }')
+{
+    sleep 3
+    printf 'pmemsave 0x%s 48 "%s"\nquit\n' "$rtt" "$work/rtt.bin"
+} | timeout 20 qemu-system-arm -display none -M netduinoplus2 -serial "file:$work/logging.txt" -monitor stdio -kernel "$image" \
+    >/dev/null
+commands=$(tr '\r' '\n' <"$work/logging.txt" | grep -c '^t4828')
+# Of the buffer for a probe: how much was written into it, and how much of that was read.
+read -r written unread <<<"$(od -A n -t u4 -j 36 -N 8 "$work/rtt.bin")"
+echo "  $commands commands; $written bytes of log wait for a probe"
+[ "$commands" -gt 100 ] && [ "$written" -gt 0 ] && [ "$unread" = 0 ]
 
 echo "-- logs replayed, against this host"
 cd tests/embedded

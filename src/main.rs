@@ -10,6 +10,7 @@ mod board;
 #[cfg(target_os = "none")]
 mod firmware {
     use crate::board::{self, Board};
+    use crate::log::Log;
     use embedded_hal::digital::OutputPin;
     use holdover::health::Incident;
     use holdover::wire::StationHash;
@@ -18,18 +19,19 @@ mod firmware {
     pub type Unit = OnboardUnit<8, 8, 400>;
 
     /// What an integrator calibrates.
-    const CONFIG: Config = Config::car(StationHash(1));
+    pub const CONFIG: Config = Config::car(StationHash(1));
 
     /// Called by the board when it has started.
     pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {
         let (Ok(()), Some(board)) = (unit.start(&CONFIG), board) else { board::stop() };
         unit.note(Incident::Restart, board.restarts);
-        drive(unit, board)
+        let mut log = Log::new();
+        log.noted(Incident::Restart, board.restarts);
+        drive(unit, board, log)
     }
 
     #[cfg(not(feature = "lock-step"))]
-    fn drive(unit: &mut Unit, mut board: Board) -> ! {
-        let mut log = crate::log::Log::new();
+    fn drive(unit: &mut Unit, mut board: Board, mut log: Log) -> ! {
         loop {
             while let Some((at, frame)) = board.receive() {
                 // A refusal is counted in the unit, and its Health message tells.
@@ -38,6 +40,7 @@ mod firmware {
             if let Some(now) = board.tick() {
                 for (incident, times) in board.incidents() {
                     unit.note(incident, times);
+                    log.noted(incident, times);
                 }
                 let Ok(()) = board.busy.set_high();
                 let answer = unit.tick(now);
@@ -58,8 +61,7 @@ mod firmware {
     /// the bus may be silent for long before it begins. What the board lost before that is no concern of the unit's, and the timer's
     /// periods never are.
     #[cfg(feature = "lock-step")]
-    fn drive(unit: &mut Unit, mut board: Board) -> ! {
-        let mut log = crate::log::Log::new();
+    fn drive(unit: &mut Unit, mut board: Board, mut log: Log) -> ! {
         let mut steps = holdover::LockStep::new();
         let mut has_begun = false;
         loop {
@@ -78,6 +80,7 @@ mod firmware {
                 for (incident, times) in board.incidents() {
                     let is_its_own = has_begun && incident != Incident::MissedPeriod;
                     unit.note(incident, if is_its_own { times } else { 0 });
+                    log.noted(incident, times);
                 }
                 board.watchdog.feed();
             }
@@ -86,11 +89,12 @@ mod firmware {
     }
 }
 
-/// What goes into the log: refusals, and changes of the mode. Without the feature `log` nothing does, and nothing is left of
-/// this in the image.
+/// What goes into the log: as warnings refusals and incidents, as information changes of the mode. Without the feature `log` or
+/// `log-semihosting` nothing does, and nothing is left of this in the image.
 #[cfg(target_os = "none")]
 mod log {
     use holdover::controller::Mode;
+    use holdover::health::Incident;
     #[cfg(not(feature = "lock-step"))]
     use holdover::{Reception, health::Cause};
 
@@ -99,22 +103,33 @@ mod log {
     }
 
     impl Log {
-        pub const fn new() -> Self {
+        pub fn new() -> Self {
+            #[cfg(feature = "_log")]
+            defmt::info!("start: holdover {}", env!("CARGO_PKG_VERSION"));
             Self { mode: Mode::Standby }
         }
 
         #[cfg(not(feature = "lock-step"))] // there the shell does not see what became of a frame
         pub fn received(&mut self, result: Result<Reception, Cause>) {
-            #[cfg(feature = "log")]
+            #[cfg(feature = "_log")]
             if let Err(cause) = result {
                 defmt::warn!("refused: {}", cause);
             }
-            #[cfg(not(feature = "log"))]
+            #[cfg(not(feature = "_log"))]
             let _ = result;
         }
 
+        pub fn noted(&mut self, incident: Incident, times: u32) {
+            #[cfg(feature = "_log")]
+            if times > 0 {
+                defmt::warn!("{} times: {}", times, incident);
+            }
+            #[cfg(not(feature = "_log"))]
+            let _ = (incident, times);
+        }
+
         pub fn ticked(&mut self, mode: Mode) {
-            #[cfg(feature = "log")]
+            #[cfg(feature = "_log")]
             if mode.code() != self.mode.code() {
                 defmt::info!("mode: {}", mode);
             }
@@ -122,7 +137,7 @@ mod log {
         }
     }
 
-    #[cfg(feature = "log")]
+    #[cfg(feature = "_log")]
     defmt::timestamp!("{=u64:us}", crate::board::now().as_micros());
 }
 

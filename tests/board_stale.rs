@@ -1,10 +1,11 @@
-//! Nothing stale leaves: a unit, its outbox and either CAN controller, on a bus that is blocked for five seconds, and behind it an
+//! Nothing stale leaves: a unit, its outbox and each CAN controller, on a bus that is blocked for five seconds, and behind it an
 //! actuator that checks end to end. The registers are those of a model.
 
 /// The board's own sources, with the places that they have there.
 #[path = "../src/board"]
 #[allow(dead_code)]
 mod board {
+    pub mod acceptance;
     pub mod frame;
     pub mod outbox;
     pub mod port;
@@ -12,6 +13,10 @@ mod board {
     pub mod stm32f405 {
         pub mod can;
         pub mod mailbox;
+    }
+    pub mod stm32g474 {
+        pub mod element;
+        pub mod fdcan;
     }
     pub mod zynqmp_r5 {
         pub mod can;
@@ -160,6 +165,13 @@ fn after_five_seconds_without_an_acknowledge_bxcan_sends_the_newest_of_each_alon
 }
 
 #[test]
+fn after_five_seconds_without_an_acknowledge_fdcan_sends_the_newest_of_each_alone() {
+    let (port, chip) = chips::stm32g474::controller();
+    let rig = blocked_for_five_seconds(port, &chip);
+    holds(&rig, Duration::from_millis(10));
+}
+
+#[test]
 fn after_five_seconds_without_an_acknowledge_the_zynqmp_sends_nothing_too_old() {
     let (port, chip) = chips::zynqmp::controller();
     let rig = blocked_for_five_seconds(port, &chip);
@@ -184,9 +196,14 @@ fn off_and_back<P: Port>(port: P, chip: &impl Chip) -> Rig<P> {
 }
 
 #[test]
-fn after_a_bus_off_nothing_leaves_that_waited_in_either_controller_before_it() {
-    let (stm32, zynqmp) = (chips::stm32::controller(), chips::zynqmp::controller());
-    let rigs = [off_and_back(stm32.0, &stm32.1).sent, off_and_back(zynqmp.0, &zynqmp.1).sent];
+fn after_a_bus_off_nothing_leaves_that_waited_in_a_controller_before_it() {
+    let (stm32, g474, zynqmp) =
+        (chips::stm32::controller(), chips::stm32g474::controller(), chips::zynqmp::controller());
+    let rigs = [
+        off_and_back(stm32.0, &stm32.1).sent,
+        off_and_back(g474.0, &g474.1).sent,
+        off_and_back(zynqmp.0, &zynqmp.1).sent,
+    ];
     for sent in &rigs {
         assert!(!sent.iter().any(|sent| sent.frame.data() == [7]));
         let back = sent.iter().find(|sent| sent.at > Instant::from_micros(1_000_000)).unwrap();

@@ -5,6 +5,7 @@
 #[path = "../src/board"]
 #[allow(dead_code)]
 mod board {
+    pub mod acceptance;
     pub mod frame;
     pub mod outbox;
     pub mod port;
@@ -12,6 +13,10 @@ mod board {
     pub mod stm32f405 {
         pub mod can;
         pub mod mailbox;
+    }
+    pub mod stm32g474 {
+        pub mod element;
+        pub mod fdcan;
     }
     pub mod zynqmp_r5 {
         pub mod can;
@@ -21,6 +26,7 @@ mod board {
 
 mod chips;
 
+use board::acceptance::Patterns;
 use board::frame::CanFrame;
 use board::outbox::{Outbox, Pass};
 use board::port::{Fate, Overrun, Port};
@@ -234,7 +240,7 @@ fn a_bus_off_is_told_once_and_nothing_that_waited_is_sent_after_it() {
 fn a_reset_that_does_not_end_is_counted_each_time_and_tried_again() {
     let mock = Mock::default();
     mock.stuck.set(3);
-    let mut port = Controller::start(mock.clone(), Layout::Silicon);
+    let mut port = Controller::start(mock.clone(), Layout::Silicon, Patterns::everything());
     let mut outbox = Outbox::new();
     let mut unit = OnboardUnit::<1, 4, 400>::new(&Config::car(StationHash(1))).unwrap();
     let mut sent = 0;

@@ -1,6 +1,6 @@
 /*
- * An STM32F405, or the emulator's model of it (netduinoplus2), without a C library: the processor starts here, and text and
- * the exit code leave through semihosting, which needs a debugger or an emulator to listen.
+ * An STM32F405, or the emulator's model of it (netduinoplus2), without a C library: the processor starts here, and text, files
+ * and the exit code go through semihosting, which needs a debugger or an emulator to listen.
  */
 #include "board.h"
 
@@ -12,7 +12,7 @@ void reset(void);
 /* From the linker script. */
 extern uint32_t stack_top, data_start, data_end, data_image, bss_start, bss_end;
 
-enum { SYS_OPEN = 0x01, SYS_WRITE = 0x05, SYS_EXIT_EXTENDED = 0x20 };
+enum { SYS_OPEN = 0x01, SYS_WRITE = 0x05, SYS_READ = 0x06, SYS_EXIT_EXTENDED = 0x20 };
 
 static intptr_t semihosting(intptr_t operation, const void *block)
 {
@@ -22,7 +22,7 @@ static intptr_t semihosting(intptr_t operation, const void *block)
     return r0;
 }
 
-static void stop(uint32_t code)
+void board_stop(uint32_t code)
 {
     const uint32_t block[2] = {0x20026 /* the application has exited */, code};
     semihosting(SYS_EXIT_EXTENDED, block);
@@ -33,10 +33,19 @@ static void stop(uint32_t code)
 /* The console is the file ":tt"; opened for writing it is standard output, for appending it is standard error. */
 enum { STDOUT = 4, STDERR = 8 };
 
+static intptr_t open_file(const char *name, uint32_t mode)
+{
+    uint32_t length = 0;
+    while (name[length] != '\0') {
+        length++;
+    }
+    const uint32_t block[3] = {(uint32_t)(uintptr_t)name, mode, length};
+    return semihosting(SYS_OPEN, block);
+}
+
 static intptr_t open_console(uint32_t mode)
 {
-    const uint32_t block[3] = {(uint32_t)(uintptr_t)":tt", mode, 3 /* characters of the name */};
-    return semihosting(SYS_OPEN, block);
+    return open_file(":tt", mode);
 }
 
 static void write_console(intptr_t console, const char *text, size_t length)
@@ -52,6 +61,26 @@ void board_write(const char *text, size_t length)
         console = open_console(STDOUT);
     }
     write_console(console, text, length);
+}
+
+enum { READ_BINARY = 1, WRITE_BINARY = 5 };
+
+bool board_open(board_file_t *file, const char *name, bool to_write)
+{
+    file->handle = open_file(name, to_write ? WRITE_BINARY : READ_BINARY);
+    file->from = file->to = 0;
+    return file->handle != -1;
+}
+
+size_t board_read_some(intptr_t handle, uint8_t *bytes, size_t count)
+{
+    const uint32_t block[3] = {(uint32_t)handle, (uint32_t)(uintptr_t)bytes, count};
+    return count - (size_t)semihosting(SYS_READ, block); /* it tells what it has not read */
+}
+
+void board_write_all(intptr_t handle, const uint8_t *bytes, size_t count)
+{
+    write_console(handle, (const char *)bytes, count);
 }
 
 /* What nothing has been written over since the start was never on the stack. */
@@ -94,12 +123,12 @@ void reset(void)
     paint_stack();
     uint32_t code = (uint32_t)main();
     report_stack();
-    stop(code);
+    board_stop(code);
 }
 
 static void failed(void)
 {
-    stop(99);
+    board_stop(99);
 }
 
 /* Where the processor begins: the stack, then what to run at reset, and at the faults. */

@@ -12,9 +12,15 @@ use holdover::{Reception, config};
 use crate::answer::Answer;
 use crate::config::Config;
 use crate::frame::{Frame, Heard};
+use crate::incident;
+use crate::map::Itinerary;
 use crate::memory;
 use crate::pointer;
 use crate::status::{self, Status};
+
+/// Whole steps of the longest horizon.
+#[allow(clippy::cast_possible_truncation)] // a few hundred
+const LAST_STEP: u32 = (memory::HOLDOVER_STEPS - 2) as u32;
 
 /// The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
 pub const HOLDOVER_VERSION: u32 = 0x000100;
@@ -32,7 +38,15 @@ pub extern "C" fn holdover_status_name(status: i32) -> *const c_char {
     status::name(status).as_ptr()
 }
 
-/// Fills in the configuration of a car: 1,500 kg, 4.8 m, 100 Hz, time gap 1 s, station 0, no envelope.
+/// Bytes of memory that a unit of the library needs at least; to be compared with `HOLDOVER_UNIT_SIZE` once at start, since a library
+/// may be built for another capacity than the program.
+#[unsafe(no_mangle)]
+pub extern "C" fn holdover_unit_size() -> usize {
+    memory::HOLDOVER_UNIT_SIZE
+}
+
+/// Fills in the configuration of a car: 1,500 kg, 4.8 m, 100 Hz, time gap 1.6 s, station 0, no range sensor, passes kept, the envelope
+/// engaged, and a horizon of 10.71 s or as long as the library has steps for.
 ///
 /// # Safety
 /// `config` has to point to memory for a configuration that nobody else uses during the call.
@@ -41,7 +55,10 @@ pub unsafe extern "C" fn holdover_default_config(config: *mut Config) -> Status 
     // SAFETY: checked there, and the caller vouches for the rest.
     match unsafe { pointer::write(config) } {
         Ok(place) => {
-            place.write(Config::from(&config::Config::car(StationHash(0))));
+            let config = place.write(Config::from(&config::Config::car(StationHash(0))));
+            // All of a horizon's steps but the two at its ends.
+            let most = config.prediction.step_us.saturating_mul(LAST_STEP);
+            config.prediction.horizon_us = config.prediction.horizon_us.min(most);
             Status::Ok
         }
         Err(cause) => cause,
@@ -127,6 +144,40 @@ pub unsafe extern "C" fn holdover_tick(unit: *mut c_void, now_us: u64, answer: *
     // SAFETY: checked there, and the caller vouches for the rest.
     let ticked = unsafe { memory::enter(unit, |unit| place.fill(&unit.tick(Instant::from_micros(now_us)))) };
     ticked.map_or_else(|cause| cause, |()| Status::Ok)
+}
+
+/// Takes note of what the platform around the unit met with, so many times since it last said so: one of
+/// `HOLDOVER_INCIDENT_...`. `Health` counts it beside the unit's own refusals.
+///
+/// # Safety
+/// As [`holdover_tick`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_note(unit: *mut c_void, incident: i32, times: u32) -> Status {
+    let noted = incident::incident(incident)
+        // SAFETY: checked there, and the caller vouches for the rest.
+        .and_then(|incident| unsafe { memory::enter(unit, |unit| unit.note(incident, times)) });
+    noted.map_or_else(|cause| cause, |()| Status::Ok)
+}
+
+/// Sets out on a way through intersections: from now on, and until the unit is made anew, positions of peers are taken on the virtual
+/// lane, and where `DriverRequest` names no predecessor the order at the intersections decides whom to follow.
+///
+/// The way and all that it points to is copied into `map`, of which there are `size` bytes: `HOLDOVER_MAP_SIZE` at least. What is
+/// refused leaves the unit as it was, and on the way that it had; `map` may hold anything then.
+///
+/// # Safety
+/// `map` has to be the caller's until the unit is on another way, is made anew, or is not used any more, and nobody else may write to
+/// it. `way`, and what is in it, has to point to as many structs as it says; `unit` as in [`holdover_tick`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn holdover_set_out(
+    unit: *mut c_void,
+    way: *const Itinerary,
+    map: *mut c_void,
+    size: usize,
+) -> Status {
+    // SAFETY: checked there, and the caller vouches for the rest.
+    let set_out = unsafe { pointer::read(way).and_then(|way| memory::set_out(unit, way, map, size)) };
+    set_out.map_or_else(|cause| cause, |()| Status::Ok)
 }
 
 /// How often frames were refused for a cause since the unit was made; `cause` is one of `HOLDOVER_REFUSED_...`. 0 if

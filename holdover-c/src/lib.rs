@@ -4,10 +4,12 @@
 //! holdover_init(memory, size, &config)           once
 //! holdover_receive(unit, at_us, &frame)          for every CAN frame
 //! holdover_tick(unit, now_us, &answer)           every period; answer.frames are to be sent
+//! holdover_note(unit, incident, times)           what the platform around the unit met with
+//! holdover_set_out(unit, &way, map, size)        on a way through intersections
 //! ```
 //!
-//! The unit lives in memory of the caller; there is no allocator and no global. `doors` holds the functions, `pointer` and
-//! `memory` all there is of `unsafe` besides them, and the other modules the plain values that cross. `holdover.h` is made
+//! The unit lives in memory of the caller; there is no allocator and no global. `doors` holds the functions, `pointer`, `memory`,
+//! `room` and `map` all there is of `unsafe` besides them, and the other modules the plain values that cross. `holdover.h` is made
 //! from these files; `HOLDOVER_WRITE_HEADER=1 cargo test -p holdover-c --test header` writes it anew.
 #![cfg_attr(target_os = "none", no_std)]
 #![deny(missing_docs, unsafe_op_in_unsafe_fn)]
@@ -29,10 +31,13 @@ mod answer;
 mod config;
 mod doors;
 mod frame;
+mod incident;
+mod map;
 mod memory;
 #[cfg(target_os = "none")]
 mod panic;
 mod pointer;
+mod room;
 mod status;
 
 pub use answer::{Answer, Cause, Command, Effort, Estimate, HOLDOVER_MAX_FRAMES, Mode};
@@ -42,7 +47,9 @@ pub use config::{
 };
 pub use doors::*;
 pub use frame::Frame;
-pub use memory::{HOLDOVER_UNIT_ALIGN, HOLDOVER_UNIT_SIZE};
+pub use incident::Incident;
+pub use map::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+pub use memory::{HOLDOVER_HISTORY, HOLDOVER_PEERS, HOLDOVER_STEPS, HOLDOVER_UNIT_ALIGN, HOLDOVER_UNIT_SIZE};
 pub use status::Status;
 
 /// The Rust of the manual, which the tests of the documentation compile and run.

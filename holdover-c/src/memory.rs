@@ -6,21 +6,61 @@
 
 use core::ffi::c_void;
 use core::mem::MaybeUninit;
+use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use holdover::{Config, OnboardUnit};
 
+use crate::map::{self, Itinerary};
 use crate::pointer;
+use crate::room::Room;
 use crate::status::Status;
 
-/// Steps of a horizon.
-const STEPS: usize = 400;
+#[cfg(all(feature = "capacity-16-8-1072", feature = "capacity-4-4-200"))]
+compile_error!("a library has one capacity");
 
-/// The unit that the library is built for: 8 peers with a history of 8 samples.
-pub type Unit = OnboardUnit<8, 8, STEPS>;
+/// Vehicles that a unit of this library keeps track of.
+#[cfg(not(any(feature = "capacity-16-8-1072", feature = "capacity-4-4-200")))]
+pub const HOLDOVER_PEERS: usize = 8;
+/// Vehicles that a unit of this library keeps track of.
+#[cfg(feature = "capacity-16-8-1072")]
+pub const HOLDOVER_PEERS: usize = 16;
+/// Vehicles that a unit of this library keeps track of.
+#[cfg(feature = "capacity-4-4-200")]
+pub const HOLDOVER_PEERS: usize = 4;
+
+/// Samples of the past that it keeps of each.
+#[cfg(not(any(feature = "capacity-16-8-1072", feature = "capacity-4-4-200")))]
+pub const HOLDOVER_HISTORY: usize = 8;
+/// Samples of the past that it keeps of each.
+#[cfg(feature = "capacity-16-8-1072")]
+pub const HOLDOVER_HISTORY: usize = 8;
+/// Samples of the past that it keeps of each.
+#[cfg(feature = "capacity-4-4-200")]
+pub const HOLDOVER_HISTORY: usize = 4;
+
+/// Steps of a horizon.
+#[cfg(not(any(feature = "capacity-16-8-1072", feature = "capacity-4-4-200")))]
+pub const HOLDOVER_STEPS: usize = 400;
+/// Steps of a horizon.
+#[cfg(feature = "capacity-16-8-1072")]
+pub const HOLDOVER_STEPS: usize = 1072;
+/// Steps of a horizon.
+#[cfg(feature = "capacity-4-4-200")]
+pub const HOLDOVER_STEPS: usize = 200;
+
+/// The unit that the library is built for.
+pub type Unit = OnboardUnit<HOLDOVER_PEERS, HOLDOVER_HISTORY, HOLDOVER_STEPS>;
 
 /// Bytes of memory that a unit needs, on every target.
+#[cfg(not(any(feature = "capacity-16-8-1072", feature = "capacity-4-4-200")))]
 pub const HOLDOVER_UNIT_SIZE: usize = 48_000;
+/// Bytes of memory that a unit needs, on every target.
+#[cfg(feature = "capacity-16-8-1072")]
+pub const HOLDOVER_UNIT_SIZE: usize = 180_000;
+/// Bytes of memory that a unit needs, on every target.
+#[cfg(feature = "capacity-4-4-200")]
+pub const HOLDOVER_UNIT_SIZE: usize = 20_000;
 /// What the address of that memory has to be a multiple of.
 pub const HOLDOVER_UNIT_ALIGN: usize = 8;
 
@@ -37,6 +77,8 @@ const TAIL: u64 = !HEAD;
 struct Held {
     head: u64,
     busy: AtomicU32,
+    /// Where the map lies that the unit uses; an empty range if it has none.
+    map: Range<usize>,
     unit: MaybeUninit<Unit>,
     tail: u64,
 }
@@ -61,7 +103,7 @@ pub unsafe fn occupy(memory: *mut c_void, size: usize, config: &Config) -> Resul
     if unsafe { inspect(held) }.is_ok() {
         return Err(Status::AlreadyInitialised);
     }
-    config.check(STEPS)?; // before anything is written
+    config.check(HOLDOVER_STEPS)?; // before anything is written
     // SAFETY: as above, and nothing that is in use lies there; `MaybeUninit` may hold anything.
     let place = unsafe { &mut (*held).unit };
     // An idle unit is all zero, so it is made where it lies and not on the stack.
@@ -69,6 +111,7 @@ pub unsafe fn occupy(memory: *mut c_void, size: usize, config: &Config) -> Resul
     // SAFETY: as above. The head comes last, so that an interrupt in between finds no unit rather than half of one.
     unsafe {
         (&raw mut (*held).busy).write(AtomicU32::new(0));
+        (&raw mut (*held).map).write(0..0);
         (&raw mut (*held).tail).write_volatile(TAIL);
         (&raw mut (*held).head).write_volatile(HEAD);
     }
@@ -86,6 +129,30 @@ pub unsafe fn occupy(memory: *mut c_void, size: usize, config: &Config) -> Resul
 pub unsafe fn enter<R>(memory: *mut c_void, task: impl FnOnce(&mut Unit) -> R) -> Result<R, Status> {
     // SAFETY: as the caller vouches.
     unsafe { with(memory, |held| task((*held).unit.assume_init_mut())) }
+}
+
+/// Sends the unit there on a way, of which it keeps a copy in other memory.
+///
+/// # Errors
+/// As [`enter`]; as [`map::take`]; [`Status::MapInUse`], or what is wrong with the way. The unit goes on as before then.
+///
+/// # Safety
+/// As [`enter`], as [`Room::new`] for the memory of the map, and as [`map::take`] for the way.
+pub unsafe fn set_out(memory: *mut c_void, way: &Itinerary, map: *mut c_void, size: usize) -> Result<(), Status> {
+    let task = |held: *mut Held| {
+        // SAFETY: as the caller vouches; nobody else is in the unit.
+        let (held, mut room) = unsafe { (&mut *held, Room::new(map, size)?) };
+        let addresses = room.addresses();
+        if held.map.start < addresses.end && addresses.start < held.map.end {
+            return Err(Status::MapInUse);
+        }
+        // SAFETY: as the caller vouches; and there is a unit.
+        unsafe { held.unit.assume_init_mut().set_out(map::take(way, &mut room)?)? };
+        held.map = addresses;
+        Ok(())
+    };
+    // SAFETY: as the caller vouches.
+    unsafe { with(memory, task) }?
 }
 
 /// Takes the unit out of the memory, which may then be used for anything.

@@ -17,6 +17,22 @@ pub unsafe fn read<'a, T>(pointer: *const T) -> Result<&'a T, Status> {
     Ok(unsafe { &*pointer })
 }
 
+/// So many values from where the pointer points on, to be read; none wherever it points, if there are none.
+///
+/// # Errors
+/// [`Status::Null`], [`Status::Misaligned`].
+///
+/// # Safety
+/// As [`read`], of as many as that, which have to fit into memory.
+pub unsafe fn read_all<'a, T>(pointer: *const T, count: usize) -> Result<&'a [T], Status> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(pointer)?;
+    // SAFETY: not null, aligned, and the caller vouches for the rest.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
 /// The place that the pointer points to, to be written; what is there so far may be anything.
 ///
 /// # Errors

@@ -6,6 +6,7 @@
 use core::ffi::CStr;
 
 use holdover::ConfigError;
+use holdover::coordination::MapError;
 use holdover::health::Cause;
 use holdover::wire::IdentifierError;
 
@@ -40,6 +41,24 @@ pub enum Status {
     FrameId = -9,
     /// The code is not that of a refusal (`HOLDOVER_REFUSED_...`).
     NoCause = -10,
+    /// The number is not that of an incident (`HOLDOVER_INCIDENT_...`).
+    NoIncident = -11,
+    /// The memory for a map is smaller than `HOLDOVER_MAP_SIZE` says.
+    MapTooSmall = -12,
+    /// The unit's present map lies in this memory; a new way needs other memory.
+    MapInUse = -13,
+    /// A way has no crossing, or more than 65,535.
+    MapCrossings = -16,
+    /// An intersection is met twice, or the crossings are not in the order in which they are met.
+    MapOrder = -17,
+    /// A leg is numbered 8 or more.
+    MapLeg = -18,
+    /// Half a conflict area is negative, or longer than 5.115 m.
+    MapArea = -19,
+    /// A path has no segment.
+    MapPath = -20,
+    /// Between two conflict areas there is no room for the ego, which waits before each of them.
+    MapClose = -21,
     /// `base_id` is above 0x740.
     ConfigBaseId = -32,
     /// A switch is neither 0 nor 1.
@@ -190,6 +209,19 @@ impl From<ConfigError> for Status {
     }
 }
 
+impl From<MapError> for Status {
+    fn from(error: MapError) -> Self {
+        match error {
+            MapError::Crossings => Self::MapCrossings,
+            MapError::Order => Self::MapOrder,
+            MapError::Leg => Self::MapLeg,
+            MapError::Area => Self::MapArea,
+            MapError::Path => Self::MapPath,
+            MapError::Close => Self::MapClose,
+        }
+    }
+}
+
 impl From<Cause> for Status {
     fn from(cause: Cause) -> Self {
         match cause {
@@ -251,6 +283,15 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::FrameLength, c"a frame has more than 8 bytes"),
     (Status::FrameId, c"an identifier has more bits than its kind"),
     (Status::NoCause, c"the code is not that of a refusal"),
+    (Status::NoIncident, c"the number is not that of an incident"),
+    (Status::MapTooSmall, c"the memory for the map is smaller than HOLDOVER_MAP_SIZE"),
+    (Status::MapInUse, c"the unit's present map lies in this memory"),
+    (Status::MapCrossings, c"map: no crossing, or more than 65,535"),
+    (Status::MapOrder, c"map: an intersection is met twice, or out of order"),
+    (Status::MapLeg, c"map: a leg is numbered 8 or more"),
+    (Status::MapArea, c"map: half a conflict area is negative, or longer than 5.115 m"),
+    (Status::MapPath, c"map: a path has no segment"),
+    (Status::MapClose, c"map: no room for the ego between two conflict areas"),
     (Status::ConfigBaseId, c"configuration: base_id is above 0x740"),
     (Status::ConfigSwitch, c"configuration: a switch is neither 0 nor 1"),
     (Status::ConfigPeriod, c"configuration: period"),

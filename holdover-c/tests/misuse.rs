@@ -240,10 +240,9 @@ fn every_code_has_a_name_of_its_own_and_no_other_number_has_one() {
     };
     let named: Vec<_> = (-300..300).filter(|code| name(*code) != "unknown").collect();
     let header = include_str!("../holdover.h");
-    let status = header.split("enum holdover_status_t").nth(1).unwrap().split("};").next().unwrap();
     let codes =
-        status.lines().filter_map(|line| line.trim().strip_suffix(',')?.split_once(" = ")?.1.parse::<i32>().ok());
-    let mut codes: Vec<_> = codes.collect();
+        header.lines().filter_map(|line| line.split_once("((holdover_status_t)")?.1.trim_end_matches(')').parse().ok());
+    let mut codes: Vec<i32> = codes.collect();
     codes.sort_unstable();
     assert_eq!(named, codes);
     let mut names: Vec<_> = codes.iter().map(|code| name(*code)).collect();

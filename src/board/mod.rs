@@ -1,30 +1,38 @@
-//! The boards: frames of a bus and a timer enter, frames with their time of arrival and ticks leave. One folder per board,
-//! of which the target selects one, and beside them what they share.
+//! The boards: frames of a bus and a timer enter, frames with their time of arrival and ticks leave. One folder per chip, of
+//! which the board that is built for selects one, `stm32` for what its chips share, and beside them what all share.
 //!
 //! This is the only place with `unsafe` in it, and the only one that knows a chip.
 //!
 //! A board calls `firmware::run` once, with the unit's memory and itself: `Board` has `receive`, `send`, `tick`,
 //! `incidents` and `idle`, a pin `busy` and a `watchdog`.
 
+#[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
+mod acceptance;
 mod frame;
 mod outbox;
 mod periods;
 mod port;
-#[cfg(any(board = "zynqmp_r5", feature = "bxcan"))]
+#[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
 mod registers;
-#[cfg(board = "stm32f405")]
+#[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
 mod restarts;
 
-#[cfg(board = "stm32f405")]
-mod stm32f405;
-#[cfg(board = "stm32f405")]
-pub use stm32f405::*;
-#[cfg(board = "zynqmp_r5")]
+#[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
+mod stm32;
+#[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
+pub use stm32::*;
+#[cfg(chip = "stm32f405")]
+#[path = "stm32f405/mod.rs"]
+mod chip;
+#[cfg(chip = "stm32g474")]
+#[path = "stm32g474/mod.rs"]
+mod chip;
+#[cfg(chip = "zynqmp_r5")]
 mod zynqmp_r5;
-#[cfg(board = "zynqmp_r5")]
+#[cfg(chip = "zynqmp_r5")]
 pub use zynqmp_r5::*;
 
-#[cfg(not(any(board = "stm32f405", board = "zynqmp_r5")))]
+#[cfg(not(any(chip = "stm32f405", chip = "stm32g474", chip = "zynqmp_r5")))]
 compile_error!("the firmware has no board for this target; the core builds for it with `--lib`");
 
 /// In a build with the feature `no-panic` this refers to a symbol that there is not: the image can only be linked if the

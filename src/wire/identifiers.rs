@@ -6,7 +6,7 @@
 
 use super::Transport;
 use super::base_id::BaseId;
-use super::catalogue::{ABOUTS, About, Content, LINES, PEERS_OFFSET, SLOT_STRIDE, SLOTS, Speaker};
+use super::catalogue::{ABOUTS, About, BLOCK, Content, LINES, Node, PEERS_OFFSET, SLOT_STRIDE, SLOTS, Speaker};
 use super::identifier::Identifier;
 use super::index;
 use super::message_name::MessageName;
@@ -108,6 +108,13 @@ impl Identifiers {
             return first.plus(stride.wrapping_mul(u32::from(slot.0)));
         }
         self.base.plus(offset)
+    }
+
+    /// All identifiers that a unit takes in, for the acceptance filter of its controller. Those of the peers are of all slots: a frame of
+    /// a slot that a unit does not have is refused by name, and so has to reach it.
+    pub fn heard_by_unit(&self) -> impl Iterator<Item = Identifier> + '_ {
+        let is_heard = |offset: &u16| index::find(*offset).is_some_and(|(_, entry, _)| entry.sender != Node::Unit);
+        (0..BLOCK).filter(is_heard).map(|offset| self.at(offset))
     }
 
     /// The offset of an identifier; `None` if no line lies there. Offsets of the block at which the catalogue has no line are told

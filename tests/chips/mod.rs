@@ -3,6 +3,7 @@
 #![allow(dead_code)] // every test uses its own part of it
 
 pub mod stm32;
+pub mod stm32g474;
 pub mod zynqmp;
 
 use crate::board::frame::CanFrame;
@@ -22,6 +23,16 @@ pub trait Chip {
     fn wait(&self);
     /// Whether it takes part in the bus, or will when that has been idle for a moment.
     fn is_on(&self) -> bool;
+}
+
+/// What they ask of one with mailboxes, which sends the lowest identifier first.
+pub trait Mailboxes: Chip {
+    /// The first frame is on the bus, and neither its end nor an error has come.
+    fn begin(&self);
+    /// Whether an interrupt is there.
+    fn interrupts(&self) -> bool;
+    /// Mailboxes that wait.
+    fn pending(&self) -> usize;
 }
 
 pub fn standard(id: u16, data: &[u8]) -> CanFrame {

@@ -1,6 +1,7 @@
 //! The CAN controller of the STM32F405, bxCAN.
 
-use super::Chip;
+use super::{Chip, Mailboxes};
+use crate::board::acceptance::Patterns;
 use crate::board::frame::CanFrame;
 use crate::board::registers::Registers;
 use crate::board::stm32f405::can::{self, Controller, offset};
@@ -11,6 +12,7 @@ use std::rc::Rc;
 
 pub const CLOCK_HZ: u32 = 42_000_000;
 const DEPTH: usize = 3;
+const BANKS: usize = 14;
 const INITIALISING: u32 = 1;
 const ASLEEP: u32 = 1 << 1;
 
@@ -40,19 +42,16 @@ pub struct State {
     /// It counts idle bits, to be back.
     counts: bool,
     filters_are_set_up: bool,
+    /// Banks that are on, and their words.
     filters: u32,
+    banks: [[u32; 2]; BANKS],
 }
 
 impl State {
-    /// Whether an interrupt is there.
-    pub fn interrupts(&self) -> bool {
-        let done = self.mailboxes.iter().any(|mailbox| mailbox.done);
-        done && self.interrupts & can::ON_DONE != 0
-            || !self.received.is_empty() && self.interrupts & can::ON_PENDING != 0
-    }
-
-    pub fn pending(&self) -> usize {
-        self.mailboxes.iter().filter(|mailbox| mailbox.pending).count()
+    /// Whether a bank that is on, as wide as an extended identifier and with a mask, lets this identifier in.
+    fn lets_in(&self, id: u32) -> bool {
+        let is_on = |bank: &usize| self.filters & 1 << bank != 0;
+        (0..BANKS).filter(is_on).any(|bank| (id ^ self.banks[bank][0]) & self.banks[bank][1] == 0)
     }
 
     /// The next one to be sent: the lowest identifier, and of the same the lowest mailbox.
@@ -69,12 +68,22 @@ impl State {
 #[derive(Clone)]
 pub struct Mock(pub Rc<RefCell<State>>);
 
-impl Mock {
-    /// The first frame is on the bus, and neither its end nor an error has come.
-    pub fn begin(&self) {
+impl Mailboxes for Mock {
+    fn begin(&self) {
         if let Some(mailbox) = self.0.borrow_mut().first() {
             mailbox.on_air = true;
         }
+    }
+
+    fn interrupts(&self) -> bool {
+        let chip = self.0.borrow();
+        let done = chip.mailboxes.iter().any(|mailbox| mailbox.done);
+        done && chip.interrupts & can::ON_DONE != 0
+            || !chip.received.is_empty() && chip.interrupts & can::ON_PENDING != 0
+    }
+
+    fn pending(&self) -> usize {
+        self.0.borrow().mailboxes.iter().filter(|mailbox| mailbox.pending).count()
     }
 }
 
@@ -103,7 +112,9 @@ impl Chip for Mock {
 
     fn hear(&self, frame: &CanFrame) {
         let mut chip = self.0.borrow_mut();
-        assert!(chip.filters & 1 != 0, "a controller without a filter hears nothing");
+        if !chip.lets_in(mailbox::words(frame)[0]) {
+            return;
+        }
         if chip.received.len() == DEPTH {
             chip.lost = true;
         } else {
@@ -169,10 +180,15 @@ impl Registers for Mock {
             offset::IER => chip.interrupts = word,
             offset::FMR => chip.filters_are_set_up = word & 1 != 0,
             offset::FA1R => chip.filters = word,
-            offset::FM1R | offset::FS1R | offset::FFA1R => {
-                assert!(chip.filters_are_set_up && chip.filters == 0);
+            offset::FM1R | offset::FFA1R => assert!(chip.filters_are_set_up && chip.filters == 0 && word == 0),
+            offset::FS1R => {
+                assert!(chip.filters_are_set_up && chip.filters == 0 && word == (1 << word.count_ones()) - 1);
             }
-            _ if (offset::BANK..offset::BANK + 8).contains(&place) => assert_eq!(chip.filters, 0),
+            _ if (offset::BANK..offset::BANK + 8 * BANKS).contains(&place) => {
+                assert_eq!(chip.filters, 0);
+                let at = place - offset::BANK;
+                chip.banks[at / 8][at % 8 / 4] = word;
+            }
             offset::RF0R => {
                 chip.lost &= word & can::LOST == 0;
                 if word & can::RELEASE != 0 {
@@ -221,11 +237,17 @@ pub fn chip() -> Mock {
         counts: false,
         filters_are_set_up: false,
         filters: 0,
+        banks: Default::default(),
     })))
 }
 
 /// A controller in operation, and the chip behind it.
 pub fn controller() -> (Controller<Mock>, Mock) {
+    listening(Patterns::everything())
+}
+
+/// One that lets this in.
+pub fn listening(wanted: Patterns) -> (Controller<Mock>, Mock) {
     let mock = chip();
-    (Controller::start(mock.clone(), CLOCK_HZ), mock)
+    (Controller::start(mock.clone(), CLOCK_HZ, wanted), mock)
 }

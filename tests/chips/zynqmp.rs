@@ -1,6 +1,7 @@
 //! The CAN controller of the ZynqMP.
 
 use super::Chip;
+use crate::board::acceptance::Patterns;
 use crate::board::frame::CanFrame;
 use crate::board::registers::Registers;
 use crate::board::zynqmp_r5::can::{self, Controller, offset};
@@ -18,6 +19,9 @@ pub struct State {
     /// On the bus, or ready for it; with none of it the driver may set it up.
     pub enabled: bool,
     pub timing: Option<(u32, u32)>,
+    /// Filters that are on, and their words: mask and identifier.
+    filters: u32,
+    filter: [[u32; 2]; can::ACCEPTANCE],
     events: u32,
     /// Which of them interrupt.
     interrupts: u32,
@@ -28,6 +32,13 @@ pub struct State {
 }
 
 impl State {
+    /// Without a filter it lets everything in.
+    fn lets_in(&self, id: u32) -> bool {
+        let is_on = |number: &usize| self.filters & 1 << number != 0;
+        let mut used = (0..can::ACCEPTANCE).filter(is_on).peekable();
+        used.peek().is_none() || used.any(|number| (id ^ self.filter[number][1]) & self.filter[number][0] == 0)
+    }
+
     /// Whether a core that sleeps is woken, or does not fall asleep.
     pub fn wakes(&self) -> bool {
         self.events & self.interrupts != 0
@@ -62,6 +73,9 @@ impl Chip for Mock {
 
     fn hear(&self, frame: &CanFrame) {
         let mut chip = self.chip.borrow_mut();
+        if !chip.lets_in(Layout::Silicon.words(frame)[0]) {
+            return;
+        }
         if chip.received.len() == DEPTH {
             chip.events |= can::OVERRUN;
         } else {
@@ -127,7 +141,13 @@ impl Registers for Mock {
                 }
             }
             offset::INTERRUPTS => chip.interrupts = word,
-            offset::MODE | offset::FILTERS => assert_eq!(word, 0),
+            offset::MODE => assert_eq!(word, 0),
+            offset::FILTERS => chip.filters = word,
+            _ if (offset::FILTER..offset::FILTER + 8 * can::ACCEPTANCE).contains(&place) => {
+                let at = place - offset::FILTER;
+                assert_eq!(chip.filters & 1 << (at / 8), 0, "a filter that is on does not change");
+                chip.filter[at / 8][at % 8 / 4] = word;
+            }
             _ => {
                 let at = offset::TRANSMIT
                     .iter()
@@ -148,6 +168,11 @@ impl Registers for Mock {
 
 /// A controller in operation, and the chip behind it.
 pub fn controller() -> (Controller<Mock>, Mock) {
+    listening(Patterns::everything())
+}
+
+/// One that lets this in.
+pub fn listening(wanted: Patterns) -> (Controller<Mock>, Mock) {
     let mock = Mock::default();
-    (Controller::start(mock.clone(), Layout::Silicon), mock)
+    (Controller::start(mock.clone(), Layout::Silicon, wanted), mock)
 }

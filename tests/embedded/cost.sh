@@ -31,6 +31,16 @@ timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial no
     exit 1
 }
 
+# What a float's exponential and root take, and how far they are off.
+cargo build --locked --quiet --profile firmware --target $target -p holdover-image --bin maths
+timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial none \
+    -semihosting-config enable=on,target=native -icount shift=6,align=off,sleep=off \
+    -kernel "${CARGO_TARGET_DIR:-target}/$target/firmware/maths" >>"$work/counts" || {
+    echo "cost: the program for a float's functions failed in the emulator; its last words:"
+    tail -n 5 "$work/counts"
+    exit 1
+}
+
 # The firmware without logs: what is in flash (.data lies there too, for the start), and what is in RAM for good.
 (cd ../.. && cargo build --locked --quiet --profile firmware --target $target --bin holdover-ecu)
 size -A "${CARGO_TARGET_DIR:-../../target}/$target/firmware/holdover-ecu" | awk '
@@ -108,6 +118,24 @@ tables() {
         $1 == "step-f32" { row("follower, `f32` on the FPU", $4) }
         $1 == "step-f64" { row("follower, `f64` in software", $4) }
         $1 == "step-kalman" { row("Kalman filter with constant acceleration, `f32` (`minikalman`)", $4) }' "$1"
+    echo
+    echo '| a function of a float | instructions | largest error |'
+    echo '|---|--:|--:|'
+    awk -F, '
+        { count[$1] = $4 }
+        function row(what, name) { printf "| %s | %d | %.1e |\n", what, count[name], (count[name "-error"] + 1) / 1e9 }
+        END {
+            row("`e^(-δt/T)` and what it stands in, the core", "exp-fixed")
+            row("the same, `f32` with `micromath`", "exp-micromath")
+            row("root, `f32` with `micromath`, relative", "sqrt-micromath")
+        }' "$1"
+    echo
+    echo '| a follower after 4 s, `f32` against `f64` | apart, mm |'
+    echo '|---|--:|'
+    awk -F, '
+        function row(what, micrometres) { printf "| %s | %.2f |\n", what, micrometres / 1000 }
+        $1 == "place-f32-near" { row("at the origin", $4) }
+        $1 == "place-f32-far" { row("5 km from it", $4) }' "$1"
     echo
 }
 

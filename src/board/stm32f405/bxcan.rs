@@ -4,21 +4,23 @@
 
 use super::can::Controller;
 use super::clocks::Clocks;
-use super::port::Select;
-use super::registers::{RCC_APB1ENR, Register};
-use super::wiring::CAN;
+use super::registers::{RCC_APB1ENR, of_can1};
+use super::wiring::WIRING;
+use crate::board::acceptance::Patterns;
 use crate::board::registers::Registers;
+use crate::board::stm32::port::Select;
+use crate::firmware::CONFIG;
 
 /// The registers of CAN1.
 pub struct Can1;
 
 impl Registers for Can1 {
     fn read(&self, offset: usize) -> u32 {
-        Register::of_can1(offset).read()
+        of_can1(offset).read()
     }
 
     fn write(&mut self, offset: usize, word: u32) {
-        Register::of_can1(offset).write(word);
+        of_can1(offset).write(word);
     }
 }
 
@@ -28,10 +30,11 @@ impl Select for Controller<Can1> {
     const TELLS_WHEN_SENT: bool = true;
 
     fn start(clocks: &Clocks) -> Self {
-        let (pins, function) = CAN;
+        let (pins, function) = WIRING.can;
         pins.into_iter().for_each(|pin| pin.start_function(function));
         RCC_APB1ENR.enable(1 << 25); // CAN1
+        let wanted = Patterns::of(CONFIG.identifiers.heard_by_unit());
         // Without the crystal the bit rate would be off by more than a bus bears.
-        Self::start(Can1, if clocks.is_by_crystal { clocks.slow_bus_hz } else { 0 })
+        Self::start(Can1, if clocks.is_by_crystal { clocks.slow_bus_hz } else { 0 }, wanted)
     }
 }

@@ -6,9 +6,11 @@
 //! mailboxes are empty by then.
 
 use super::mailbox;
+use crate::board::acceptance::{Pattern, Patterns};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::registers::Registers;
+use heapless::Vec;
 
 /// Byte offsets.
 pub mod offset {
@@ -58,6 +60,8 @@ pub const ON_PENDING: u32 = 1 << 1;
 pub const BUS_OFF: u32 = 1 << 2;
 
 const MAILBOXES: usize = 3;
+/// Filter banks that are this controller's while the chip's second one, which shares them, is not used.
+const BANKS: usize = 14;
 
 const BIT_RATE: u32 = 500_000;
 /// Of a bit: one, then these before and behind the sample point, at 86 % of it. A resynchronisation moves it by up to `JUMP`.
@@ -77,6 +81,7 @@ const _: () = assert!(TOLERANCE >= 5_000, "CAN asks for a clock within 0.5 %, an
 /// The controller as a port.
 pub struct Controller<R> {
     registers: R,
+    filters: Vec<Pattern, BANKS>,
     /// `None` if the clock does not give the bit rate: then it keeps away from the bus.
     timing: Option<u32>,
     bus: Bus,
@@ -96,9 +101,10 @@ enum Bus {
 }
 
 impl<R: Registers> Controller<R> {
-    /// Puts it into operation, by a clock of this many hertz.
-    pub fn start(registers: R, clock_hz: u32) -> Self {
-        let mut controller = Self { registers, timing: timing(clock_hz), bus: Bus::Stuck };
+    /// Puts it into operation, by a clock of this many hertz; it lets in what is wanted, at least.
+    pub fn start(registers: R, clock_hz: u32, wanted: Patterns) -> Self {
+        let filters = wanted.at_most();
+        let mut controller = Self { registers, filters, timing: timing(clock_hz), bus: Bus::Stuck };
         controller.join();
         controller
     }
@@ -113,7 +119,7 @@ impl<R: Registers> Controller<R> {
         }
         self.registers.write(offset::BTR, timing);
         self.registers.write(offset::IER, ON_DONE | ON_PENDING);
-        self.accept_all();
+        self.filter();
         self.registers.write(offset::MCR, 0);
         self.bus = Bus::On;
     }
@@ -122,17 +128,23 @@ impl<R: Registers> Controller<R> {
         self.registers.read(offset::MSR) & INITIALISE != 0
     }
 
-    /// One filter bank with a mask that asks for nothing, into the first queue.
-    fn accept_all(&mut self) {
+    /// A filter bank of an identifier and a mask for each pattern, into the first queue. Remote frames pass like others: the unit
+    /// refuses them by name.
+    fn filter(&mut self) {
         let begin = self.registers.read(offset::FMR) | 1;
         self.registers.write(offset::FMR, begin);
         self.registers.write(offset::FA1R, 0);
         self.registers.write(offset::FM1R, 0);
-        self.registers.write(offset::FS1R, 1);
         self.registers.write(offset::FFA1R, 0);
-        self.registers.write(offset::BANK, 0);
-        self.registers.write(offset::BANK + 4, 0);
-        self.registers.write(offset::FA1R, 1);
+        let mut used = 0;
+        for (number, pattern) in self.filters.iter().enumerate() {
+            for (word, place) in mailbox::filter(pattern).into_iter().zip([0, 4]) {
+                self.registers.write(offset::BANK + 8 * number + place, word);
+            }
+            used |= 1 << number;
+        }
+        self.registers.write(offset::FS1R, used);
+        self.registers.write(offset::FA1R, used);
         self.registers.write(offset::FMR, begin & !1);
     }
 }

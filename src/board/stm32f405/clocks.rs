@@ -5,10 +5,13 @@
 //! model has no clock tree, and skips it.
 
 use super::registers::{FLASH_ACR, RCC_CFGR, RCC_CR, RCC_PLLCFGR};
-use super::watchdog::Watchdog;
-use super::wiring::CRYSTAL_MHZ;
+use super::wiring::WIRING;
+use crate::board::stm32::watchdog::Watchdog;
 
-const _: () = assert!(CRYSTAL_MHZ.is_multiple_of(2) && CRYSTAL_MHZ >= 4, "the PLL takes 2 MHz of it");
+const CRYSTAL_MHZ: u32 = WIRING.crystal_mhz;
+
+const _: () =
+    assert!(CRYSTAL_MHZ.is_multiple_of(2) && 4 <= CRYSTAL_MHZ && CRYSTAL_MHZ <= 26, "the PLL takes 2 MHz of it");
 
 /// The internal oscillator, from which the chip starts.
 const INTERNAL_MHZ: u32 = 16;

@@ -1,6 +1,7 @@
 //! How a frame stands in the four words of a mailbox of bxCAN, for sending and for receiving: frames enter and words leave, and
 //! the other way round.
 
+use crate::board::acceptance::Pattern;
 use crate::board::frame::CanFrame;
 use embedded_can::{ExtendedId, Frame, Id, StandardId};
 
@@ -39,4 +40,10 @@ pub fn frame([id, length, low, high]: Words) -> Option<CanFrame> {
     }
     let data = (u64::from(high) << 32 | u64::from(low)).to_le_bytes();
     CanFrame::new(name, data.get(..length)?)
+}
+
+/// The two words of a filter bank: the identifier, and which of its bits are asked for, as they stand in a mailbox.
+pub fn filter(pattern: &Pattern) -> [u32; 2] {
+    let (shift, kind) = if pattern.is_extended { (EXTENDED_SHIFT, EXTENDED) } else { (STANDARD_SHIFT, 0) };
+    [pattern.bits << shift | kind, pattern.mask << shift | EXTENDED]
 }

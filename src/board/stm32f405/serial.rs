@@ -2,7 +2,7 @@
 
 use super::clocks::Clocks;
 use super::registers::{RCC_APB2ENR, USART1_BRR, USART1_CR1, USART1_DR, USART1_SR};
-use super::wiring::SERIAL;
+use super::wiring::WIRING;
 use crate::board::port::Overrun;
 
 const BAUD: u32 = 460_800;
@@ -18,7 +18,7 @@ pub struct Serial(());
 impl Serial {
     /// Puts the pins and the line into operation: 460,800 baud, 8 data bits, no parity, 1 stop bit.
     pub fn start(clocks: &Clocks) -> Self {
-        let (pins, function) = SERIAL;
+        let (pins, function) = WIRING.serial;
         pins.into_iter().for_each(|pin| pin.start_function(function));
         RCC_APB2ENR.enable(1 << 4); // USART1
         // Sixteenths of a bit time, to nearest: at 84 MHz 0.2 % off, of the 3 % or so that a receiver bears.

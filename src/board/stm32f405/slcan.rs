@@ -2,10 +2,10 @@
 
 use super::clocks::Clocks;
 use super::line::{self, Line, Text};
-use super::port::Select;
 use super::serial::{self, Serial};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
+use crate::board::stm32::port::Select;
 
 /// The adapter.
 pub struct Slcan {
@@ -33,6 +33,7 @@ impl Select for Slcan {
     /// An interrupt for every byte would cost the tick more than it gains: an adapter has a queue of its own.
     const TELLS_WHEN_SENT: bool = false;
 
+    /// An adapter passes everything: what it would take to filter differs from one to the next.
     fn start(clocks: &Clocks) -> Self {
         // It is shorter than the longest line.
         let mut outgoing = Text::from_slice(line::OPENING).unwrap_or_default();

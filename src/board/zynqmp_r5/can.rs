@@ -6,9 +6,11 @@
 //! one is chosen when the bus is there for it. A frame that is too old comes back by a reset of the whole controller.
 
 use super::layout::Layout;
+use crate::board::acceptance::{Pattern, Patterns};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::registers::Registers;
+use heapless::Vec;
 
 /// Byte offsets.
 pub mod offset {
@@ -34,6 +36,8 @@ pub mod offset {
     pub const RECEIVE: [usize; 4] = [0x50, 0x54, 0x58, 0x5c];
     /// Which acceptance filters are on; with none everything is received.
     pub const FILTERS: usize = 0x60;
+    /// The two words of the first one, mask and identifier; the others follow.
+    pub const FILTER: usize = 0x64;
 }
 
 /// Bits of the control register.
@@ -52,16 +56,28 @@ pub const EMPTIED: u32 = 1 << 14;
 /// 500 kbit/s from the 100 MHz that the boot loader gives the controller: quanta of 0.1 µs, 20 a bit, sampled after 17 (85 %).
 const QUANTUM: u32 = 10 - 1;
 /// Before and after the sample point, and how far a resynchronisation moves it; each less one.
-const BIT: u32 = (16 - 1) | (3 - 1) << 4 | (3 - 1) << 7;
+const BIT: u32 = (BEFORE - 1) | (BEHIND - 1) << 4 | (JUMP - 1) << 7;
+const BEFORE: u32 = 16;
+const BEHIND: u32 = 3;
+const JUMP: u32 = 3;
+const QUANTA: u32 = 1 + BEFORE + BEHIND;
+/// By ISO 11898-1, in millionths: over the ten bits from one edge to the next at the latest, and over the thirteen from an error to the
+/// sample point that judges it.
+const TOLERANCES: [u32; 2] = [JUMP * 1_000_000 / (20 * QUANTA), BEHIND * 1_000_000 / (2 * (13 * QUANTA - BEHIND))];
+const _: () = assert!(TOLERANCES[0] >= 5_000 && TOLERANCES[1] >= 5_000, "CAN has to bear clocks that are 0.5 % off");
 
 /// Periods to stay away after a bus-off. ISO 11898-1 asks for 128 times 11 bits, which are 2.8 ms. The calls of two periods can
 /// be closer together than that, if the first one is late; those of three cannot.
 const ABSENCE: u32 = 2;
 
+/// Acceptance filters that it has.
+pub const ACCEPTANCE: usize = 4;
+
 /// The controller as a port.
 pub struct Controller<R> {
     registers: R,
     layout: Layout,
+    filters: Vec<Pattern, ACCEPTANCE>,
     /// How many periods it still keeps away from the bus.
     absent: u32,
     /// A reset did not end, and nobody has been told.
@@ -71,9 +87,10 @@ pub struct Controller<R> {
 }
 
 impl<R: Registers> Controller<R> {
-    /// Puts it into operation.
-    pub fn start(registers: R, layout: Layout) -> Self {
-        let mut controller = Self { registers, layout, absent: 0, is_stuck: false, sending: None };
+    /// Puts it into operation; it lets in what is wanted, at least.
+    pub fn start(registers: R, layout: Layout, wanted: Patterns) -> Self {
+        let filters = wanted.at_most();
+        let mut controller = Self { registers, layout, filters, absent: 0, is_stuck: false, sending: None };
         controller.leave();
         controller.join();
         controller
@@ -99,14 +116,24 @@ impl<R: Registers> Controller<R> {
         self.absent = 0;
         self.registers.write(offset::PRESCALER, QUANTUM);
         self.registers.write(offset::TIMING, BIT);
-        self.registers.write(offset::FILTERS, 0);
+        self.filter();
         self.registers.write(offset::INTERRUPTS, NOT_EMPTY | OVERRUN);
         self.registers.write(offset::MODE, 0);
         self.registers.write(offset::CONTROL, ENABLE);
     }
-}
 
-impl<R: Registers> Controller<R> {
+    /// Sets the filters up, while the controller is. All are off after its reset, and so not busy.
+    fn filter(&mut self) {
+        let mut used = 0;
+        for (number, pattern) in self.filters.iter().enumerate() {
+            for (word, place) in self.layout.filter(pattern).into_iter().zip([0, 4]) {
+                self.registers.write(offset::FILTER + 8 * number + place, word);
+            }
+            used |= 1 << number;
+        }
+        self.registers.write(offset::FILTERS, used);
+    }
+
     /// Takes note that the frame in the transmit queue has been sent.
     fn settle(&mut self) {
         if self.sending == Some(Fate::Underway) && self.registers.read(offset::EVENTS) & EMPTIED != 0 {

@@ -1,6 +1,7 @@
 //! How a frame stands in the four words of the CAN controller's queues: frames enter and words leave, and the other way
 //! round. The chip and the emulator's model of it do it differently, and here alone is what the difference is.
 
+use crate::board::acceptance::Pattern;
 use crate::board::frame::CanFrame;
 use embedded_can::{ExtendedId, Frame, Id, StandardId};
 
@@ -84,5 +85,19 @@ impl Layout {
             Self::Model => word.to_le_bytes(),
         });
         CanFrame::new(id, [a, b, c, d, e, f, g, h].get(..length)?)
+    }
+
+    /// The two words of an acceptance filter: which bits of the identifier word are asked for, and what they have to be. Remote frames
+    /// pass like others: the unit refuses them by name.
+    pub fn filter(self, pattern: &Pattern) -> [u32; 2] {
+        let word = |bits: u32| match (self, pattern.is_extended) {
+            (Self::Silicon, false) => bits << STANDARD_SHIFT,
+            (Self::Silicon, true) => {
+                bits >> EXTENDED_BITS << STANDARD_SHIFT | (bits & ((1 << EXTENDED_BITS) - 1)) << EXTENDED_SHIFT
+            }
+            (Self::Model, _) => bits,
+        };
+        let flag = if self == Self::Silicon { EXTENDED } else { LINUX_EXTENDED };
+        [word(pattern.mask) | flag, word(pattern.bits) | if pattern.is_extended { flag } else { 0 }]
     }
 }

@@ -13,8 +13,10 @@ mod pin;
 mod registers;
 mod start;
 
+use super::acceptance::Patterns;
 use super::outbox::{self, Outbox, Pass};
 use super::port::{Overrun, Port};
+use crate::firmware::CONFIG;
 use alarm::Alarm;
 use can::Controller;
 use clock::Clock;
@@ -25,8 +27,8 @@ use layout::Layout;
 use pin::Pin;
 use registers::Block;
 
-#[cfg(feature = "log")]
-compile_error!("this board has no way out for a log; build without the feature `log`");
+#[cfg(feature = "_log")]
+compile_error!("this board has no way out for a log; build without the features `log` and `log-semihosting`");
 
 /// Everything that the shell needs of the hardware.
 pub struct Board {
@@ -48,9 +50,9 @@ impl Board {
     fn start() -> Option<Self> {
         // The chip's real-time cores are numbers 0 and 1. The emulator's model counts the four application cores first; its
         // CAN controller takes frames in another layout, its cycles are nanoseconds, and it has no pins.
-        let (layout, cycles_per_micro, pins, alarm) = match registers::core_number() {
-            0 | 1 => (Layout::Silicon, 500, Some(Block::GPIO), None),
-            _ => (Layout::Model, 1000, None, Some(Block::TIMERS)),
+        let (can, layout, cycles_per_micro, pins, alarm) = match registers::core_number() {
+            0 | 1 => (Block::CAN1, Layout::Silicon, 500, Some(Block::GPIO), None),
+            _ => (Block::CAN0, Layout::Model, 1000, None, Some(Block::TIMERS)),
         };
         let clock = Clock::start(cycles_per_micro);
         let alarm = alarm.map(|block| Alarm::start(block, clock.left()));
@@ -58,7 +60,7 @@ impl Board {
             busy: Pin::start(pins),
             watchdog: Watchdog,
             restarts: 0,
-            port: Controller::start(Block::CAN0, layout),
+            port: Controller::start(can, layout, Patterns::of(CONFIG.identifiers.heard_by_unit())),
             outbox: outbox::of_the_shell(),
             overruns: 0,
             clock,

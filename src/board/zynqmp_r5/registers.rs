@@ -8,8 +8,10 @@ use core::arch::asm;
 pub struct Block(usize);
 
 impl Block {
-    /// CAN0, on the pins that the boot loader gave it.
+    /// The CAN controllers, on the pins that the boot loader gave them. On the ZCU102 the second one has the transceiver; of the
+    /// emulator the first one is used.
     pub const CAN0: Self = Self(0xff06_0000);
+    pub const CAN1: Self = Self(0xff07_0000);
     /// General-purpose pins.
     pub const GPIO: Self = Self(0xff0a_0000);
 

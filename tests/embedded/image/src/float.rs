@@ -1,10 +1,17 @@
 //! The follower's step of the prediction in floating point, line by line what the core computes in fixed point: a state, a
 //! predecessor's steps and a law enter, the vehicle's steps leave. For comparison only; the core has no float.
+//!
+//! The exponential of a lag is `micromath`'s in `f32`, as the crate is made for an FPU without one, and `libm`'s in `f64`.
+
+use micromath::F32Ext;
 
 macro_rules! follower {
-    ($name:ident, $float:ty) => {
+    ($name:ident, $float:ty, $exp:expr) => {
         /// One follower with its steps.
         pub mod $name {
+            #[allow(unused_imports)] // one of the two has it
+            use super::F32Ext;
+
             /// Position and speed at one step.
             #[derive(Clone, Copy, Default)]
             pub struct Step {
@@ -15,6 +22,7 @@ macro_rules! follower {
             }
 
             /// The constants of a step; times in s, accelerations in m/s².
+            #[derive(Clone, Copy)]
             pub struct Law {
                 /// `K` of the semi-implicit step.
                 pub gain: $float,
@@ -38,6 +46,16 @@ macro_rules! follower {
                 pub ceiling: $float,
                 /// Limit on jerk times `δt`.
                 pub slew: $float,
+            }
+
+            impl Law {
+                /// This one, with the lag `T` of the actuators of another vehicle.
+                #[inline(never)]
+                pub fn with_lag(self, lag: $float) -> Self {
+                    let exp: fn($float) -> $float = $exp;
+                    let keep = exp(-self.step / lag);
+                    Self { keep, slip: lag * (1.0 - keep), ..self }
+                }
             }
 
             /// Of a whole number.
@@ -99,5 +117,5 @@ macro_rules! follower {
     };
 }
 
-follower!(single, f32);
-follower!(double, f64);
+follower!(single, f32, |x| x.exp());
+follower!(double, f64, libm::exp);

@@ -1,11 +1,12 @@
 //! The predictor that a user would otherwise take: a Kalman filter of position, speed and constant acceleration in `f32`, from
-//! the crate `minikalman`. Steps enter, predictions of the state and its covariance leave.
+//! the crate `minikalman`. Steps enter, predictions of the state and its deviation leave; the root of the variance is `micromath`'s.
 #![allow(non_snake_case)] // the crate's names of matrices
 
+use micromath::F32Ext;
 use minikalman::prelude::*;
 use minikalman::regular::RegularKalmanBuilder;
 
-/// So many predictions; the position at the last, and its variance, so that the covariance is computed too.
+/// So many predictions; the position at the last, and its standard deviation, so that the covariance is computed too.
 #[inline(never)]
 pub fn predict(steps: usize) -> (f32, f32) {
     impl_buffer_x!(mut x, 3, f32, 0.0);
@@ -30,5 +31,5 @@ pub fn predict(steps: usize) -> (f32, f32) {
     for _ in 0..steps {
         filter.predict();
     }
-    (filter.state_vector().get_row(0), filter.estimate_covariance().get_at(0, 0))
+    (filter.state_vector().get_row(0), filter.estimate_covariance().get_at(0, 0).sqrt())
 }

@@ -2,8 +2,9 @@
 //! time of arrival and leave by [`Inbox`]; what the shell sends waits in the [`Outbox`], out of which the shell and the interrupts
 //! give it to the port. So what a tick has sent leaves while the next one runs.
 
-use super::clocks::Clocks;
-use super::{Selected, clock};
+use super::clock;
+use crate::board::chip::Selected;
+use crate::board::chip::clocks::Clocks;
 use crate::board::frame::CanFrame;
 use crate::board::outbox::{Outbox, Pass};
 use crate::board::port::{Overrun, Port};
@@ -21,7 +22,7 @@ pub trait Select: Port + Sized {
     const INTERRUPTS: &'static [i16];
     /// Whether one comes when a frame has been sent.
     const TELLS_WHEN_SENT: bool;
-    /// Puts it into operation.
+    /// Puts it into operation. It lets in what the unit takes in, at least.
     fn start(clocks: &Clocks) -> Self;
 }
 

@@ -1,15 +1,18 @@
 //! The independent watchdog: finished ticks enter; if five in a row are missing, a reset leaves. And how often that has
 //! happened since power came on.
 
-use super::registers::{IWDG_KR, IWDG_PR, IWDG_RLR, RCC_CSR};
+use super::register::{DBGMCU_APB1_FREEZE, IWDG_KR, IWDG_PR, IWDG_RLR};
+use crate::board::chip::registers::{CLEAR_CAUSES, RCC_CSR};
 use crate::board::restarts::{self, Kept};
 use core::mem::MaybeUninit;
 
-/// By the watchdog's own oscillator, which is 47 % slow or 60 % fast at worst: 30 to 95 ms.
+/// By the watchdog's own oscillator: 30 to 95 ms with that of the STM32F405, which is 47 % slow or 60 % fast at worst, and 47 to 55
+/// ms with the STM32G474's.
 const TIMEOUT_MS: u32 = 50;
 
 const RESET_BY_WATCHDOG: u32 = 1 << 29;
-const CLEAR_CAUSES: u32 = 1 << 24;
+/// The watchdog stops while a debugger has halted the core: a breakpoint is no reset.
+const FREEZE: u32 = 1 << 12;
 
 /// What outlives a reset: the start-up code leaves this section alone.
 #[unsafe(link_section = ".uninit.RESTARTS")]
@@ -34,10 +37,12 @@ pub struct Watchdog(());
 
 impl Watchdog {
     pub fn start() -> Self {
+        DBGMCU_APB1_FREEZE.set(0, FREEZE);
+        // First, as this starts the oscillator that takes the two others over; until then it waits for half a second.
+        IWDG_KR.write(0xcccc);
         IWDG_KR.write(0x5555); // unlocks the two
         IWDG_PR.write(3); // 32 kHz / 32
         IWDG_RLR.write(TIMEOUT_MS);
-        IWDG_KR.write(0xcccc);
         Self(())
     }
 

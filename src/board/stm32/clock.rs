@@ -5,8 +5,9 @@
 //! is lost, because the core stood still for longer than a period (a debugger, an emulator that gets no processor), would
 //! leave the unit's time a period behind until the next synchronisation. So it costs a tick and nothing else.
 
-use super::clocks::Clocks;
-use super::registers::{RCC_APB1ENR, TIM2_CNT, TIM2_CR1, TIM2_EGR, TIM2_PSC};
+use super::register::{TIM2_CNT, TIM2_CR1, TIM2_EGR, TIM2_PSC};
+use crate::board::chip::clocks::Clocks;
+use crate::board::chip::registers::RCC_APB1ENR;
 use crate::board::periods::{PERIOD_MICROS, Periods};
 use core::cell::Cell;
 use cortex_m::interrupt::{self, Mutex};

@@ -1,6 +1,6 @@
 //! One output pin: levels enter by `embedded-hal`'s trait, and stand at the pin.
 
-use super::wiring::BUSY;
+use crate::board::chip::wiring::WIRING;
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
 
@@ -9,7 +9,7 @@ pub struct Pin(());
 
 impl Pin {
     pub fn start() -> Self {
-        BUSY.start_output();
+        WIRING.busy.start_output();
         Self(())
     }
 }
@@ -20,12 +20,12 @@ impl ErrorType for Pin {
 
 impl OutputPin for Pin {
     fn set_low(&mut self) -> Result<(), Infallible> {
-        BUSY.write(false);
+        WIRING.busy.write(false);
         Ok(())
     }
 
     fn set_high(&mut self) -> Result<(), Infallible> {
-        BUSY.write(true);
+        WIRING.busy.write(true);
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! Pins: a place and what it is for enter, and the pin is set up for it.
 
-use super::registers::{RCC_AHB1ENR, Register};
+use super::register::Register;
+use crate::board::chip::registers::{RCC_PORTS, of_port};
 
 /// The ports that a board may use.
 #[derive(Clone, Copy)]
@@ -27,7 +28,7 @@ const FUNCTION: usize = 0x20;
 
 impl Place {
     fn register(self, offset: usize) -> Register {
-        Register::of_port(self.port as usize, offset)
+        of_port(self.port as usize, offset)
     }
 
     /// Of each pin's two bits.
@@ -37,14 +38,14 @@ impl Place {
 
     /// The pin is an output, and low.
     pub fn start_output(self) {
-        RCC_AHB1ENR.enable(1 << self.port as u32);
+        RCC_PORTS.enable(1 << self.port as u32);
         self.write(false);
         self.set_mode(0b01);
     }
 
     /// The pin belongs to the peripheral that has it by this function.
     pub fn start_function(self, function: u32) {
-        RCC_AHB1ENR.enable(1 << self.port as u32);
+        RCC_PORTS.enable(1 << self.port as u32);
         let shift = 4 * (self.pin % 8);
         self.register(FUNCTION + 4 * (self.pin / 8) as usize).set(0xf << shift, function << shift);
         self.set_mode(0b10);

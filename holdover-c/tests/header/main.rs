@@ -1,19 +1,49 @@
 //! `holdover.h` says what the sources say.
 
+mod enumerations;
+mod layout;
+
 use std::path::Path;
+
+/// What the program may have for the library.
+const HOOK: &str = "
+// Not of the library: a program on a bare machine may have it. A panic of the library calls it, and when it returns the processor stays
+// where it is. Whoever links as docs/INTEGRATION.md says can see that nothing reaches a panic.
+void holdover_panicked(void);
+";
 
 fn header() -> String {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(package.join("cbindgen.toml")).unwrap();
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for name in ["answer", "config", "config/identifiers", "doors", "frame", "memory", "status"] {
+    for name in ["answer", "config", "config/identifiers", "doors", "frame", "incident", "map", "memory", "status"] {
         builder = builder.with_src(package.join("src").join(name).with_extension("rs"));
     }
     let mut text = Vec::new();
     builder.generate().unwrap().write(&mut text);
     let text = String::from_utf8(text).unwrap();
     // The generator names values after their type; the type's `_t` has no place there, nor has Rust's markup.
-    text.replace("HOLDOVER_STATUS_T_", "HOLDOVER_").replace("_T_", "_").replace("[`", "`").replace("`]", "`")
+    let text =
+        text.replace("HOLDOVER_STATUS_T_", "HOLDOVER_").replace("_T_", "_").replace("[`", "`").replace("`]", "`");
+    let text = enumerations::as_constants(&text);
+    let (text, end) = text.split_once("#ifdef __cplusplus\nextern").expect("the functions");
+    let (functions, end) = end.split_once("\n#ifdef __cplusplus\n}").expect("the end");
+    format!("{text}{}\n#ifdef __cplusplus\nextern{functions}{HOOK}\n#ifdef __cplusplus\n}}{end}", layout::assertions())
+}
+
+/// Every field of every struct is in it, so that none goes unasserted.
+#[test]
+fn the_layouts_have_every_field_of_every_struct() {
+    let (header, layouts) = (header(), layout::layouts());
+    assert_eq!(header.matches("typedef struct ").count(), layouts.len());
+    for layout in layouts {
+        let from = header.split_once(&format!("typedef struct {} {{\n", layout.name)).expect(layout.name).1;
+        let lines = from.lines().take_while(|line| !line.starts_with('}')).filter(|line| line.ends_with(';'));
+        let fields = lines.map(|line| line.trim_end_matches([';', ']']).split(['[']).next().unwrap());
+        let fields: Vec<_> = fields.map(|field| field.rsplit([' ', '*']).next().unwrap()).collect();
+        let listed: Vec<_> = layout.fields.iter().map(|(name, _)| *name).collect();
+        assert_eq!(fields, listed, "{}", layout.name);
+    }
 }
 
 #[test]
@@ -38,7 +68,7 @@ fn the_header_is_ascii() {
 
 #[test]
 fn the_header_has_every_function_of_the_library() {
-    let doors = include_str!("../src/doors.rs");
+    let doors = include_str!("../../src/doors.rs");
     let names: Vec<_> = doors
         .lines()
         .filter_map(|line| line.split_once("extern \"C\" fn ")?.1.split_once('('))
