@@ -9,6 +9,7 @@ use super::amplification::Speeds;
 use crate::input::impairment::Link;
 use crate::input::scenario::Scenario;
 use crate::sim::channel::Channel;
+use crate::sim::plain::{Sample, demand};
 use crate::sim::plant::Plant;
 use crate::sim::quantities::speed;
 use crate::sim::world::{config, machine};
@@ -20,14 +21,6 @@ pub enum Reading {
     AsItStands,
     /// Age times speed is added to the position.
     AgeTimesSpeed,
-}
-
-/// A message: its time of sending, and the position and speed in it.
-#[derive(Clone, Copy)]
-struct Sample {
-    at_s: f64,
-    position_m: f64,
-    speed_mps: f64,
 }
 
 /// A follower.
@@ -91,23 +84,16 @@ impl Follower {
     /// Eq. 5, within the same limits as those of the units.
     fn drive(&mut self, scenario: &Scenario, index: usize, at_s: f64, reading: Reading) {
         let config = config(scenario, index);
-        let number = |thousandths: i32| f64::from(thousandths) / 1e3;
-        let (k, damping) = (number(config.law.gain.to_milli()), number(config.law.damping.to_millis()));
-        let described = &scenario.vehicles[index];
-        let spacing = scenario.vehicles[index - 1].length_m + described.standstill_m;
         let Plant { position_m, speed_mps, .. } = self.plant;
-        let desired = self.newest.map_or(0.0, |sample| {
-            let moved = match reading {
-                Reading::AsItStands => 0.0,
-                Reading::AgeTimesSpeed => sample.speed_mps * (at_s - sample.at_s),
-            };
-            let error = position_m - sample.position_m - moved + spacing + speed_mps * described.time_gap_s;
-            -k * (error + damping * (speed_mps - sample.speed_mps))
-        });
-        let limits = config.limits;
-        let slew = number(limits.jerk.to_mm_per_s3()) * scenario.period_s;
-        let (lowest, highest) = (-number(limits.braking.to_mm_per_s2()), number(limits.acceleration.to_mm_per_s2()));
-        self.demand_mps2 = desired.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
+        let moved = |sample: Sample| match reading {
+            Reading::AsItStands => sample,
+            Reading::AgeTimesSpeed => {
+                Sample { position_m: sample.position_m + sample.speed_mps * (at_s - sample.at_s), ..sample }
+            }
+        };
+        let (length_m, newest) = (scenario.vehicles[index - 1].length_m, self.newest.map(moved));
+        let own = (position_m, speed_mps);
+        self.demand_mps2 = demand(&config, length_m, own, newest, self.demand_mps2, scenario.period_s);
         let demand = Acceleration::from_bits((self.demand_mps2 * f64::from(1 << 25)).round() as i32);
         let body: Body = config.body;
         self.plant.drive(body.effort(demand, speed(speed_mps)), scenario.period_s);
