@@ -16,6 +16,7 @@ pub mod gains;
 pub mod hil;
 pub mod identifiers;
 pub mod interruption;
+pub mod live;
 pub mod mistyped;
 pub mod motions;
 pub mod options;

@@ -9,6 +9,7 @@ pub(crate) mod envelope;
 pub mod event;
 pub(crate) mod keys;
 mod plant;
+pub mod saved;
 pub(crate) mod sensors;
 pub(crate) mod set;
 mod start;

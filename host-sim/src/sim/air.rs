@@ -86,6 +86,12 @@ impl Air {
         Some(Arrived { at_s, to: flight.to, message: flight.message })
     }
 
+    /// Whether every message that is sent over a link now is lost.
+    #[must_use]
+    pub fn is_silent(&self, link: Link, at_s: f64) -> bool {
+        self.channel.is_silent(link, at_s)
+    }
+
     /// What happens to the links beside the model.
     pub fn changes(&mut self) -> &mut Changes {
         self.channel.changes()

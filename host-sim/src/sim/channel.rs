@@ -125,7 +125,7 @@ impl Channel {
         let is_impaired = self.model.impairs(link);
         let delays = match self.changes.radio(link) {
             Some(radio) => {
-                let outages = self.model.outages().filter(|_| is_impaired).unwrap_or_default().to_vec();
+                let outages = Vec::new();
                 let Radio { delay_mean_s, delay_std_s, loss } = radio;
                 let changed = Impairment::Random { delay_mean_s, delay_std_s, loss, duplicate: 0.0, outages };
                 changed.delays(at_s, generator)
@@ -134,6 +134,15 @@ impl Channel {
             None => [Some(0.0), None],
         };
         record.note(at_s, if self.changes.is_silent(link, at_s) { [None; 2] } else { delays })
+    }
+
+    /// Whether every message that is sent over a link now is lost.
+    #[must_use]
+    pub fn is_silent(&self, link: Link, at_s: f64) -> bool {
+        let is_as_modelled = self.model.impairs(link) && self.changes.radio(link).is_none();
+        let outages = self.model.outages().filter(|_| is_as_modelled).unwrap_or_default();
+        let is_now = |outage: &Window| (outage.from_s..outage.to_s).contains(&at_s);
+        self.changes.is_silent(link, at_s) || outages.iter().any(is_now)
     }
 
     /// Forgets all links of a vehicle that has gone.

@@ -35,7 +35,7 @@ pub enum Change {
     Drive(f64),
     /// The person lets go, and the unit drives again.
     Release,
-    /// All links of the vehicle have this delay and this loss from now on.
+    /// All links of the vehicle have this delay and this loss from now on, and none of the channel's outages any more.
     Links(Radio),
     /// The vehicle neither sends nor receives for so many seconds.
     Outage(f64),
@@ -55,7 +55,8 @@ pub struct Radio {
 }
 
 /// What can be switched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Part {
     /// The estimate. Without it the vehicle drives by the newest message as it stands, and without the envelope.
     Holdover,

@@ -3,15 +3,23 @@
 use holdover::ConfigError;
 
 use super::World;
+use crate::input::impairment::Link;
 use crate::input::scenario::{Change, Envelope, Event, Part};
 
 /// A tick's time is a product of a count and a period that binary fractions cannot hold.
 const SAME_TICK_S: f64 = 1e-9;
 
 impl World<'_> {
-    /// Adds an event, which is not before any that was added.
+    /// Adds an event that is due at the next tick, in the place of all that were still to happen.
     pub fn add(&mut self, event: Event) {
+        self.events.truncate(self.happened);
         self.events.push(event);
+    }
+
+    /// Whether every message of the vehicle ahead that is sent now is lost on its way to this one.
+    #[must_use]
+    pub fn is_in_silence(&self, index: usize, at_s: f64) -> bool {
+        index.checked_sub(1).is_some_and(|ahead| self.air.is_silent(Link { from: ahead, to: index }, at_s))
     }
 
     /// Whether the envelopes can be switched. For that every unit has a twin from the beginning.
