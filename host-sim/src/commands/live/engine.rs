@@ -141,15 +141,17 @@ impl Engine {
                     return Ok(if is_possible { self.change(stage, event) } else { None });
                 }
                 None => {
+                    let cut = self.steer(stage, order)?;
+                    self.show(stage, self.pace);
                     let _ = to.send(Ok(()));
-                    return self.steer(stage, order);
+                    return Ok(cut);
                 }
             },
         }
         Ok(None)
     }
 
-    /// An event happens at the next tick; what was still to happen after a way back does not.
+    /// An event happens at the next tick; what was to happen later, after a way back, does not.
     fn change(&mut self, stage: &mut Stage<'_>, event: Event) -> Option<Cut> {
         self.events = self.so_far(stage);
         self.events.push(event);

@@ -19,4 +19,6 @@ pub const FILES: &[File] = files![
     "/plots.js" "text/javascript; charset=utf-8" "plots.js",
     "/drive.js" "text/javascript; charset=utf-8" "drive.js",
     "/frames.js" "text/javascript; charset=utf-8" "frames.js",
+    "/tour.js" "text/javascript; charset=utf-8" "tour.js",
+    "/view.js" "text/javascript; charset=utf-8" "view.js",
 ];

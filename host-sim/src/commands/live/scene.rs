@@ -44,6 +44,10 @@ pub struct Seen {
     pub is_driven: bool,
     /// Whether it drives without the estimate.
     pub is_plain: bool,
+    /// Whether its envelope is engaged.
+    pub has_envelope: bool,
+    /// Whether its range sensor is at work.
+    pub sees: bool,
     /// Whether what the vehicle ahead sends is lost.
     pub is_silent: bool,
     /// Bumper gap to the vehicle ahead.

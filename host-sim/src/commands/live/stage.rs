@@ -77,7 +77,7 @@ impl<'a> Stage<'a> {
         self.scenario.leader.motion.is_some() && self.ticks as usize >= self.world.ticks()
     }
 
-    /// Adds an event that is due at the next tick, in the place of all that were still to happen.
+    /// Adds an event that is due at the next tick, in the place of all that were to happen later.
     pub fn add(&mut self, event: Event) {
         self.world.add(event);
     }
@@ -161,6 +161,8 @@ impl<'a> Stage<'a> {
             is_limited: tick.limited,
             is_driven: vehicle.is_driven(),
             is_plain: vehicle.is_plain(),
+            has_envelope: vehicle.unit.config().envelope.is_some(),
+            sees: vehicle.sees() && self.scenario.vehicles[index].range_sensor.is_some(),
             is_silent: self.world.is_in_silence(index, at_s),
             gap_m: ahead.map(|(ahead, length_m)| rounded(ahead.position_m - length_m - tick.position_m)),
             load: rounded(self.buses[index].load()),

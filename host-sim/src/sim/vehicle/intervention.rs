@@ -105,6 +105,12 @@ impl Vehicle {
         self.intervention.is_blind = is_blind;
     }
 
+    /// Whether its range sensor is at work, if it has one.
+    #[must_use]
+    pub fn sees(&self) -> bool {
+        self.intervention.sees()
+    }
+
     /// Fits a second unit with this envelope, which is ready to change places with the first one.
     ///
     /// # Errors

@@ -10,9 +10,10 @@ use crate::input::scenario::{Change, Envelope, Event, Part};
 const SAME_TICK_S: f64 = 1e-9;
 
 impl World<'_> {
-    /// Adds an event that is due at the next tick, in the place of all that were still to happen.
+    /// Adds an event that is due at the next tick, in the place of all that were to happen later.
     pub fn add(&mut self, event: Event) {
-        self.events.truncate(self.happened);
+        let is_due = |other: &Event| other.at_s <= event.at_s + SAME_TICK_S;
+        self.events.truncate(self.events.partition_point(is_due));
         self.events.push(event);
     }
 

@@ -5,6 +5,8 @@ import { frames } from "./frames.js";
 import { get, listen, order } from "./link.js";
 import { plots } from "./plots.js";
 import { road } from "./scene.js";
+import { tour } from "./tour.js";
+import { ride } from "./view.js";
 
 const byId = (id) => document.getElementById(id);
 const cast = await (await get("/cast")).json();
@@ -95,6 +97,12 @@ for (const part of ["holdover", "envelope", "range_sensor"]) {
     if (!(await order({ do: "switch", vehicle: whom(), part, on }))) event.target.checked = !on;
   };
 }
+// Somebody else may have switched, and time may have gone back.
+function tellSwitches(scene) {
+  const some = scene.vehicles.filter((_, index) => index > 0 && (whom() ?? index) === index);
+  const is = { holdover: (seen) => !seen.is_plain, envelope: (seen) => seen.has_envelope, range_sensor: (seen) => seen.sees };
+  if (some.length) Object.entries(is).forEach(([part, on]) => (byId(part).checked = some.some(on)));
+}
 
 // Keys. In a field of a form they are the field's.
 addEventListener("keydown", (event) => {
@@ -120,14 +128,15 @@ addEventListener("keydown", (event) => {
 
 const parts = [];
 const view = road(state, choose);
-parts.push(view, plots(state, (tell) => listeners.push(tell)), drive(state), frames(state));
+parts.push(view, plots(state, (tell) => listeners.push(tell)), drive(state), frames(state), tour(state), ride(state));
 choose(cast.ego);
 
 function tell(scene) {
   byId("clock").textContent = `${scene.at_s.toFixed(2)} s`;
   byId("play").textContent = scene.is_playing ? "Pause" : "Play";
   byId("pace").value = scene.pace;
-  const number = (value, digits) => (value == null ? "–" : value.toFixed(digits));
+  tellSwitches(scene);
+  const number = (value, digits) => (value == null ? "–" : value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1"));
   scene.vehicles.forEach((seen, index) => {
     const target = seen.target;
     const width = target?.bound_m ? target.bound_m[1] - target.bound_m[0] : null;
@@ -179,6 +188,6 @@ function draw(now) {
   drawn += 1;
 }
 requestAnimationFrame(draw);
-// For those who measure: frames drawn, and what was shown last.
-globalThis.holdover = { state, frames: () => drawn };
+// For those who measure, and for the tour.
+globalThis.holdover = { state, choose, frames: () => drawn };
 document.documentElement.dataset.ready = "yes";

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# live.sh: the page of `live` in a real browser without a screen. Pictures of it go to target/live/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/need.sh
+
+need chromium chromium
+target=${CARGO_TARGET_DIR:-target}
+python=$target/live-python
+mkdir -p "$python" "$target/live"
+need_python "$python" scripts/live-requirements.txt
+cargo build --locked --release -p holdover-sim
+timeout 170 "$python/bin/python" scripts/live_check.py "$target/release/holdover-sim" "$(command -v chromium)" "$target/live"
