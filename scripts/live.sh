@@ -11,3 +11,6 @@ mkdir -p "$python" "$target/live"
 need_python "$python" scripts/live-requirements.txt
 cargo build --locked --release -p holdover-sim
 timeout 170 "$python/bin/python" scripts/live_check.py "$target/release/holdover-sim" "$(command -v chromium)" "$target/live"
+sim=$target/release/holdover-sim
+"$sim" run --no-report --trace "$target/live/run.csv" --mcap "$target/live/run.mcap" >/dev/null
+"$python/bin/python" scripts/mcap_check.py "$target/live/run.mcap" "$target/live/run.csv"

@@ -119,14 +119,14 @@ def time_goes_back(page):
     holds("b: ten seconds back", page.until(f"state.scene.ticks === {ticks - 1000}"))
     page.keyboard.press(".")
     holds("the point key: one step", page.until(f"state.scene.ticks === {ticks - 999}"))
-    page.order(f'{{"do":"step","ticks":999}}')
+    page.order('{"do":"step","ticks":999}')
     holds("and on: the same is seen again", page.until(f"state.scene.ticks === {ticks}")
           and page.read("JSON.stringify(state.scene.vehicles)") == first)
 
 
 def instruments(page):
     page.click("#frames summary")
-    page.wait_for_function("document.querySelectorAll('#rows tr').length > 10")
+    holds("frames are listed", page.until("document.querySelectorAll('#rows tr').length > 10"))
     rows = page.text_content("#rows")
     holds("frames are decoded", "EgoMotionA" in rows and re.search(r"Speed [0-9.]+ m/s", rows) is not None)
     page.check("#rides")
@@ -138,8 +138,7 @@ def the_tour(page):
     page.order('{"do":"pace","factor":4}')
     for step, seconds in enumerate([2, 8, 6, 6, 16], start=1):
         page.click("#tour-next")
-        holds(f"step {step} of the tour", page.text_content("#tour-text").startswith(f"{step}. ")
-              or page.wait_for_function(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')") is not None)
+        holds(f"step {step} of the tour", page.until(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')"))
         began = page.read("state.scene.at_s")
         page.until(f"state.scene.at_s < {began} || state.scene.at_s > {began + seconds}")
         if step == 4:

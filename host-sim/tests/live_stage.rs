@@ -175,8 +175,16 @@ fn an_envelope_is_switched_in_the_middle_of_a_run_that_stays_the_same_up_to_then
     assert_eq!(heard.journal().1, 600);
     assert_eq!(heard.vehicles(600), before);
     heard.step_to(700);
+    let after = heard.vehicles(700);
+    let engaged = |scene: &serde_json::Value| scene.as_array().unwrap().iter().all(|seen| seen["has_envelope"] == true);
+    assert!(engaged(&before) && !engaged(&after));
+    heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: true });
+    heard.step_to(701);
+    assert!(engaged(&heard.vehicles(701)));
+    heard.order(Order::Back { seconds: 0.01 });
+    heard.order(Order::Links { vehicle: None, delay_mean_s: 0.1, delay_std_s: 0.0, loss: 0.0 });
     let (events, ticks) = heard.end();
-    assert_eq!((events.len(), ticks), (1, 700));
+    assert_eq!((events.len(), ticks), (3, 700));
 }
 
 #[test]

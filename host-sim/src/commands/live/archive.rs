@@ -1,6 +1,6 @@
 //! What can be kept of a run: its events enter; the scenario with them, the log of a bus and the catalogue leave.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use holdover::time::Instant;
 use holdover::wire::Transport;
@@ -8,12 +8,14 @@ use holdover::wire::dbc::Dbc;
 
 use super::scene::{Cast, Role};
 use crate::bus::candump::LogWriter;
+use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::input::impairment::Impairment;
 use crate::input::scenario::{Event, Overrides, Scenario, saved};
+use crate::measure::simulate::simulate_beside;
 use crate::sim::modem::ECU_PEERS;
 use crate::sim::time::{EPOCH_US, micros};
-use crate::sim::world::{World, config};
+use crate::sim::world::{Trace, World, config};
 
 /// The scenario, as it was read.
 #[derive(Debug)]
@@ -60,7 +62,7 @@ impl Archive {
     /// The frames on the bus of a vehicle over a run with these events, as a candump log; `None` without such a vehicle.
     #[must_use]
     pub fn candump(&self, events: Vec<Event>, ticks: u64, vehicle: usize) -> Option<String> {
-        let scenario = Scenario { events, duration_s: ticks as f64 * self.scenario.period_s, ..self.scenario.clone() };
+        let scenario = self.with(events, ticks);
         if vehicle >= scenario.vehicles.len() {
             return None;
         }
@@ -70,6 +72,22 @@ impl Archive {
         let trace = world.run(|_| {}).ok()?;
         trace.log.iter().try_for_each(|(at_s, frame)| log.write(instant(*at_s), frame)).ok()?;
         String::from_utf8(log.finish().ok()?).ok()
+    }
+
+    /// Writes every tick of a run with these events.
+    ///
+    /// # Errors
+    /// A file that cannot be written.
+    pub fn mcap(&self, events: Vec<Event>, ticks: u64, file: &Path) -> Result<(), Error> {
+        let scenario = self.with(events, ticks);
+        let mut mcap = McapFile::of(file, &scenario)?;
+        let each = |at_s: f64, trace: &mut Trace, paper_m| mcap.note(at_s, &trace.latest, paper_m);
+        simulate_beside(&scenario, scenario.seed, None, each, |_| {})?;
+        mcap.finish()
+    }
+
+    fn with(&self, events: Vec<Event>, ticks: u64) -> Scenario {
+        Scenario { events, duration_s: ticks as f64 * self.scenario.period_s, ..self.scenario.clone() }
     }
 
     /// The messages on the buses.

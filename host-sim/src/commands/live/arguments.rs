@@ -28,6 +28,10 @@ pub struct LiveArguments {
     #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1")]
     pub listen: IpAddr,
 
+    /// At the end, write every tick of the run up to then for Foxglove and other readers of MCAP
+    #[arg(long, value_name = "FILE.mcap")]
+    pub mcap: Option<PathBuf>,
+
     /// Seed of everything random, instead of the scenario's
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,

@@ -153,12 +153,13 @@ impl Engine {
 
     /// An event happens at the next tick; what was to happen later, after a way back, does not.
     fn change(&mut self, stage: &mut Stage<'_>, event: Event) -> Option<Cut> {
+        let has_twins = stage.has_twins();
         self.events = self.so_far(stage);
         self.events.push(event);
         stage.add(event);
         let needs_twins = matches!(event.change, Change::Switch(Part::Envelope, _));
         // The run is then the same, with a second unit in every vehicle that was ready from its beginning.
-        (needs_twins && !stage.has_twins()).then_some(Cut::Again(stage.ticks()))
+        (needs_twins && !has_twins).then_some(Cut::Again(stage.ticks()))
     }
 
     fn steer(&mut self, stage: &mut Stage<'_>, order: Order) -> io::Result<Option<Cut>> {

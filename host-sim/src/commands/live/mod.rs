@@ -39,7 +39,7 @@ use server::Desk;
 /// # Errors
 /// A port that is taken, and a scenario that the units refuse.
 pub fn run(options: &LiveOptions) -> Result<Verdict, Error> {
-    let LiveOptions { archive, address, opens_browser } = options;
+    let LiveOptions { archive, address, mcap, opens_browser } = options;
     let address = *address;
     let end = Interruption::awaited()?;
     let unheard = |error: io::Error| match error.kind() {
@@ -65,10 +65,13 @@ pub fn run(options: &LiveOptions) -> Result<Verdict, Error> {
     if *opens_browser {
         open(&format!("http://{heard}/"));
     }
-    Engine::new(scenario, asked, scenes).run(&end).map_err(|error| {
+    let (events, ticks) = Engine::new(scenario, asked, scenes).run(&end).map_err(|error| {
         Error::new(format!("the simulation ended ({error})"), "change the scenario accordingly, or report this")
     })?;
-    Ok(Verdict::Pass)
+    match mcap {
+        Some(file) => archive.mcap(events, ticks, file).map(|()| Verdict::Pass),
+        None => Ok(Verdict::Pass),
+    }
 }
 
 /// Opens the page in the user's browser. Where none can be opened, the address has been printed.

@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::input::library::{self, Kind};
 use crate::input::scenario::{Overrides, Scenario};
 use crate::output;
+use crate::places::can_be_file;
 
 /// A live run.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct LiveOptions {
     pub archive: Arc<Archive>,
     /// Where the page is served.
     pub address: SocketAddr,
+    /// File of every vehicle's ticks.
+    pub mcap: Option<PathBuf>,
     /// Whether a browser is opened.
     pub opens_browser: bool,
 }
@@ -37,6 +40,9 @@ impl LiveOptions {
             let remedy = "give a string of vehicles, such as paper or motorway";
             return Err(Error::new("is a corridor, and the live page shows strings of vehicles", remedy).in_file(&file));
         }
+        if let Some(mcap) = &arguments.mcap {
+            can_be_file("--mcap", mcap, &[&file])?;
+        }
         let scenario = Scenario::parse(&file, &text, &overrides)?;
         scenario.findings().iter().for_each(|finding| output::say(&format!("warning: {finding}")));
         let title = match &arguments.scenario {
@@ -46,6 +52,7 @@ impl LiveOptions {
         Ok(Self {
             archive: Arc::new(Archive::new(scenario, (file, text), overrides, title)?),
             address: SocketAddr::new(arguments.listen, arguments.port),
+            mcap: arguments.mcap,
             opens_browser: !arguments.no_browser,
         })
     }

@@ -102,6 +102,10 @@ pub struct RunSettings {
     #[arg(long, value_name = "FILE.csv")]
     pub trace: Option<PathBuf>,
 
+    /// Write every tick of every vehicle for Foxglove and other readers of MCAP, as JSON channels. Strings of vehicles only
+    #[arg(long, value_name = "FILE.mcap")]
+    pub mcap: Option<PathBuf>,
+
     /// Write the frames on one vehicle's bus as a candump log. Of a corridor, that of the first seed as the scenario says
     #[arg(long, value_name = "FILE")]
     pub candump: Option<PathBuf>,

@@ -10,6 +10,7 @@ mod table;
 
 use indicatif::ProgressBar;
 
+use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::measure::figures::failures;
 use crate::measure::simulate::simulate_beside;
@@ -29,9 +30,13 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let bar = ProgressBar::new(1000);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
     let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
+    let mut mcap = options.mcap.as_ref().map(|file| McapFile::of(file, scenario)).transpose()?;
     let mut candump = options.candump.as_ref().map(Candump::begin).transpose()?;
     let each = |at_s: f64, trace: &mut Trace, paper_m| {
         if let Some(file) = &mut traced {
+            file.note(at_s, &trace.latest, paper_m);
+        }
+        if let Some(file) = &mut mcap {
             file.note(at_s, &trace.latest, paper_m);
         }
         if let Some(log) = &mut candump {
@@ -48,10 +53,11 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     // One file that cannot be written does not keep the others away.
     let delivered = options.destination.deliver(&summary, &text, &text, page);
     let traced = traced.map_or(Ok(()), TraceFile::finish);
+    let kept = mcap.map_or(Ok(()), McapFile::finish);
     let logged = candump.map_or(Ok(()), |mut log| {
         log.note(&trace.log);
         log.finish()
     });
-    delivered.and(traced).and(logged)?;
+    delivered.and(traced).and(kept).and(logged)?;
     Ok(Verdict::of(&failures))
 }

@@ -23,6 +23,8 @@ pub struct RunOptions {
     pub destination: Destination,
     /// File for the trace of every tick.
     pub trace: Option<PathBuf>,
+    /// File of every vehicle's ticks.
+    pub mcap: Option<PathBuf>,
     /// The bus to log.
     pub candump: Option<Candump>,
 }
@@ -65,7 +67,11 @@ impl RunOptions {
         let destination = settings.output.read()?;
         let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
         let destination = destination.with_findings(scenario.findings(), settings.strict)?;
-        let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
+        let outputs = [
+            ("--trace", settings.trace.as_deref()),
+            ("--mcap", settings.mcap.as_deref()),
+            ("--candump", settings.candump.as_deref()),
+        ];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
         for (option, file) in outputs {
             if let Some(file) = file {
@@ -74,7 +80,15 @@ impl RunOptions {
             }
         }
         let candump = settings.candump.map(|file| Candump { file, vehicle });
-        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, candump })
+        Ok(Self {
+            scenario,
+            scenario_file,
+            arguments,
+            destination,
+            trace: settings.trace,
+            mcap: settings.mcap,
+            candump,
+        })
     }
 }
 
