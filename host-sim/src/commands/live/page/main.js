@@ -88,12 +88,15 @@ byId("outage").onclick = silence;
 byId("heal").onclick = () => order({ do: "outage", vehicle: whom(), seconds: 0 });
 
 // The switches.
+// What was switched here a moment ago stands until the engine shows it.
+const switchedAt = {};
 byId("envelope").checked = cast.has_envelope;
 byId("range_sensor").checked = cast.vehicles.some((role) => role.has_sensor);
 byId("range_sensor").disabled = !byId("range_sensor").checked;
 for (const part of ["holdover", "envelope", "range_sensor"]) {
   byId(part).onchange = async (event) => {
     const on = event.target.checked;
+    switchedAt[part] = performance.now();
     if (!(await order({ do: "switch", vehicle: whom(), part, on }))) event.target.checked = !on;
   };
 }
@@ -101,7 +104,10 @@ for (const part of ["holdover", "envelope", "range_sensor"]) {
 function tellSwitches(scene) {
   const some = scene.vehicles.filter((_, index) => index > 0 && (whom() ?? index) === index);
   const is = { holdover: (seen) => !seen.is_plain, envelope: (seen) => seen.has_envelope, range_sensor: (seen) => seen.sees };
-  if (some.length) Object.entries(is).forEach(([part, on]) => (byId(part).checked = some.some(on)));
+  if (!some.length) return;
+  for (const [part, on] of Object.entries(is)) {
+    if (!(performance.now() - switchedAt[part] < 1000)) byId(part).checked = some.some(on);
+  }
 }
 
 // Keys. In a field of a form they are the field's.
