@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study cross tasks firmware vcan c package)
+steps=(fmt lint doc test dbc study live cross tasks firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -24,6 +24,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   dbc       the DBC files as cantools and canmatrix read them: without a warning, and the same as DBC, KCD, SYM and ARXML
   study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
             the worst link of the string of ten
+  live      the page of `live` in a browser without a screen: it drives, breaks links and goes back in time; pictures in target/live
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   tasks     the unit as a task of RTIC and of Embassy compiles and links, by locked versions
   firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
@@ -94,6 +95,10 @@ step_study() {
     "$sim" run corridor --no-report --json >"$results"
     python3 scripts/documented_corridor.py docs/RESULTS.md "$results"
     "$sim" string --delays 0.2 --losses 0.4 --step-only --seeds 20 --no-report
+}
+
+step_live() {
+    scripts/live.sh
 }
 
 step_cross() {

@@ -17,7 +17,7 @@ fn ends(range_sensor: bool, headway: f64, dies: f64, brakes: bool) -> Option<Dri
         return None;
     }
     let with = Config { range_sensor, ..config() };
-    let mut ego = Driver::of(with.clone(), 3, 0, 30.0, 10.0, true);
+    let mut ego = Driver::of(with, 3, 0, 30.0, 10.0, true);
     (ego.sees_across, ego.is_blind) = (range_sensor, true);
     let ahead = Driver::of(with, 2, 0, 30.0 + headway, 10.0, true);
     let mut junction = Junction::new(vec![ego, ahead]);

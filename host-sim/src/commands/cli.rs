@@ -8,6 +8,7 @@ use crate::commands::envelope_cost::{self, arguments::EnvelopeCostArguments};
 use crate::commands::evaluate::{self, arguments::EvaluateArguments};
 use crate::commands::gains::{self, arguments::GainsArguments};
 use crate::commands::hil::{self, arguments::HilArguments};
+use crate::commands::live::{self, arguments::LiveArguments};
 use crate::commands::motions::{self, arguments::MotionsArguments};
 use crate::commands::record::{self, arguments::RecordArguments};
 use crate::commands::replay::{self, arguments::ReplayArguments};
@@ -40,6 +41,9 @@ pub enum Command {
     /// Run a scenario and report on it
     #[command(after_help = AFTER_HELP)]
     Run(RunArguments),
+    /// See a scenario in the browser and take part: drive, break the links, go back in time
+    #[command(after_help = live::arguments::AFTER_HELP)]
+    Live(LiveArguments),
     /// Measure the estimate of a recorded vehicle over a recorded link, or in silences
     #[command(after_help = evaluate::arguments::AFTER_HELP)]
     Evaluate(EvaluateArguments),

@@ -16,6 +16,8 @@ pub mod gains;
 pub mod hil;
 pub mod identifiers;
 pub mod interruption;
+pub mod live;
+pub mod mcap_file;
 pub mod mistyped;
 pub mod motions;
 pub mod options;

@@ -11,6 +11,7 @@ use crate::commands::envelope_cost::options::EnvelopeCostOptions;
 use crate::commands::evaluate::options::EvaluateOptions;
 use crate::commands::gains::GainsOptions;
 use crate::commands::hil::options::HilOptions;
+use crate::commands::live::options::LiveOptions;
 use crate::commands::motions::options::MotionsOptions;
 use crate::commands::record::RecordOptions;
 use crate::commands::replay::options::ReplayOptions;
@@ -19,7 +20,7 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, motions, record, replay, run, string, sweep,
+    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, motions, record, replay, run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -33,6 +34,8 @@ pub enum Options {
     Run(RunOptions),
     /// Run a corridor.
     Corridor(Box<CorridorOptions>),
+    /// Show a string of vehicles in the browser.
+    Live(Box<LiveOptions>),
     /// List the scenarios that come with the program, as JSON or not.
     List(bool),
     /// Print one of them.
@@ -71,6 +74,7 @@ impl Options {
     pub fn read(cli: Cli) -> Result<Self, Error> {
         match cli.command {
             Some(Command::Run(arguments)) => Self::of_run(arguments),
+            Some(Command::Live(arguments)) => LiveOptions::read(arguments).map(Box::new).map(Self::Live),
             Some(Command::Evaluate(arguments)) => EvaluateOptions::read(arguments).map(Self::Evaluate),
             Some(Command::Check(arguments)) => Ok(Self::Check(CheckOptions::read(arguments))),
             Some(Command::Sweep(arguments)) => SweepOptions::read(arguments).map(Self::Sweep),
@@ -112,6 +116,7 @@ impl Options {
         match self {
             Self::Run(options) => run::run(options),
             Self::Corridor(options) => corridor::run(options),
+            Self::Live(options) => live::run(options),
             Self::List(true) => output::print(&format!("{}\n", json(&library::listed())?)).map(|()| Verdict::Pass),
             Self::List(false) => output::print(&library::list()).map(|()| Verdict::Pass),
             Self::Show(text) => output::print(text).map(|()| Verdict::Pass),

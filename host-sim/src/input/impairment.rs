@@ -60,6 +60,15 @@ pub struct ChannelModel {
 }
 
 impl ChannelModel {
+    /// Its outages; `None` for a recording.
+    #[must_use]
+    pub fn outages(&self) -> Option<&[Window]> {
+        match &self.impairment {
+            Impairment::Random { outages, .. } => Some(outages),
+            Impairment::Recorded(_) => None,
+        }
+    }
+
     /// Whether a link is impaired.
     #[must_use]
     pub fn impairs(&self, link: Link) -> bool {

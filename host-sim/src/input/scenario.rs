@@ -6,8 +6,10 @@
 pub(crate) mod bus;
 mod draw;
 pub(crate) mod envelope;
+pub mod event;
 pub(crate) mod keys;
 mod plant;
+pub mod saved;
 pub(crate) mod sensors;
 pub(crate) mod set;
 mod start;
@@ -15,6 +17,7 @@ mod validate;
 
 pub use bus::VehicleBus;
 pub use envelope::Envelope;
+pub use event::{Change, Event, Fleet, Part, Radio};
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
 
 use crate::error::Error;
@@ -56,6 +59,8 @@ pub struct Scenario {
     pub envelope: Envelope,
     /// Every vehicle's own bus.
     pub bus: VehicleBus,
+    /// What is driven and changed during the run, in the order of time.
+    pub events: Vec<Event>,
     /// The identifiers on it. A scenario's file does not tell them; a device under test may have its own.
     pub identifiers: Identifiers,
 }
@@ -215,6 +220,12 @@ impl Scenario {
     /// The errors of [`Scenario::read`].
     pub fn parse(file: &Path, text: &str, overrides: &Overrides) -> Result<Self, Error> {
         validate::scenario(file, text, overrides)
+    }
+
+    /// What an event of it is checked against.
+    #[must_use]
+    pub fn fleet(&self) -> Fleet {
+        Fleet::of(&self.vehicles, &self.leader)
     }
 
     /// The files of its recordings.

@@ -92,7 +92,12 @@ impl Tap {
     /// Listens from now on.
     #[must_use]
     pub fn of(world: &World<'_>) -> Self {
-        let measured = world.measured();
+        Self::between(world, world.measured())
+    }
+
+    /// Listens from now on, on the bus of another vehicle.
+    #[must_use]
+    pub fn between(world: &World<'_>, measured: Measured) -> Self {
         let by = &world.vehicles()[measured.by];
         let observer = Observer::new(by.unit.config().identifiers).over(by.unit.config().transport);
         Self { measured, node: by.listen(), observer }

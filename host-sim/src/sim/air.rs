@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use crate::input::impairment::{ChannelModel, Link};
 use crate::sim::channel::Channel;
+use crate::sim::channel::changes::Changes;
 use crate::sim::modem::V2xMessage;
 use crate::sim::time::micros;
 
@@ -83,6 +84,17 @@ impl Air {
         let Reverse(flight) = self.flights.pop()?;
         let at_s = flight.arrives_us as f64 * 1e-6;
         Some(Arrived { at_s, to: flight.to, message: flight.message })
+    }
+
+    /// Whether every message that is sent over a link now is lost.
+    #[must_use]
+    pub fn is_silent(&self, link: Link, at_s: f64) -> bool {
+        self.channel.is_silent(link, at_s)
+    }
+
+    /// What happens to the links beside the model.
+    pub fn changes(&mut self) -> &mut Changes {
+        self.channel.changes()
     }
 
     /// Forgets the links of a vehicle that has gone.

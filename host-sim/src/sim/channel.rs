@@ -13,15 +13,21 @@
 //! - *Reordering* follows from the delays.
 //! - A *recording* replaces all of that. [`ChannelTrace::delay_at`](crate::input::recording::ChannelTrace::delay_at)
 //!   states how a recording is read.
+//! - *Changes* during the run are in [`changes`].
 //! - The receiving modem drops a message that is older than [`OLDEST_S`] on arrival. Stamps repeat after 13.1 s, so a
 //!   message that is a whole period old would be taken for a new one.
 
 use crate::input::impairment::{ChannelModel, Impairment, Link, Window};
+use crate::input::scenario::Radio;
 use crate::streams::{Purpose, stream, unit};
 use crate::thinned::{Thinning, halve};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::collections::BTreeMap;
+
+pub mod changes;
+
+use changes::Changes;
 
 /// The age beyond which a receiving modem drops a message, in seconds.
 pub const OLDEST_S: f64 = 10.0;
@@ -81,13 +87,25 @@ pub struct Channel {
     links: BTreeMap<Link, (ChaCha8Rng, LinkRecord)>,
     /// For a link on which nothing has been sent yet.
     thinning: Thinning,
+    changes: Changes,
 }
 
 impl Channel {
     /// A channel on which nothing has been sent yet.
     #[must_use]
     pub fn new(model: &ChannelModel, seed: u64) -> Self {
-        Self { model: model.clone(), seed, links: BTreeMap::new(), thinning: Thinning::default() }
+        Self {
+            model: model.clone(),
+            seed,
+            links: BTreeMap::new(),
+            thinning: Thinning::default(),
+            changes: Changes::default(),
+        }
+    }
+
+    /// What happens to the links beside the model.
+    pub fn changes(&mut self) -> &mut Changes {
+        &mut self.changes
     }
 
     /// The same with at most this many messages in the record of a link. Of more every second, every fourth and so on is kept.
@@ -104,9 +122,27 @@ impl Channel {
             let purpose = Purpose::Link { from: link.from as u16, to: link.to as u16 };
             (stream(seed, purpose), LinkRecord { thinning: self.thinning.clone(), ..LinkRecord::default() })
         });
-        let delays =
-            if self.model.impairs(link) { self.model.impairment.delays(at_s, generator) } else { [Some(0.0), None] };
-        record.note(at_s, delays)
+        let is_impaired = self.model.impairs(link);
+        let delays = match self.changes.radio(link) {
+            Some(radio) => {
+                let outages = Vec::new();
+                let Radio { delay_mean_s, delay_std_s, loss } = radio;
+                let changed = Impairment::Random { delay_mean_s, delay_std_s, loss, duplicate: 0.0, outages };
+                changed.delays(at_s, generator)
+            }
+            None if is_impaired => self.model.impairment.delays(at_s, generator),
+            None => [Some(0.0), None],
+        };
+        record.note(at_s, if self.changes.is_silent(link, at_s) { [None; 2] } else { delays })
+    }
+
+    /// Whether every message that is sent over a link now is lost.
+    #[must_use]
+    pub fn is_silent(&self, link: Link, at_s: f64) -> bool {
+        let is_as_modelled = self.model.impairs(link) && self.changes.radio(link).is_none();
+        let outages = self.model.outages().filter(|_| is_as_modelled).unwrap_or_default();
+        let is_now = |outage: &Window| (outage.from_s..outage.to_s).contains(&at_s);
+        self.changes.is_silent(link, at_s) || outages.iter().any(is_now)
     }
 
     /// Forgets all links of a vehicle that has gone.

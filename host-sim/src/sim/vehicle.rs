@@ -12,21 +12,20 @@ use holdover::wire::actuators::ActuatorState;
 use holdover::wire::command::{Command, Effort, ModeCode};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::estimate::TargetEstimate;
-use holdover::wire::motion::{Motion, WirePosition};
-use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Said, Sender};
+use holdover::wire::{Message, Predecessor, Received, Receiver, Role, Sender};
 use holdover::{Config, ConfigError};
 
 use crate::bus::memory::{MemoryBus, MemoryNode};
 use crate::bus::{Bus, Frame};
-use crate::sim::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, UNSERVED_EVERY_S, V2xMessage};
+use crate::sim::modem::{Course, ECU_PEERS, PEERS, Relay, Transmitter, V2xMessage};
 use crate::sim::plant::Plant;
-use crate::sim::quantities::{acceleration, metres, speed};
+use crate::sim::quantities::speed;
 use crate::sim::road::Ground;
-use crate::sim::sensors::{Ahead, RANGE_EVERY_S, Sensors};
-use crate::sim::station::station;
+use crate::sim::sensors::{Ahead, Sensors};
 use crate::sim::time::micros;
 use actuators::Actuators;
 use backlog::Backlog;
+use intervention::Intervention;
 use time_master::TimeMaster;
 
 pub mod actuators;
@@ -34,6 +33,8 @@ mod air;
 pub mod alias;
 mod backlog;
 mod drive;
+mod intervention;
+mod speech;
 mod time_master;
 mod unit;
 mod warm_up;
@@ -46,16 +47,8 @@ pub const SAMPLES: usize = 8;
 /// Steps of the horizons of a simulated unit.
 pub const STEPS: usize = 1082;
 
-/// Cycle of the time base, in seconds.
-const SYNC_EVERY_S: f64 = 0.5;
-/// Cycle of the position on the globe, in seconds.
-const LOCATE_EVERY_S: f64 = 0.1;
 /// Time for which the target estimate of a unit outside holds, in seconds: the timeout of that message.
 const ESTIMATE_TIMEOUT_S: f64 = 0.05;
-/// Cycle of what the actuators say, in seconds.
-const ACTUATORS_EVERY_S: f64 = 0.02;
-/// Cycle of the driver's request, in seconds.
-const REQUEST_EVERY_S: f64 = 0.1;
 
 /// A vehicle of a run.
 pub struct Vehicle {
@@ -98,6 +91,8 @@ pub struct Vehicle {
     actuator_state: Option<ActuatorState>,
     /// The effort until the next tick that is not the unit's.
     overriding: Option<Effort>,
+    /// What is done to it from outside.
+    intervention: Intervention,
     /// Time of the unit's last target estimate.
     estimate_s: f64,
     /// Names of the stations on its bus.
@@ -151,6 +146,7 @@ impl Vehicle {
             actuators: Actuators::new(f64::INFINITY),
             actuator_state: None,
             overriding: None,
+            intervention: Intervention::default(),
             estimate_s: f64::NEG_INFINITY,
             alias: Alias::default(),
             harness: bus.node(),
@@ -238,71 +234,6 @@ impl Vehicle {
         Ahead { rear_m: self.plant.position_m - self.length_m, speed_mps: self.plant.speed_mps }
     }
 
-    /// Puts on the unit's bus what the vehicle sends in a period: its motion, and when they are due the view of the
-    /// vehicle `ahead`, the driver's request and the time base. `None`: the range sensor is not at work.
-    ///
-    /// # Errors
-    /// Errors of the bus.
-    pub fn speak(&mut self, at_s: f64, period_s: f64, ahead: Option<Ahead>) -> io::Result<()> {
-        let now = self.instant(at_s);
-        if is_due(at_s, SYNC_EVERY_S, period_s) || !self.master.is_awake() {
-            self.master.synchronise(&mut self.sender, now, at_s)?;
-        }
-        self.sense(at_s)?;
-        if let Some(ground) = self.ground.filter(|_| is_due(at_s, LOCATE_EVERY_S, period_s)) {
-            let way_m = self.plant.position_m - ground.odometer_m;
-            let place = ground.road.said(way_m, self.tag, self.master.gnss(at_s).stamp());
-            self.put(at_s, &Message::Ego(Said::Geo(place)))?;
-        }
-        if let Some(ahead) = ahead.filter(|_| is_due(at_s, RANGE_EVERY_S, period_s))
-            && let Some(seen) = self.sensors.look(at_s, self.plant.position_m, self.plant.speed_mps, ahead)
-        {
-            self.put(at_s, &Message::Range(seen))?;
-        }
-        if let Some(state) = self.actuator_state.filter(|_| is_due(at_s, ACTUATORS_EVERY_S, period_s)) {
-            self.put(at_s, &Message::Actuators(state))?;
-        }
-        if is_due(at_s, UNSERVED_EVERY_S, period_s)
-            && let Some(unserved) = self.relay.unserved(at_s)
-        {
-            self.put(at_s, &Message::Unserved(unserved))?;
-        }
-        if is_due(at_s, REQUEST_EVERY_S, period_s) {
-            self.request(at_s)?;
-        }
-        self.follow_up() // at once, if a frame takes no time
-    }
-
-    /// Sends the second message of the time base, once the first one has been on the bus.
-    fn follow_up(&mut self) -> io::Result<()> {
-        let began = Instant::from_micros(self.clock_offset_us);
-        self.master.follow_up(&mut self.sender, |at| at.since(began).as_micros() as f64 * 1e-6)
-    }
-
-    /// Sends the vehicle's own motion, as its sensors measure it now.
-    fn sense(&mut self, at_s: f64) -> io::Result<()> {
-        self.tag = (self.tag + 1) % 4;
-        let motion = Motion {
-            tag: self.tag,
-            position: WirePosition::from_position(metres(self.plant.position_m)),
-            speed: speed(self.plant.speed_mps),
-            acceleration: acceleration(self.plant.acceleration_mps2),
-            demand: acceleration(self.command_mps2),
-            stamp: self.master.gnss(at_s).stamp(),
-            position_accuracy: Some(self.sensors.position_accuracy),
-            speed_accuracy: Some(self.sensors.speed_accuracy),
-            station: self.alias.of(station(self.index)),
-        };
-        self.put(at_s, &Message::Ego(Said::Motion(motion)))
-    }
-
-    /// Sends the driver's request.
-    fn request(&mut self, at_s: f64) -> io::Result<()> {
-        let predecessor = self.alias.of_predecessor(self.request.predecessor);
-        let request = DriverRequest { engaged: self.engaged, predecessor, ..self.request };
-        self.put(at_s, &Message::DriverRequest(request))
-    }
-
     /// One period of the unit: receive, tick, transmit.
     ///
     /// # Errors
@@ -316,8 +247,10 @@ impl Vehicle {
         };
         while let Some((at, frame)) = ecu.receive(now)? {
             let _ = self.unit.receive(at, &frame); // the unit counts refusals
+            self.intervention.receive(at, &frame);
         }
         let frames = self.unit.tick(now).frames;
+        self.intervention.tick(now);
         frames.iter().try_for_each(|frame| ecu.send(now, frame.into()))?;
         self.estimate = None;
         for frame in &frames {
@@ -370,7 +303,7 @@ impl Vehicle {
     }
 
     fn see(&mut self, command: &Command) {
-        self.command_mps2 = command.acceleration.get().to_num();
+        self.command_mps2 = self.intervention.hands().unwrap_or_else(|| command.acceleration.get().to_num());
         self.limited = command.limited;
         self.mode = command.mode;
     }
@@ -388,10 +321,4 @@ fn frames(sender: &mut Sender<0>, message: &Message) -> io::Result<Vec<Frame>> {
     let sent = sender.send(message, &mut |frame| frames.push(Frame::from(&frame)));
     sent.map_err(|unsent| io::Error::other(format!("the catalogue has no line for it ({unsent:?})")))?;
     Ok(frames)
-}
-
-/// Whether a message with this cycle is due in the tick at `at_s`.
-fn is_due(at_s: f64, cycle_s: f64, period_s: f64) -> bool {
-    let phase = (at_s + 1e-9).rem_euclid(cycle_s);
-    phase < period_s - 1e-9
 }

@@ -12,7 +12,7 @@ use holdover::time::Instant;
 
 use crate::bus::Bus;
 use crate::bus::memory::MemoryNode;
-use crate::input::scenario::Scenario;
+use crate::input::scenario::{Event, Scenario};
 use crate::sim::channel::Channel;
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
@@ -23,6 +23,7 @@ use crate::streams::{Purpose, stream, unit};
 use crate::thinned::Thinning;
 
 mod config;
+mod events;
 mod tick;
 mod trace;
 
@@ -68,6 +69,9 @@ pub struct World<'a> {
     measured: Measured,
     /// Where the vehicles start.
     starts_m: Vec<f64>,
+    /// What is driven and changed, and how much of it has happened.
+    events: Vec<Event>,
+    happened: usize,
 }
 
 impl<'a> World<'a> {
@@ -97,14 +101,18 @@ impl<'a> World<'a> {
         }
         let measured = Measured::of(scenario);
         let starts_m = vehicles.iter().map(|vehicle: &Vehicle| vehicle.plant.position_m).collect();
-        Ok(Self {
+        let mut world = Self {
             scenario,
             air: Air::new(&scenario.channel, seed),
             log: logged.and_then(|index| Some((index, vehicles.get(index)?.listen()))),
             vehicles,
             measured,
             starts_m,
-        })
+            events: scenario.events.clone(),
+            happened: 0,
+        };
+        world.fit_twins()?;
+        Ok(world)
     }
 
     /// Runs the world to its end. `progress` is called from time to time with the fraction that is done.
@@ -294,6 +302,7 @@ impl<'a> World<'a> {
 
 impl Stages for World<'_> {
     fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        self.happen(at_s);
         self.deliver(at_s)?;
         self.place_recorded_leader(at_s);
         let program = &self.scenario.leader.program;
@@ -309,7 +318,13 @@ impl Stages for World<'_> {
     }
 
     fn act(&mut self, at_s: f64) -> io::Result<()> {
-        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s))
+        self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s))?;
+        let mut ahead_length_m = 0.0;
+        for vehicle in &mut self.vehicles {
+            vehicle.intervene(ahead_length_m, self.scenario.period_s);
+            ahead_length_m = vehicle.length_m;
+        }
+        Ok(())
     }
 
     fn drive(&mut self, at_s: f64) -> io::Result<()> {

@@ -59,6 +59,7 @@ impl CorridorOptions {
             ("--leader-motion", settings.leader_motion.is_some()),
             ("--channel-trace", settings.channel_trace.is_some()),
             ("--trace", settings.trace.is_some()),
+            ("--mcap", settings.mcap.is_some()),
         ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
             return Err(

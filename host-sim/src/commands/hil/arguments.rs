@@ -30,6 +30,10 @@ pub struct HilArguments {
     #[arg(long, value_name = "COMMAND")]
     pub device: Option<String>,
 
+    /// Write every tick of every vehicle for Foxglove and other readers of MCAP
+    #[arg(long, value_name = "FILE.mcap")]
+    pub mcap: Option<PathBuf>,
+
     /// Longest wait for the first frame of the device
     #[arg(long, value_name = "SECONDS", default_value_t = 10.0, allow_negative_numbers = true)]
     pub wait: f64,

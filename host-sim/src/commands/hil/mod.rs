@@ -34,6 +34,7 @@ pub mod virtual_bus;
 use indicatif::ProgressBar;
 
 use crate::bus;
+use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::verdict::Verdict;
 use judge::judge;
@@ -65,5 +66,10 @@ pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
     let results = judge(&options.setup, &outcome);
     let text = table::text(&results);
     options.destination.deliver(&results, &text, &text, || page::render(options, &outcome, &results))?;
+    if let Some(file) = &options.mcap {
+        let mut mcap = McapFile::of(file, &options.setup.scenario)?;
+        outcome.trace.each(|at_s, ticks, paper_m| mcap.note(at_s, ticks, paper_m));
+        mcap.finish()?;
+    }
     Ok(results.code())
 }

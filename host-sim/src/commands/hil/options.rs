@@ -1,5 +1,7 @@
 //! The options of `hil`: typed values enter, a checked setup leaves.
 
+use std::path::PathBuf;
+
 use super::arguments::HilArguments;
 use super::fault::{Fault, Kind};
 use super::session::Setup;
@@ -7,6 +9,7 @@ use crate::commands::ecu::options::{file_of, scenario, unit};
 use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario, VehicleBus};
+use crate::places::can_be_file;
 use crate::sim::quantities::duration;
 
 /// A run with hardware in the loop.
@@ -22,6 +25,8 @@ pub struct HilOptions {
     pub lock_step: bool,
     /// The command that starts the device.
     pub device: Option<String>,
+    /// File of every vehicle's ticks.
+    pub mcap: Option<PathBuf>,
     /// Where its results go.
     pub destination: Destination,
 }
@@ -67,6 +72,9 @@ impl HilOptions {
             let cause = format!("{} begins at {} s, after the run", late.kind.name(), late.from_s);
             return refuse(&cause, &format!("give a time before {} s", scenario.duration_s));
         }
+        if let Some(file) = &arguments.mcap {
+            can_be_file("--mcap", file, &[&arguments.scenario])?;
+        }
         let destination = Destination::new(arguments.json, arguments.out)?;
         let destination =
             destination.with_inputs(file_of(&arguments.scenario).into_iter().chain(scenario.recordings()))?;
@@ -83,6 +91,7 @@ impl HilOptions {
             name: arguments.scenario.display().to_string(),
             lock_step: arguments.lock_step,
             device: arguments.device,
+            mcap: arguments.mcap,
             destination,
         })
     }

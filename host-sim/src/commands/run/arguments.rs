@@ -116,6 +116,9 @@ pub struct RunSettings {
         allow_negative_numbers = true
     )]
     pub trajectories_every: f64,
+    /// Write every tick of every vehicle for Foxglove and other readers of MCAP, as JSON channels. Strings of vehicles only
+    #[arg(long, value_name = "FILE.mcap")]
+    pub mcap: Option<PathBuf>,
 
     /// Write the frames on one vehicle's bus as a candump log. Of a corridor, that of the first seed as the scenario says
     #[arg(long, value_name = "FILE")]

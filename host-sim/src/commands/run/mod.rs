@@ -10,6 +10,7 @@ mod table;
 
 use indicatif::ProgressBar;
 
+use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::measure::figures::failures;
 use crate::measure::simulate::simulate_beside;
@@ -31,6 +32,7 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
     let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
     let mut trajectories = options.trajectories.as_ref().map(Trajectories::of).transpose()?;
+    let mut mcap = options.mcap.as_ref().map(|file| McapFile::of(file, scenario)).transpose()?;
     let mut candump = options.candump.as_ref().map(Candump::begin).transpose()?;
     let each = |at_s: f64, trace: &mut Trace, paper_m| {
         if let Some(file) = &mut traced {
@@ -38,6 +40,9 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         }
         if let Some(file) = &mut trajectories {
             file.note(at_s, string(&trace.latest));
+        }
+        if let Some(file) = &mut mcap {
+            file.note(at_s, &trace.latest, paper_m);
         }
         if let Some(log) = &mut candump {
             log.note(&trace.log);
@@ -54,11 +59,12 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     let delivered = options.destination.deliver(&summary, &text, &text, page);
     let traced = traced.map_or(Ok(()), TraceFile::finish);
     let recorded = trajectories.map_or(Ok(()), Trajectories::finish);
+    let kept = mcap.map_or(Ok(()), McapFile::finish);
     let logged = candump.map_or(Ok(()), |mut log| {
         log.note(&trace.log);
         log.finish()
     });
-    delivered.and(traced).and(recorded).and(logged)?;
+    delivered.and(traced).and(recorded).and(kept).and(logged)?;
     Ok(Verdict::of(&failures))
 }
 

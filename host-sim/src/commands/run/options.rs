@@ -26,6 +26,8 @@ pub struct RunOptions {
     pub trace: Option<PathBuf>,
     /// File for the trajectories of all vehicles.
     pub trajectories: Option<Wanted>,
+    /// File of every vehicle's ticks.
+    pub mcap: Option<PathBuf>,
     /// The bus to log.
     pub candump: Option<Candump>,
 }
@@ -68,7 +70,11 @@ impl RunOptions {
         let destination = settings.output.read()?;
         let destination = destination.with_inputs(scenario_file.as_deref().into_iter().chain(scenario.recordings()))?;
         let destination = destination.with_findings(scenario.findings(), settings.strict)?;
-        let outputs = [("--trace", settings.trace.as_deref()), ("--candump", settings.candump.as_deref())];
+        let outputs = [
+            ("--trace", settings.trace.as_deref()),
+            ("--mcap", settings.mcap.as_deref()),
+            ("--candump", settings.candump.as_deref()),
+        ];
         let mut taken: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
         for (option, file) in outputs {
             if let Some(file) = file {
@@ -78,7 +84,16 @@ impl RunOptions {
         }
         let trajectories = trajectories::wanted(settings.trajectories.as_deref(), settings.trajectories_every, &taken)?;
         let candump = settings.candump.map(|file| Candump { file, vehicle });
-        Ok(Self { scenario, scenario_file, arguments, destination, trace: settings.trace, trajectories, candump })
+        Ok(Self {
+            scenario,
+            scenario_file,
+            arguments,
+            destination,
+            trace: settings.trace,
+            trajectories,
+            mcap: settings.mcap,
+            candump,
+        })
     }
 }
 

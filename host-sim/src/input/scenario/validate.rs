@@ -4,7 +4,8 @@
 use super::keys::{Document, Found, Number, Section, whole};
 use super::set::Sets;
 use super::{
-    Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Switch, Vehicle, bus, envelope, plant, sensors, start,
+    Fleet, Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Switch, Vehicle, bus, envelope, event, plant,
+    sensors, start,
 };
 use crate::error::{Error, quoted};
 use crate::input::impairment::{AppliesTo, ChannelModel, Impairment, Window};
@@ -63,6 +64,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let bus = bus::read(top.section("bus")?)?;
+    let events = event::read(&document, &mut top, &Fleet::of(&vehicles, &leader))?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -85,6 +87,7 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
         channel,
         envelope,
         bus,
+        events,
         identifiers: Identifiers::DEFAULT,
     })
 }

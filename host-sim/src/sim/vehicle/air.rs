@@ -14,6 +14,7 @@ impl Vehicle {
     /// Errors of the bus.
     pub fn hear(&mut self, at_s: f64, message: &V2xMessage) -> io::Result<()> {
         self.forward_held(at_s)?;
+        self.note_ahead(at_s, message);
         let (at, message) = (self.instant(at_s), self.alias.of_message(message));
         let harness = &self.harness;
         if self.backlog.has_room(message.motion.station, |frame| harness.waits(at, frame)) {

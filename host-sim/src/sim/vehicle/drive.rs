@@ -16,8 +16,11 @@ impl Vehicle {
     pub fn drive(&mut self, at_s: f64, period_s: f64) -> io::Result<()> {
         let overriding = self.overriding.take();
         self.take_in(at_s + period_s)?;
+        let hands = self.intervention.hands().map(|wanted_mps2| self.effort_for(wanted_mps2));
         for (effort, length_s) in self.actuators.pieces(at_s, at_s + period_s) {
-            if self.engaged {
+            if let Some(effort) = hands {
+                self.plant.drive(effort, length_s);
+            } else if self.engaged {
                 let without = || match self.ecu {
                     Some(_) => Effort::Force(0),
                     None => self.effort_for(actuators::WITHOUT_COMMAND_MPS2),

@@ -1,0 +1,232 @@
+//! The engine: a scenario and what the pages ask for enter; scenes leave. One thread drives the world in fixed steps, as fast as the clock
+//! and the pace say. What the world does depends on the scenario and its events alone, so a run up to any time can be played again.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use tokio::sync::{oneshot, watch};
+
+use super::order::Order;
+use super::stage::Stage;
+use crate::commands::interruption::Interruption;
+use crate::error::Error;
+use crate::input::scenario::{Change, Event, Fleet, Part, Scenario};
+
+/// Scenes a second.
+const SCENE_EVERY: Duration = Duration::from_millis(33);
+/// While time stands still, a scene so often shows that the engine is there.
+const SCENE_EVERY_AT_REST: Duration = Duration::from_millis(500);
+/// The world goes on for no longer than this before the pages are heard again.
+const HEAR_EVERY: Duration = Duration::from_millis(25);
+/// What the clock is ahead by more than this, in seconds of the run, is given up.
+const MOST_BEHIND_S: f64 = 0.2;
+
+/// What a page asks the engine.
+pub enum Ask {
+    /// To do something.
+    Do(Order, oneshot::Sender<Result<(), Error>>),
+    /// What has been driven and changed up to now, and the number of ticks.
+    Journal(oneshot::Sender<(Vec<Event>, u64)>),
+    /// The newest frames on the bus of a vehicle, as JSON.
+    Frames(usize, oneshot::Sender<Option<String>>),
+}
+
+/// The engine.
+pub struct Engine {
+    scenario: Scenario,
+    fleet: Fleet,
+    /// The events of the scenario's file, and those of this run.
+    own: Vec<Event>,
+    events: Vec<Event>,
+    is_playing: bool,
+    pace: f64,
+    asks: Receiver<Ask>,
+    scenes: watch::Sender<Arc<str>>,
+}
+
+/// Why the play ends.
+enum Cut {
+    /// The world is to be played again, up to so many ticks.
+    Again(u64),
+    /// The program is to end.
+    End,
+}
+
+impl Engine {
+    /// An engine at rest at the start of the scenario.
+    #[must_use]
+    pub fn new(scenario: Scenario, asks: Receiver<Ask>, scenes: watch::Sender<Arc<str>>) -> Self {
+        let (fleet, own) = (scenario.fleet(), scenario.events.clone());
+        Self { scenario, fleet, events: own.clone(), own, is_playing: true, pace: 1.0, asks, scenes }
+    }
+
+    /// Drives the world until the program is to end. Returns the events, and the number of ticks.
+    ///
+    /// # Errors
+    /// A configuration that the units refuse, and errors of the buses.
+    pub fn run(mut self, end: &Interruption) -> io::Result<(Vec<Event>, u64)> {
+        let mut until = 0;
+        loop {
+            let scenario = Scenario { events: self.events.clone(), ..self.scenario.clone() };
+            let mut stage = Stage::new(&scenario)?;
+            match self.play(&mut stage, until, end)? {
+                Cut::Again(ticks) => until = ticks,
+                Cut::End => return Ok((self.so_far(&stage), stage.ticks())),
+            }
+        }
+    }
+
+    fn play(&mut self, stage: &mut Stage<'_>, until: u64, end: &Interruption) -> io::Result<Cut> {
+        let mut shown = Instant::now();
+        while stage.ticks() < until.max(1) {
+            stage.step()?;
+            if shown.elapsed() > 4 * SCENE_EVERY {
+                shown = Instant::now();
+                self.show(stage, 0.0);
+            }
+            if end.is_asked() {
+                return Ok(Cut::End);
+            }
+        }
+        self.show(stage, self.pace);
+        let period_s = self.scenario.period_s;
+        let (mut clock, mut due_s, mut rate) = (Instant::now(), 0.0, Rate::new(stage.ticks()));
+        while !end.is_asked() {
+            let passed_s = clock.elapsed().as_secs_f64();
+            clock = Instant::now();
+            self.is_playing &= !stage.is_over();
+            due_s = if self.is_playing { due_s + passed_s * self.pace } else { 0.0 };
+            while due_s >= period_s && clock.elapsed() < HEAR_EVERY && !stage.is_over() {
+                stage.step()?;
+                due_s -= period_s;
+            }
+            due_s = due_s.min(MOST_BEHIND_S.max(period_s));
+            rate.note(stage.ticks(), period_s);
+            if shown.elapsed() >= if self.is_playing { SCENE_EVERY } else { SCENE_EVERY_AT_REST } {
+                shown = Instant::now();
+                self.show(stage, rate.of_late);
+            }
+            let wait = if due_s >= period_s { Duration::ZERO } else { Duration::from_millis(4) };
+            match self.asks.recv_timeout(wait) {
+                Ok(ask) => {
+                    if let Some(cut) = self.answer(stage, ask)? {
+                        return Ok(cut);
+                    }
+                    shown -= SCENE_EVERY_AT_REST; // what was asked for shows at once
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Ok(Cut::End),
+            }
+        }
+        Ok(Cut::End)
+    }
+
+    fn answer(&mut self, stage: &mut Stage<'_>, ask: Ask) -> io::Result<Option<Cut>> {
+        // A page that has gone does not wait for its answer.
+        match ask {
+            Ask::Journal(to) => {
+                let _ = to.send((self.so_far(stage), stage.ticks()));
+            }
+            Ask::Frames(vehicle, to) => {
+                let _ = to.send(stage.frames(vehicle).and_then(|rows| serde_json::to_string(&rows).ok()));
+            }
+            Ask::Do(order, to) => match order.event(stage.next_s()) {
+                Some(event) => {
+                    let checked = event.check(&self.fleet);
+                    let is_possible = checked.is_ok();
+                    let _ = to.send(checked);
+                    return Ok(if is_possible { self.change(stage, event) } else { None });
+                }
+                None => {
+                    let cut = self.steer(stage, order)?;
+                    self.show(stage, self.pace);
+                    let _ = to.send(Ok(()));
+                    return Ok(cut);
+                }
+            },
+        }
+        Ok(None)
+    }
+
+    /// An event happens at the next tick; what was to happen later, after a way back, does not.
+    fn change(&mut self, stage: &mut Stage<'_>, event: Event) -> Option<Cut> {
+        let has_twins = stage.has_twins();
+        self.events = self.so_far(stage);
+        self.events.push(event);
+        stage.add(event);
+        let needs_twins = matches!(event.change, Change::Switch(Part::Envelope, _));
+        // The run is then the same, with a second unit in every vehicle that was ready from its beginning.
+        (needs_twins && !has_twins).then_some(Cut::Again(stage.ticks()))
+    }
+
+    fn steer(&mut self, stage: &mut Stage<'_>, order: Order) -> io::Result<Option<Cut>> {
+        match order {
+            Order::Pause {} => self.is_playing = false,
+            Order::Play {} => self.is_playing = true,
+            Order::Pace { factor } => self.pace = factor,
+            Order::Step { ticks } => {
+                self.is_playing = false;
+                for _ in 0..ticks {
+                    if !stage.is_over() {
+                        stage.step()?;
+                    }
+                }
+            }
+            Order::Back { seconds } => {
+                let ticks = (seconds / self.scenario.period_s).round() as u64;
+                return Ok(Some(Cut::Again(stage.ticks().saturating_sub(ticks))));
+            }
+            Order::Restart {} => {
+                self.events.clone_from(&self.own);
+                return Ok(Some(Cut::Again(0)));
+            }
+            _ => {}
+        }
+        Ok(None)
+    }
+
+    /// The events that have happened.
+    fn so_far(&self, stage: &Stage<'_>) -> Vec<Event> {
+        let next_s = stage.next_s();
+        let has_happened = |event: &&Event| event.at_s < next_s - 1e-9 || stage.ticks() == 0;
+        // What is due at the next tick has been decided too.
+        let is_due = |event: &&Event| (event.at_s - next_s).abs() <= 1e-9;
+        self.events.iter().filter(|event| has_happened(event) || is_due(event)).copied().collect()
+    }
+
+    fn show(&self, stage: &Stage<'_>, rate: f64) {
+        let events = [self.so_far(stage).len(), self.events.len()];
+        let scene = stage.scene(self.is_playing, [self.pace, rate], events);
+        if let Some(text) = text(&scene) {
+            self.scenes.send_replace(text);
+        }
+    }
+}
+
+fn text(value: &impl Serialize) -> Option<Arc<str>> {
+    serde_json::to_string(value).ok().map(Arc::from)
+}
+
+/// How fast time has passed of late.
+struct Rate {
+    since: Instant,
+    ticks: u64,
+    of_late: f64,
+}
+
+impl Rate {
+    fn new(ticks: u64) -> Self {
+        Self { since: Instant::now(), ticks, of_late: 0.0 }
+    }
+
+    fn note(&mut self, ticks: u64, period_s: f64) {
+        let passed_s = self.since.elapsed().as_secs_f64();
+        if passed_s >= 0.5 {
+            self.of_late = ticks.saturating_sub(self.ticks) as f64 * period_s / passed_s;
+            (self.since, self.ticks) = (Instant::now(), ticks);
+        }
+    }
+}

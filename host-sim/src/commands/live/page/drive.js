@@ -1,0 +1,118 @@
+// Driving: keys, pedals on the screen and a gamepad enter; what the pedals ask for is ordered whenever it changes.
+
+import { order } from "./link.js";
+
+const byId = (id) => document.getElementById(id);
+// Braking by a key, as a share of the hardest.
+const KEY_BRAKES = 0.5;
+
+export function drive(state) {
+  const keys = new Set();
+  let hard = false;
+  let driven = null; // the vehicle that this page drives
+  let asked = null; // what was asked for last
+  let pad = 0;
+
+  // From -1, the hardest braking, to 1.
+  function pedal() {
+    if (keys.has("ArrowDown") || keys.has("brake")) return hard ? -1 : -KEY_BRAKES;
+    if (keys.has("ArrowUp") || keys.has("gas")) return 1;
+    return pad;
+  }
+
+  function ask() {
+    const at = pedal();
+    if (driven === null) {
+      if (at === 0) return;
+      driven = state.chosen;
+    }
+    const role = state.cast.vehicles[driven];
+    const mps2 = Math.round((at >= 0 ? at * role.most_mps2 : at * role.braking_mps2) * 20) / 20;
+    if (mps2 === asked) return;
+    asked = mps2;
+    const vehicle = driven;
+    order({ do: "drive", vehicle, mps2 }).then((done) => {
+      if (!done) forget();
+    });
+    byId("driving").textContent = `You drive vehicle ${role.name}: ${mps2} m/s².`;
+    byId("release").disabled = false;
+  }
+
+  function forget() {
+    [driven, asked] = [null, null];
+    keys.clear();
+    byId("driving").textContent = "Its unit drives.";
+    byId("release").disabled = true;
+  }
+
+  async function release() {
+    if (driven === null) return;
+    const vehicle = driven;
+    forget();
+    await order({ do: "release", vehicle });
+  }
+  byId("release").onclick = release;
+
+  const isField = (target) => target.tagName === "SELECT" || (target.tagName === "INPUT" && target.type !== "checkbox");
+  addEventListener("keydown", (event) => {
+    hard = event.shiftKey;
+    if (isField(event.target)) return;
+    if (event.key === "Enter" && driven !== null && event.target.tagName !== "BUTTON" && event.target.tagName !== "A") release();
+    if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
+    event.preventDefault();
+    keys.add(event.key);
+    ask();
+  });
+  addEventListener("keyup", (event) => {
+    hard = event.shiftKey;
+    if (keys.delete(event.key) || driven !== null) ask();
+  });
+  // Who looks away drives no more, but the vehicle stays in his hands.
+  addEventListener("blur", () => {
+    keys.clear();
+    if (driven !== null) ask();
+  });
+  for (const id of ["gas", "brake"]) {
+    const button = byId(id);
+    const press = (isDown) => {
+      button.classList.toggle("is-down", isDown);
+      isDown ? keys.add(id) : keys.delete(id);
+      if (isDown || driven !== null) ask();
+    };
+    button.addEventListener("pointerdown", (event) => {
+      button.setPointerCapture(event.pointerId);
+      press(true);
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) button.addEventListener(end, () => press(false));
+    button.addEventListener("keydown", (event) => {
+      if (event.key === " " || event.key === "Enter") press(true);
+    });
+    button.addEventListener("keyup", (event) => {
+      if (event.key === " " || event.key === "Enter") press(false);
+    });
+  }
+
+  return {
+    // A vehicle that someone else has taken, or let go, or a way back: the engine is right.
+    take(scene) {
+      if (driven !== null && asked !== null && !scene.vehicles[driven].is_driven && performance.now() - (this.since ?? 0) > 500) forget();
+      if (driven === null) this.since = performance.now();
+    },
+    rewind() {
+      forget();
+    },
+    draw() {
+      const found = navigator.getGamepads?.().find?.((one) => one?.connected);
+      if (!found) return;
+      // The triggers of a pad in the standard layout; a wheel's pedals are often an axis.
+      const [brake, gas] = [found.buttons[6]?.value ?? 0, found.buttons[7]?.value ?? 0];
+      const at = found.mapping === "standard" ? gas - brake : -(found.axes[1] ?? 0);
+      const next = Math.abs(at) < 0.06 ? 0 : Math.round(at * 20) / 20;
+      if (next !== pad) {
+        pad = next;
+        ask();
+      }
+      if (found.buttons[0]?.pressed) release();
+    },
+  };
+}

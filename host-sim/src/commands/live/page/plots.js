@@ -1,0 +1,134 @@
+// The instruments: figures of the chosen vehicle over the last seconds.
+
+import { colours, prepare } from "./scene.js";
+
+const SPAN_S = 20;
+
+const error = (place) => (seen, scene, index) => {
+  const truth = scene.vehicles[index - 1]?.position_m;
+  if (truth == null) return null;
+  return place === "ours" ? seen.target?.error_m : seen.paper_m == null ? null : seen.paper_m - truth;
+};
+const ahead = (of) => (seen, scene, index) => (index > 0 ? of(scene.vehicles[index - 1]) : null);
+
+// Each line: a colour, and a figure of a vehicle in a scene.
+const PLOTS = [
+  { name: "position error of the vehicle ahead", unit: "m", least: 0.2, about: 0,
+    lines: [["paper", error("paper")], ["ours", error("ours")]],
+    band: (seen, scene, index) => {
+      const truth = scene.vehicles[index - 1]?.position_m;
+      return seen.target?.bound_m && truth != null ? seen.target.bound_m.map((end) => end - truth) : null;
+    } },
+  { name: "gap", unit: "m", least: 2, lines: [["ours", (seen) => seen.gap_m]] },
+  { name: "speed, and that of the vehicle ahead", unit: "m/s", least: 2,
+    lines: [["newest", ahead((other) => other.speed_mps)], ["ours", (seen) => seen.speed_mps]] },
+  { name: "acceleration, and what is demanded", unit: "m/s²", least: 1, about: 0,
+    lines: [["paper", (seen) => seen.command_mps2], ["ours", (seen) => seen.acceleration_mps2]] },
+  { name: "age of the newest message", unit: "s", least: 0.5, from: 0, lines: [["ours", (seen) => seen.target?.age_s]] },
+  { name: "load of its bus", unit: "%", least: 10, from: 0, lines: [["ours", (seen) => seen.load * 100]] },
+];
+const MODES = ["standby", "cooperative", "holdover", "fallback", "fault"];
+
+export function plots(state, onChoice) {
+  let hue = colours();
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (hue = colours()));
+  const past = [];
+  const figures = [...PLOTS.map((plot) => plot.name), "mode of its unit"].map((name) => {
+    const figure = document.createElement("figure");
+    const caption = document.createElement("figcaption");
+    const canvas = document.createElement("canvas");
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", `${name}, over the last ${SPAN_S} seconds`);
+    caption.textContent = name;
+    figure.append(caption, canvas);
+    document.getElementById("plots").append(figure);
+    return { caption, canvas };
+  });
+  let stale = true;
+  onChoice(() => (stale = true));
+
+  function drawOne(plot, { caption, canvas }) {
+    const [paint, width, height] = prepare(canvas);
+    const [untilS, index] = [past.at(-1).at_s, state.chosen];
+    const x = (atS) => width - ((untilS - atS) / SPAN_S) * width;
+    const series = plot.lines.map(([colour, of]) => [colour, past.map((scene) => of(scene.vehicles[index], scene, index))]);
+    const bands = plot.band ? past.map((scene) => plot.band(scene.vehicles[index], scene, index)) : [];
+    const values = [...series.flatMap(([, line]) => line), ...bands.flat()].filter((value) => value != null);
+    let [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 1];
+    if (plot.about != null) [low, high] = [Math.min(low, plot.about), Math.max(high, plot.about)];
+    if (plot.from != null) low = plot.from;
+    const short = plot.least - (high - low);
+    if (short > 0) [low, high] = plot.from != null ? [low, high + short] : [low - short / 2, high + short / 2];
+    const y = (value) => height - 6 - ((value - low) / (high - low)) * (height - 12);
+    paint.strokeStyle = hue.line;
+    paint.beginPath();
+    paint.moveTo(0, y(plot.about ?? low));
+    paint.lineTo(width, y(plot.about ?? low));
+    paint.stroke();
+    paint.fillStyle = hue.ours;
+    paint.globalAlpha = 0.2;
+    bands.forEach((band, place) => {
+      if (!band || place === 0) return;
+      const from = x(past[place - 1].at_s);
+      paint.fillRect(from, y(band[1]), x(past[place].at_s) - from + 0.5, y(band[0]) - y(band[1]));
+    });
+    paint.globalAlpha = 1;
+    for (const [colour, line] of series) {
+      paint.strokeStyle = hue[colour];
+      paint.lineWidth = 1.5;
+      paint.beginPath();
+      let isOn = false;
+      line.forEach((value, place) => {
+        if (value == null) return (isOn = false);
+        paint[isOn ? "lineTo" : "moveTo"](x(past[place].at_s), y(value));
+        isOn = true;
+      });
+      paint.stroke();
+    }
+    paint.lineWidth = 1;
+    paint.fillStyle = hue.faint;
+    paint.font = "10px system-ui";
+    paint.fillText(high.toPrecision(3), 3, 11);
+    paint.fillText(low.toPrecision(3), 3, height - 3);
+    const newest = series.at(-1)[1].at(-1);
+    caption.textContent = `${plot.name}: ${newest == null ? "–" : newest.toFixed(2)} ${plot.unit}`;
+  }
+
+  function drawModes({ caption, canvas }) {
+    const [paint, width, height] = prepare(canvas);
+    const untilS = past.at(-1).at_s;
+    const tints = [hue.newest, hue.chosen, hue.ours, hue.warn, hue.warn];
+    const tall = height / MODES.length;
+    past.forEach((scene, place) => {
+      if (place === 0) return;
+      const [from, to] = [past[place - 1].at_s, scene.at_s].map((atS) => width - ((untilS - atS) / SPAN_S) * width);
+      const mode = MODES.indexOf(scene.vehicles[state.chosen].mode);
+      paint.fillStyle = tints[mode];
+      paint.fillRect(from, mode * tall + 2, to - from + 0.5, tall - 4);
+    });
+    paint.fillStyle = hue.ink;
+    paint.font = "10px system-ui";
+    MODES.forEach((mode, place) => paint.fillText(mode, 3, place * tall + tall / 2 + 3));
+    caption.textContent = `mode of its unit: ${past.at(-1).vehicles[state.chosen].mode}`;
+  }
+
+  let drawnAt = 0;
+  return {
+    rewind(scene) {
+      while (past.length && past.at(-1).at_s >= scene.at_s) past.pop();
+    },
+    take(scene) {
+      if (past.length && past.at(-1).ticks === scene.ticks) past.pop();
+      past.push(scene);
+      while (past[0].at_s < scene.at_s - SPAN_S) past.shift();
+      stale = true;
+    },
+    draw(atMs) {
+      // A plot of 20 s need not be drawn more often than this.
+      if (!stale || !past.length || atMs - drawnAt < 66) return;
+      [drawnAt, stale] = [atMs, false];
+      PLOTS.forEach((plot, place) => drawOne(plot, figures[place]));
+      drawModes(figures.at(-1));
+    },
+  };
+}

@@ -1,0 +1,177 @@
+//! What is done to a vehicle from outside while it drives: a person drives it, its range sensor is covered, its unit changes places with
+//! one whose envelope is engaged or not, or the vehicle drives by the newest message as it stands.
+
+use holdover::ConfigError;
+use holdover::config::Envelope;
+use holdover::time::Instant;
+use holdover::wire::Predecessor;
+use holdover::wire::command::ModeCode;
+
+use super::{Unit, Vehicle};
+use crate::bus::Frame;
+use crate::sim::modem::V2xMessage;
+use crate::sim::plain::{Sample, demand};
+use crate::sim::quantities::metres;
+use crate::sim::time::{EPOCH_US, gnss};
+
+/// What is done to a vehicle.
+#[derive(Debug, Default)]
+pub(super) struct Intervention {
+    hands: Hands,
+    /// Whether the driver's request is to be sent before its time.
+    asks: bool,
+    is_blind: bool,
+    /// The unit with the other envelope. It hears what the unit hears, and nobody hears it.
+    twin: Option<Unit>,
+    /// Whether the vehicle drives without the estimate.
+    is_plain: bool,
+    /// The newest motion of the vehicle ahead that came over the air.
+    ahead: Option<Sample>,
+    demand_mps2: f64,
+}
+
+/// Whose hands the vehicle is in.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Hands {
+    /// The unit's.
+    #[default]
+    Units,
+    /// A person's, who asks for this acceleration.
+    Persons(f64),
+    /// The person has let go. Until the unit drives, what was asked for last stays in force.
+    Given(f64),
+}
+
+impl Intervention {
+    /// The acceleration that is not the unit's, if there is one.
+    pub fn hands(&self) -> Option<f64> {
+        match self.hands {
+            Hands::Units => None,
+            Hands::Persons(wanted_mps2) | Hands::Given(wanted_mps2) => Some(wanted_mps2),
+        }
+    }
+
+    /// Whether the range sensor is not covered.
+    pub fn sees(&self) -> bool {
+        !self.is_blind
+    }
+
+    /// Whether the driver's request has changed since this was asked for the last time.
+    pub fn asks_anew(&mut self) -> bool {
+        std::mem::take(&mut self.asks)
+    }
+
+    /// The twin hears a frame.
+    pub fn receive(&mut self, at: Instant, frame: &Frame) {
+        if let Some(twin) = &mut self.twin {
+            let _ = twin.receive(at, frame); // as the unit, it counts refusals
+        }
+    }
+
+    /// The twin ticks.
+    pub fn tick(&mut self, now: Instant) {
+        if let Some(twin) = &mut self.twin {
+            let _ = twin.tick(now);
+        }
+    }
+}
+
+impl Vehicle {
+    /// A person drives from now on, and asks for this acceleration. The driver's request says so at once, and a unit that does not drive
+    /// tells nobody how it will.
+    pub fn take_over(&mut self, wanted_mps2: f64) {
+        self.intervention.asks |= self.engaged;
+        self.intervention.hands = Hands::Persons(wanted_mps2);
+        self.engage(false);
+    }
+
+    /// The person lets go, and the unit takes over.
+    pub fn let_go(&mut self) {
+        if let Hands::Persons(wanted_mps2) = self.intervention.hands {
+            self.intervention.hands = Hands::Given(wanted_mps2);
+            self.intervention.asks = true;
+            self.engage(true);
+        }
+    }
+
+    /// Whether a person drives.
+    #[must_use]
+    pub fn is_driven(&self) -> bool {
+        matches!(self.intervention.hands, Hands::Persons(_))
+    }
+
+    /// Covers the range sensor, or uncovers it.
+    pub fn cover_sensor(&mut self, is_blind: bool) {
+        self.intervention.is_blind = is_blind;
+    }
+
+    /// Whether its range sensor is at work, if it has one.
+    #[must_use]
+    pub fn sees(&self) -> bool {
+        self.intervention.sees()
+    }
+
+    /// Fits a second unit with this envelope, which is ready to change places with the first one.
+    ///
+    /// # Errors
+    /// An error of the configuration.
+    pub fn fit_twin(&mut self, envelope: Option<Envelope>) -> Result<(), ConfigError> {
+        let config = holdover::Config { envelope, ..*self.unit.config() };
+        self.intervention.twin = Some(Unit::new(&config)?);
+        Ok(())
+    }
+
+    /// Lets the unit drive whose envelope is engaged, or is not.
+    pub fn switch_envelope(&mut self, engaged: bool) {
+        if let Some(twin) = self.intervention.twin.as_mut().filter(|_| self.unit.config().envelope.is_some() != engaged)
+        {
+            std::mem::swap(&mut self.unit, twin);
+        }
+    }
+
+    /// Lets the vehicle drive by the newest message as it stands, or by its unit.
+    pub fn drive_plainly(&mut self, is_plain: bool) {
+        self.intervention.is_plain = is_plain;
+        self.intervention.demand_mps2 = self.command_mps2;
+    }
+
+    /// Whether the vehicle drives without the estimate.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.intervention.is_plain
+    }
+
+    /// After the unit's tick: the hands that have let go are gone when the unit drives, and without the estimate the newest message is
+    /// what there is of the vehicle ahead, which is so long.
+    pub fn intervene(&mut self, ahead_length_m: f64, period_s: f64) {
+        if matches!(self.intervention.hands, Hands::Given(_)) && self.mode != ModeCode::Standby {
+            self.intervention.hands = Hands::Units;
+        }
+        if !self.intervention.is_plain || !self.engaged {
+            return;
+        }
+        let plant = (self.plant.position_m, self.plant.speed_mps);
+        let last_mps2 = self.intervention.demand_mps2;
+        let wanted_mps2 =
+            demand(self.unit.config(), ahead_length_m, plant, self.intervention.ahead, last_mps2, period_s);
+        self.intervention.demand_mps2 = wanted_mps2;
+        self.override_with(wanted_mps2);
+    }
+
+    /// Notes the motion in a message, if the vehicle follows its sender.
+    pub(super) fn note_ahead(&mut self, at_s: f64, message: &V2xMessage) {
+        let motion = &message.motion;
+        if self.request.predecessor != Predecessor::Station(motion.station) {
+            return;
+        }
+        let stamp = motion.stamp.unwrap_near(gnss(at_s)).as_micros();
+        let sample = Sample {
+            at_s: (stamp as i64 - EPOCH_US as i64) as f64 * 1e-6,
+            position_m: motion.position.nearest_to(metres(self.plant.position_m)).get().to_num(),
+            speed_mps: motion.speed.get().to_num(),
+        };
+        if self.intervention.ahead.is_none_or(|last| last.at_s < sample.at_s) {
+            self.intervention.ahead = Some(sample);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""The page of `live` in a browser: a program and a browser enter; facts that hold, or the first that does not, leave.
+
+    live_check.py HOLDOVER_SIM CHROMIUM FOLDER      pictures go to FOLDER
+"""
+
+import re
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+
+from playwright.sync_api import sync_playwright
+
+PROGRAM, CHROMIUM, FOLDER = sys.argv[1:4]
+FRAMES_A_SECOND = 30
+
+
+@contextmanager
+def live(*arguments):
+    command = [PROGRAM, "live", "--no-browser", "--port", "0", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield process.stdout.readline().strip()
+        finally:
+            process.terminate()
+
+
+def holds(what, fact):
+    print(f"{'holds' if fact else 'FAILS'}: {what}", flush=True)
+    if not fact:
+        sys.exit(1)
+
+
+class Page:
+    """A page that counts what its console says."""
+
+    def __init__(self, browser, address, **shape):
+        self.page = browser.new_page(**shape)
+        self.faults = []
+        self.page.on("console", lambda said: self.faults.append(said.text) if said.type == "error" else None)
+        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
+        self.page.goto(address)
+        self.page.wait_for_selector("html[data-ready]")
+        self.until("state.scene")
+
+    def __getattr__(self, name):
+        return getattr(self.page, name)
+
+    def read(self, expression):
+        return self.page.evaluate(f"(({{ state }}) => {expression})(globalThis.holdover)")
+
+    def until(self, expression, seconds=15):
+        """Waits until something is so, and returns whether it came to be."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if self.read(expression):
+                return True
+            time.sleep(0.02)
+        return False
+
+    def seen(self, vehicle, what):
+        return self.read(f"state.scene.vehicles[{vehicle}].{what}")
+
+    def order(self, text):
+        return self.page.evaluate("(body) => fetch('/order', { method: 'POST', body }).then((answer) => answer.status)", text)
+
+    def figures(self, vehicle):
+        target = self.seen(vehicle, "target")
+        low, high = target["bound_m"]
+        return abs(target["error_m"]), high - low, target["age_s"]
+
+
+def vehicles_move(page):
+    before = page.read("state.scene.vehicles.map((one) => one.position_m)")
+    drawn, began = page.evaluate("globalThis.holdover.frames()"), time.monotonic()
+    time.sleep(2)
+    frames = (page.evaluate("globalThis.holdover.frames()") - drawn) / (time.monotonic() - began)
+    after = page.read("state.scene.vehicles.map((one) => one.position_m)")
+    holds("every vehicle moves", all(later - sooner > 5 for sooner, later in zip(before, after)))
+    holds(f"the display is smooth: {frames:.0f} frames a second, of at least {FRAMES_A_SECOND}", frames >= FRAMES_A_SECOND)
+
+
+def silence_and_a_driver(page):
+    """By messages alone: the range sensors are covered, and the leader is silent while a person brakes it."""
+    page.uncheck("#range_sensor")
+    page.keyboard.press("0")
+    page.select_option("#of", "0")
+    page.locator("#scene").focus()
+    holds("the range sensors are off", page.until("state.scene.vehicles.every((one) => !one.sees)"))
+    holds("the link has settled", page.until("state.scene.at_s > 9 && state.scene.vehicles[1].target.age_s < 0.2"))
+    error, width, _ = page.figures(1)
+    speeds = page.seen(0, "speed_mps"), page.seen(1, "speed_mps")
+    page.keyboard.press("o")
+    page.keyboard.down("ArrowDown")
+    holds("a key takes the leader over", page.until("state.scene.vehicles[0].is_driven"))
+    holds("the page says so", "You drive vehicle leader" in page.text_content("#driving"))
+    holds("the leader brakes", page.until(f"state.scene.vehicles[0].speed_mps < {speeds[0] - 4}"))
+    holds("silence: error and bound grow", page.until(
+        f"Math.abs(state.scene.vehicles[1].target.error_m) > {error + 1} && "
+        f"state.scene.vehicles[1].target.bound_m[1] - state.scene.vehicles[1].target.bound_m[0] > {3 * width}"))
+    page.screenshot(path=f"{FOLDER}/silence.png")
+    page.keyboard.up("ArrowDown")
+    holds("the silence ends: error and bound come back", page.until(
+        "state.scene.vehicles[1].target.age_s < 0.2 && Math.abs(state.scene.vehicles[1].target.error_m) < 0.5 && "
+        f"state.scene.vehicles[1].target.bound_m[1] - state.scene.vehicles[1].target.bound_m[0] < {3 * width}"))
+    holds("the follower has reacted", page.seen(1, "speed_mps") < speeds[1] - 2)
+    page.keyboard.press("Enter")
+    holds("let go, the unit drives again", page.until(
+        "!state.scene.vehicles[0].is_driven && state.scene.vehicles[0].mode === 'cooperative'"))
+    holds("and accelerates", page.until("state.scene.vehicles[0].acceleration_mps2 > 0.2"))
+
+
+def time_goes_back(page):
+    page.keyboard.press(" ")
+    holds("the space key stops time", page.until("!state.scene.is_playing"))
+    ticks, first = page.read("[state.scene.ticks, JSON.stringify(state.scene.vehicles)]")
+    page.keyboard.press("b")
+    holds("b: ten seconds back", page.until(f"state.scene.ticks === {ticks - 1000}"))
+    page.keyboard.press(".")
+    holds("the point key: one step", page.until(f"state.scene.ticks === {ticks - 999}"))
+    page.order('{"do":"step","ticks":999}')
+    holds("and on: the same is seen again", page.until(f"state.scene.ticks === {ticks}")
+          and page.read("JSON.stringify(state.scene.vehicles)") == first)
+
+
+def instruments(page):
+    page.click("#frames summary")
+    holds("frames are listed", page.until("document.querySelectorAll('#rows tr').length > 10"))
+    rows = page.text_content("#rows")
+    holds("frames are decoded", "EgoMotionA" in rows and re.search(r"Speed [0-9.]+ m/s", rows) is not None)
+    page.check("#rides")
+    time.sleep(0.5)
+    holds("the driver's view is there", page.is_visible("#view") and page.is_checked("#rides"))
+
+
+def the_tour(page):
+    page.order('{"do":"pace","factor":4}')
+    for step, seconds in enumerate([2, 8, 6, 6, 16], start=1):
+        page.click("#tour-next")
+        holds(f"step {step} of the tour", page.until(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')"))
+        began = page.read("state.scene.at_s")
+        page.until(f"state.scene.at_s < {began} || state.scene.at_s > {began + seconds}")
+        if step == 4:
+            page.until(f"state.scene.at_s > {began + 0.5}")
+            page.screenshot(path=f"{FOLDER}/without.png")
+    page.click("#tour-next")
+    page.wait_for_selector("#tour-figures:not([hidden])")
+    rows = page.eval_on_selector_all("#tour-figures tbody tr", "(rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent))")
+    print("\n".join("  " + "  ".join(row) for row in rows))
+    figures = {name: ours for name, ours, _ in rows}
+    holds("its figures stand beside the paper's", figures["the paper reports"] == "0.50" and float(figures["4 s of silence"]) < 0.5)
+    page.order('{"do":"pace","factor":1}')
+
+
+def main():
+    with sync_playwright() as playwright, live() as address:
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", "--enable-unsafe-swiftshader"])
+        page = Page(browser, address, viewport={"width": 1280, "height": 900})
+        vehicles_move(page)
+        silence_and_a_driver(page)
+        time_goes_back(page)
+        instruments(page)
+        page.screenshot(path=f"{FOLDER}/page.png", full_page=True)
+        page.uncheck("#rides")
+        page.keyboard.press(" ")
+        the_tour(page)
+        phone = Page(browser, address, viewport={"width": 390, "height": 800}, color_scheme="dark")
+        holds("on a phone nothing is wider than the screen",
+              phone.evaluate("document.documentElement.scrollWidth <= window.innerWidth"))
+        phone.screenshot(path=f"{FOLDER}/phone.png")
+        ticks = page.read("state.scene.ticks"), phone.read("state.scene.ticks")
+        holds("two pages see the same world go on", page.until(f"state.scene.ticks > {ticks[0]}")
+              and phone.until(f"state.scene.ticks > {ticks[1]}"))
+        for one in (page, phone):
+            holds(f"no error in the console {one.faults}", one.faults == [])
+        browser.close()
+
+
+main()
