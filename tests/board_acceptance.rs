@@ -5,6 +5,7 @@
 #[allow(dead_code)]
 mod board {
     pub mod acceptance;
+    pub mod bit_time;
     pub mod frame;
     pub mod outbox;
     pub mod port;

@@ -6,6 +6,7 @@
 #[allow(dead_code)]
 mod board {
     pub mod acceptance;
+    pub mod bit_time;
     pub mod frame;
     pub mod outbox;
     pub mod port;

@@ -8,6 +8,8 @@
 
 #[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
 mod acceptance;
+#[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
+mod bit_time;
 mod frame;
 mod outbox;
 mod periods;

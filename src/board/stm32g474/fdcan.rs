@@ -7,6 +7,7 @@
 
 use super::element;
 use crate::board::acceptance::{Pattern, Patterns};
+use crate::board::bit_time::{ASKED, tolerance};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::registers::Registers;
@@ -92,13 +93,7 @@ const BEHIND: u32 = 3;
 const JUMP: u32 = 3;
 const QUANTA: u32 = 1 + BEFORE + BEHIND;
 
-/// The tolerance that the clock of every node may have, by the two conditions of ISO 11898-1, in millionths: over the ten bits from
-/// one edge to the next at the latest, and over the thirteen from an error to the sample point that judges it.
-const TOLERANCE: u32 = {
-    let (edges, errors) = (JUMP * 1_000_000 / (20 * QUANTA), BEHIND * 1_000_000 / (2 * (13 * QUANTA - BEHIND)));
-    if edges < errors { edges } else { errors }
-};
-const _: () = assert!(TOLERANCE >= 5_000, "CAN asks for a clock within 0.5 %, and has to bear one");
+const _: () = assert!(tolerance(QUANTA, BEHIND, JUMP) >= ASKED);
 
 /// The controller as a port.
 pub struct Controller<R> {

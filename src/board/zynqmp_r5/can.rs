@@ -7,6 +7,7 @@
 
 use super::layout::Layout;
 use crate::board::acceptance::{Pattern, Patterns};
+use crate::board::bit_time::{ASKED, tolerance};
 use crate::board::frame::CanFrame;
 use crate::board::port::{Fate, Overrun, Port};
 use crate::board::registers::Registers;
@@ -61,10 +62,7 @@ const BEFORE: u32 = 16;
 const BEHIND: u32 = 3;
 const JUMP: u32 = 3;
 const QUANTA: u32 = 1 + BEFORE + BEHIND;
-/// By ISO 11898-1, in millionths: over the ten bits from one edge to the next at the latest, and over the thirteen from an error to the
-/// sample point that judges it.
-const TOLERANCES: [u32; 2] = [JUMP * 1_000_000 / (20 * QUANTA), BEHIND * 1_000_000 / (2 * (13 * QUANTA - BEHIND))];
-const _: () = assert!(TOLERANCES[0] >= 5_000 && TOLERANCES[1] >= 5_000, "CAN has to bear clocks that are 0.5 % off");
+const _: () = assert!(tolerance(QUANTA, BEHIND, JUMP) >= ASKED);
 
 /// Periods to stay away after a bus-off. ISO 11898-1 asks for 128 times 11 bits, which are 2.8 ms. The calls of two periods can
 /// be closer together than that, if the first one is late; those of three cannot.

@@ -43,7 +43,7 @@ impl StringOptions {
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
         let StringArguments { time_gaps, delays, losses, frequencies, step_only, range_sensors, seed, seeds, output } =
             arguments;
-        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s(range_sensors)] } else { time_gaps };
+        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
@@ -91,11 +91,10 @@ impl StringOptions {
     }
 }
 
-/// The default time gap of a unit with or without a range sensor. The law does not use what the sensor sees of the acceleration ahead, so
-/// both keep the same.
+/// The default time gap of a unit. One with a range sensor keeps the same: the law does not use what the sensor sees of the acceleration
+/// ahead.
 #[must_use]
-pub fn shipped_time_gap_s(range_sensors: Switch) -> f64 {
-    let (Switch::On | Switch::Off) = range_sensors;
+pub fn shipped_time_gap_s() -> f64 {
     f64::from(parameters::TIME_GAP.to_millis()) / 1e3
 }
 

@@ -2,7 +2,6 @@
 //! message of the vehicle ahead, as it is or moved on by its age times its speed, as in platoon simulators; or by the controller of
 //! Ploeg et al., whose vehicles have a sensor without errors, and which uses the messages, or none.
 
-use holdover::Config;
 use holdover::model::Body;
 use holdover::units::Acceleration;
 
@@ -11,6 +10,7 @@ use super::ploeg::{Own, Ploeg, View};
 use crate::input::impairment::Link;
 use crate::input::scenario::Scenario;
 use crate::sim::channel::Channel;
+use crate::sim::plain::{Sample, desired, limited};
 use crate::sim::plant::Plant;
 use crate::sim::quantities::speed;
 use crate::sim::world::{config, machine};
@@ -28,16 +28,7 @@ pub enum Other {
     DegradedCacc,
 }
 
-/// A message: its time of sending, and what it says. The demand of the leader, which is driven by hand, is its acceleration.
-#[derive(Clone, Copy)]
-struct Sample {
-    at_s: f64,
-    position_m: f64,
-    speed_mps: f64,
-    demand_mps2: f64,
-}
-
-/// A follower.
+/// A follower. The leader, which is driven by hand, tells its acceleration as its demand.
 struct Follower {
     plant: Plant,
     demand_mps2: f64,
@@ -111,40 +102,27 @@ impl Follower {
     /// Within the same limits as those of the units. `seen` is the vehicle ahead at this time.
     fn drive(&mut self, scenario: &Scenario, index: usize, seen: &Sample, other: Other) {
         let config = config(scenario, index);
-        let desired = match other {
-            Other::AsItStands | Other::AgeTimesSpeed => self.by_law(scenario, index, &config, seen.at_s, other),
-            Other::Cacc | Other::DegradedCacc => {
-                let Plant { position_m, speed_mps, acceleration_mps2, .. } = self.plant;
-                let gap_m = seen.position_m - scenario.vehicles[index - 1].length_m - position_m;
-                let told = self.newest.map(|sample| sample.demand_mps2).filter(|_| other == Other::Cacc);
-                let view = View { gap_m, speed_mps: seen.speed_mps };
-                self.ploeg.drive(&Own { position_m, speed_mps, acceleration_mps2 }, &view, told)
-            }
+        let length_m = scenario.vehicles[index - 1].length_m;
+        let Plant { position_m, speed_mps, acceleration_mps2, .. } = self.plant;
+        let moved = |sample: Sample| Sample {
+            position_m: sample.position_m + sample.speed_mps * (seen.at_s - sample.at_s),
+            ..sample
         };
-        let limits = config.limits;
-        let slew = number(limits.jerk.to_mm_per_s3()) * scenario.period_s;
-        let (lowest, highest) = (-number(limits.braking.to_mm_per_s2()), number(limits.acceleration.to_mm_per_s2()));
-        self.demand_mps2 = desired.clamp(self.demand_mps2 - slew, self.demand_mps2 + slew).clamp(lowest, highest);
+        let by_law = |newest| desired(&config, length_m, (position_m, speed_mps), newest);
+        let mut by_ploeg = |told_mps2| {
+            let view = View { gap_m: seen.position_m - length_m - position_m, speed_mps: seen.speed_mps };
+            self.ploeg.drive(&Own { position_m, speed_mps, acceleration_mps2 }, &view, told_mps2)
+        };
+        let desired_mps2 = match other {
+            Other::AsItStands => by_law(self.newest),
+            Other::AgeTimesSpeed => by_law(self.newest.map(moved)),
+            Other::Cacc => by_ploeg(self.newest.map(|sample| sample.demand_mps2)),
+            Other::DegradedCacc => by_ploeg(None),
+        };
+        self.demand_mps2 = limited(&config, desired_mps2, self.demand_mps2, scenario.period_s);
         self.ploeg.set(self.demand_mps2);
         let demand = Acceleration::from_bits((self.demand_mps2 * f64::from(1 << 25)).round() as i32);
         let body: Body = config.body;
-        self.plant.drive(body.effort(demand, speed(self.plant.speed_mps)), scenario.period_s);
+        self.plant.drive(body.effort(demand, speed(speed_mps)), scenario.period_s);
     }
-
-    /// Eq. 5.
-    fn by_law(&self, scenario: &Scenario, index: usize, config: &Config, at_s: f64, other: Other) -> f64 {
-        let (k, damping) = (number(config.law.gain.to_milli()), number(config.law.damping.to_millis()));
-        let described = &scenario.vehicles[index];
-        let spacing = scenario.vehicles[index - 1].length_m + described.standstill_m;
-        let Plant { position_m, speed_mps, .. } = self.plant;
-        self.newest.map_or(0.0, |sample| {
-            let moved = if other == Other::AgeTimesSpeed { sample.speed_mps * (at_s - sample.at_s) } else { 0.0 };
-            let error = position_m - sample.position_m - moved + spacing + speed_mps * described.time_gap_s;
-            -k * (error + damping * (speed_mps - sample.speed_mps))
-        })
-    }
-}
-
-fn number(thousandths: i32) -> f64 {
-    f64::from(thousandths) / 1e3
 }

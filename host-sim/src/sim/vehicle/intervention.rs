@@ -10,7 +10,7 @@ use holdover::wire::command::ModeCode;
 use super::{Unit, Vehicle};
 use crate::bus::Frame;
 use crate::sim::modem::V2xMessage;
-use crate::sim::plain::{Sample, demand};
+use crate::sim::plain::{Sample, desired, limited};
 use crate::sim::quantities::metres;
 use crate::sim::time::{EPOCH_US, gnss};
 
@@ -152,8 +152,9 @@ impl Vehicle {
         }
         let plant = (self.plant.position_m, self.plant.speed_mps);
         let last_mps2 = self.intervention.demand_mps2;
-        let wanted_mps2 =
-            demand(self.unit.config(), ahead_length_m, plant, self.intervention.ahead, last_mps2, period_s);
+        let config = self.unit.config();
+        let desired_mps2 = desired(config, ahead_length_m, plant, self.intervention.ahead);
+        let wanted_mps2 = limited(config, desired_mps2, last_mps2, period_s);
         self.intervention.demand_mps2 = wanted_mps2;
         self.override_with(wanted_mps2);
     }
@@ -169,6 +170,7 @@ impl Vehicle {
             at_s: (stamp as i64 - EPOCH_US as i64) as f64 * 1e-6,
             position_m: motion.position.nearest_to(metres(self.plant.position_m)).get().to_num(),
             speed_mps: motion.speed.get().to_num(),
+            demand_mps2: motion.demand.get().to_num(),
         };
         if self.intervention.ahead.is_none_or(|last| last.at_s < sample.at_s) {
             self.intervention.ahead = Some(sample);
