@@ -31,6 +31,7 @@ pub mod dynamics;
 pub mod envelope;
 pub mod estimator;
 pub mod fixed;
+pub mod fusion;
 pub mod health;
 mod held;
 pub mod lockstep;

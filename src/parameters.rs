@@ -85,6 +85,9 @@ pub const DAMPING: Seconds = Seconds::from_millis(2000);
 /// whatever is late by up to 0.2 s and lost up to 40 %, in 40 draws each; `holdover-sim string` measures it.
 pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 
+/// The same for a vehicle with a range sensor, which sees the braking ahead before it is heard: `holdover-sim string --range-sensors on`.
+pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(1_200);
+
 const _: () = {
     // A stamp that is used must unwrap to its time, with 1 s to spare for the clocks.
     assert!(STALE_MAX.as_micros() + Stamp::FUTURE.as_micros() + 1_000_000 < Stamp::PERIOD.as_micros());

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the bottom up. Each folder or file of `src/` that the library is made of is one room.
-const ORDER: [&str; 20] = [
+const ORDER: [&str; 21] = [
     "polynomial", // for the proofs alone
     "fixed",
     "units",
@@ -19,6 +19,7 @@ const ORDER: [&str; 20] = [
     "dynamics",
     "envelope",
     "peers",
+    "fusion",
     "estimator",
     "controller",
     "coordination",

@@ -37,8 +37,8 @@ use crate::wire::{Predecessor, StationHash};
 enum Source<'a> {
     /// The peer's newest sample, which is new.
     Heard(&'a Sample),
-    /// The peer's state as another sensor corrected it.
-    Seen(&'a Sample),
+    /// The peer's state by its messages and another sensor together.
+    Fused(&'a Sample),
     /// No news.
     Nothing,
 }
@@ -66,8 +66,8 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     /// The vehicle that each peer follows.
     aheads: [Held<Ahead>; PEERS],
     news: [bool; PEERS],
-    /// The state of a peer as another sensor corrected it, until it is used.
-    correction: Held<(usize, Sample)>,
+    /// The state of a peer by its messages and another sensor together, until it is used.
+    track: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -85,7 +85,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             strides: [Held::Nothing; PEERS],
             aheads: [Held::Nothing; PEERS],
             news: [false; PEERS],
-            correction: Held::Nothing,
+            track: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
             own_length: Distance::ZERO,
@@ -102,7 +102,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.strides = [Held::Nothing; PEERS];
         self.aheads = [Held::Nothing; PEERS];
         self.news = [false; PEERS];
-        self.correction.clear();
+        self.track.clear();
         self.own.clear();
         self.station = station;
         self.own_length = own_length;
@@ -121,9 +121,17 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }
     }
 
-    /// Notes a peer's state as another sensor corrected it. News of the peer itself in the same tick takes precedence.
-    pub fn note_correction(&mut self, index: usize, sample: Sample) {
-        self.correction.set((index, sample));
+    /// Notes a peer's state by its messages and another sensor together. What the peer itself says of how it will drive takes
+    /// precedence in the same tick.
+    pub fn note_track(&mut self, index: usize, sample: Sample) {
+        self.track.set((index, sample));
+    }
+
+    /// Whether a peer said how it will drive, and its predecessor is known.
+    #[must_use]
+    pub fn is_foreseen<const SAMPLES: usize>(&self, index: usize, peers: &Peers<PEERS, SAMPLES>) -> bool {
+        let ahead = self.aheads.get(index).and_then(Held::get);
+        peers.get(index).is_some_and(|track| track.knots().is_some() || is_known(track, ahead))
     }
 
     /// Notes that a peer drives by another law, or behind another vehicle.
@@ -146,8 +154,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
     pub fn shift(&mut self, index: usize, way: Distance) {
         self.move_horizon(index, way);
-        if let Held::Value((corrected, sample)) = &mut self.correction
-            && *corrected == index
+        if let Held::Value((fused, sample)) = &mut self.track
+            && *fused == index
         {
             sample.position = sample.position.ahead(way);
         }
@@ -165,17 +173,20 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) -> u32 {
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
-        let correction = match &self.correction {
-            Held::Nothing => None, // as in nearly every tick, and then nothing is copied
-            Held::Value(_) => core::mem::take(&mut self.correction).get(),
+        let fused = match &self.track {
+            Held::Nothing => None, // without a sensor always, and then nothing is copied
+            Held::Value(_) => core::mem::take(&mut self.track).get(),
         };
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
             let (Some(sample), Some(news)) = (track.newest(), self.news.get_mut(index)) else { continue };
-            let source = match &correction {
-                _ if core::mem::take(news) => Source::Heard(sample),
-                Some((corrected, sample)) if *corrected == index => Source::Seen(sample),
+            let is_news = core::mem::take(news);
+            let ahead = self.aheads.get(index).and_then(Held::get);
+            let says_how = track.knots().is_some() || is_known(track, ahead);
+            let source = match &fused {
+                Some((fused, sample)) if *fused == index && !(is_news && says_how) => Source::Fused(sample),
+                _ if is_news => Source::Heard(sample),
                 _ => Source::Nothing,
             };
             let is_used = self.update_one(present, peers, index, track, &source);
@@ -201,12 +212,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
                 Some(Ahead::Own) => *own_length,
                 None => Distance::ZERO,
             };
-            let vehicle = match track.parameters() {
-                Some(parameters) if ahead.is_some() || parameters.predecessor == Predecessor::None => {
-                    VehicleModel::of_parameters(parameters, model)
-                }
-                _ => VehicleModel::UNKNOWN,
-            };
+            let known = track.parameters().filter(|_| is_known(track, ahead));
+            let vehicle = known.map_or(VehicleModel::UNKNOWN, |known| VehicleModel::of_parameters(known, model));
             (vehicle, length_ahead)
         };
         if let Some(stride @ Held::Nothing) = strides.get_mut(index) {
@@ -226,7 +233,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let forecast = Forecast { grid, length: *length, model, stride, ahead, delay };
         let (sample, received) = match source {
             Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.parameters())),
-            Source::Seen(sample) => (sample, None),
+            Source::Fused(sample) => (sample, None),
             Source::Nothing => {
                 forecast.extend(horizon, present);
                 return true;
@@ -353,6 +360,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             Predecessor::None | Predecessor::Unknown => None,
         }
     }
+}
+
+/// Whether a peer said by which law it drives, and behind whom.
+fn is_known<const SAMPLES: usize>(track: &Track<SAMPLES>, ahead: Option<Ahead>) -> bool {
+    track.parameters().is_some_and(|known| ahead.is_some() || known.predecessor == Predecessor::None)
 }
 
 /// One element to be changed, and another one to be read.

@@ -7,6 +7,7 @@
 mod across;
 mod actuators;
 mod admission;
+mod fused;
 mod inbox;
 mod named;
 pub(super) mod passes;
@@ -31,6 +32,7 @@ use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driver_request::DriverRequest;
 use actuators::Actuators;
+use fused::Fused;
 use named::Named;
 use passes::Passes;
 use sight::Ranging;
@@ -58,6 +60,8 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub coordination: Coordination<PEERS>,
     /// What the range sensor has seen.
     pub ranging: Ranging,
+    /// The track of the vehicle that it sees.
+    pub fused: Fused,
     /// What the actuators and the driver's feet say.
     pub actuators: Actuators,
     /// Vehicles without a slot.
@@ -81,6 +85,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             estimator: Estimator::idle(),
             coordination: Coordination::idle(),
             ranging: Ranging::new(),
+            fused: Fused::NONE,
             actuators: Actuators::NONE,
             unknown: Unknown::NONE,
             named: Named::Nobody,
@@ -99,6 +104,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
         self.coordination.reset();
         self.ranging = Ranging::new();
+        self.fused = const { Fused::NONE };
         self.actuators = Actuators::NONE;
         self.unknown = Unknown::NONE;
         self.named = Named::Nobody;

@@ -309,6 +309,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
         if admission == Admission::News {
             self.estimator.note_news(index);
+            self.fuse_message(index, sample.received);
         }
     }
 

@@ -145,6 +145,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         } else {
             track.shift(moved);
             self.estimator.shift(index, moved);
+            self.fused.shift(index, moved);
         }
     }
 }

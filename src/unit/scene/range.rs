@@ -6,26 +6,29 @@
 //! driver named the target is not of the target. While view and messages contradict one another, neither changes the other, and the unit
 //! drives by what it sees.
 //!
-//! Where the estimated speed may be right, a view moves the horizon by a part of the way: the target goes on as it said. Where that
-//! speed is certainly wrong, the horizon starts anew. The sensor's position and the estimated position are weighed by the squares of their
-//! uncertainties: the sensor's accuracy against half the width of the target's bound, which grows with the age of what was heard over V2X.
-//! So fresh messages are hardly corrected.
+//! A view errs more than a message, and is newer. So both are fused to one track (`fusion`), from which the horizon of a vehicle starts
+//! that does not say how it will drive: its braking is seen before it is heard, and also in a silence. The horizon of a vehicle that said how
+//! it will drive stays as it said, as long as the estimated speed may be right. Then a view moves that horizon by a part of what is
+//! beyond a view's usual error. So fresh messages, and horizons that are right, are hardly corrected.
 
 use super::Scene;
 use super::sight::{Sight, Verdict, Whose};
 use crate::fixed::quotient;
 use crate::health::{Cause, Health};
 use crate::model::bound::{Bound, Uncertainty};
-use crate::parameters::{LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING};
-use crate::peers::{Sample, excess, largest_error, largest_speed_error};
+use crate::parameters::{DEFAULT_LENGTH, LENGTH_ROUNDING, POSITION_ROUNDING, SHORTEST, SPEED_ROUNDING};
+use crate::peers::{Sample, Track, excess, largest_error, largest_speed_error};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Position, Speed};
+use crate::units::{Distance, Position, Speed};
 use crate::wire::Slot;
 use crate::wire::range_sensor::RangeSample;
 
 /// From when the sensor sends a view to when the view has been on the bus, at most: it waits for a frame that is on the bus, and
 /// for those of a tick that win over it.
 const ON_BUS: Duration = Duration::from_millis(3);
+
+/// By how much the length of a vehicle may differ from the default one: a lorry with a trailer is 18.75 m long.
+const LENGTHS: Distance = Distance::from_mm(13_950);
 
 /// A view that the estimate may be right about corrects it by at most this fraction, one in so many: a view errs by more than an
 /// estimate.
@@ -144,6 +147,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let heard = track.newest().map(|newest| newest.received);
         let Some(length) = track.published_length() else {
             self.raise(index, sight);
+            self.correct_without_length(index, sight);
             return None;
         };
         let front = sight.rear.ahead(length);
@@ -185,6 +189,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         is_certain.then_some(whose)
     }
 
+    /// Corrects the estimate of a peer whose length is not known by a view that may be of that peer. It says little of where the front
+    /// is, and as much as any of the speed.
+    fn correct_without_length(&mut self, index: usize, sight: &Sight) {
+        let mut wide = *sight;
+        wide.uncertainty.position = wide.uncertainty.position.plus(LENGTHS);
+        let front = sight.rear.ahead(DEFAULT_LENGTH);
+        let Some(track) = self.peers.get(index) else { return };
+        let reach = track.reach();
+        let seen = track.around(sight.at, front, sight.speed, &wide.uncertainty);
+        let held = track.certainty().bound().filter(|bound| bound.and(&seen, &reach).is_some());
+        let before = held.map(|bound| bound.after(sight.at, &reach));
+        if let Some((bound, newest)) = before.zip(track.newest().copied()) {
+            self.correct(index, &wide, front, &bound, &newest);
+        }
+    }
+
     /// Whether what is seen and what is heard of a peer contradict one another.
     pub fn is_contradicted(&self, index: usize, now: Instant) -> bool {
         self.heard_of(index).is_some_and(|(whose, heard)| self.ranging.disagrees(whose, now, heard))
@@ -205,46 +225,48 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some((self.whose(index)?, track.newest().map(|newest| newest.received)))
     }
 
-    /// Corrects the estimate by the view: moves the horizon where the estimated speed may be right, and starts it anew where not.
+    /// Corrects the estimate by the view. The horizon of a vehicle that does not say how it will drive starts from the fused track. Where
+    /// the vehicle did say so, and the estimated speed may be right, its horizon is moved; where that speed is certainly wrong, it
+    /// starts from the fused track too.
     fn correct(&mut self, index: usize, sight: &Sight, front: Position, bound: &Bound, newest: &Sample) {
+        let Some(whose) = self.whose(index) else { return };
+        let fused = self.fused.see(whose, sight, front, newest);
         let Some(estimate) = self.estimator.read(index, sight.at) else { return };
+        let faster = sight.speed.minus(estimate.speed);
+        if !self.estimator.is_foreseen(index, &self.peers) || faster.magnitude() > sight.uncertainty.speed {
+            self.estimator.note_track(index, fused);
+            return;
+        }
         let half = |high: Position, low: Position| Distance::from_bits(high.ahead_of(low).to_bits() / 2);
         let width = half(bound.highest_position(), bound.lowest_position());
         let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.uncertainty.position.to_bits()));
-        let faster = sight.speed.minus(estimate.speed);
-        if faster.magnitude() <= sight.uncertainty.speed {
-            let share = share.min(quotient(whole, MOST_SHARE));
-            if share.saturating_mul(LEAST_SHARE) >= whole {
-                let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
-                self.estimator.move_horizon(index, Distance::from_bits(off));
-            }
-            return;
+        let share = share.min(quotient(whole, MOST_SHARE));
+        if share.saturating_mul(LEAST_SHARE) >= whole {
+            let off = mixed(beyond(front.ahead_of(estimate.position), usual(sight)).to_bits(), share, whole);
+            self.estimator.move_horizon(index, Distance::from_bits(off));
         }
-        let spread = bound.highest_speed().minus(bound.lowest_speed()).to_bits() / 2;
-        let (speed_share, speed_whole) = weight(i64::from(spread), i64::from(sight.uncertainty.speed.to_bits()));
-        if share.saturating_mul(LEAST_SHARE) < whole && speed_share.saturating_mul(LEAST_SHARE) < speed_whole {
-            return;
-        }
-        let off = mixed(front.ahead_of(estimate.position).to_bits(), share, whole);
-        let off_speed = mixed(faster.to_bits(), speed_share, speed_whole);
-        let slope = self.slope(index, sight.at);
-        let sample = Sample {
-            at: sight.at,
-            position: estimate.position.ahead(Distance::from_bits(off)),
-            speed: estimate.speed.plus(Speed::from_bits(off_speed)).max(Speed::ZERO),
-            acceleration: slope,
-            demand: slope,
-            ..*newest
-        };
-        self.estimator.note_correction(index, sample);
     }
 
-    /// The acceleration on the target's horizon.
-    fn slope(&self, index: usize, at: Instant) -> Acceleration {
-        let half = Duration::from_millis(20);
-        let speed = |at| self.estimator.read(index, at).map_or(Speed::ZERO, |reading| reading.speed);
-        Acceleration::of_change(speed(at.plus(half)).minus(speed(at.minus(half))), half.times(2).as_micros())
+    /// Takes the newest message of a peer into the fused track, if the peer is the one that is seen.
+    pub(super) fn fuse_message(&mut self, index: usize, now: Instant) {
+        let (Some(whose), Some(message)) = (self.whose(index), self.peers.get(index).and_then(Track::newest)) else {
+            return;
+        };
+        let fused = self.fused.hear(whose, now, message);
+        if let Some(fused) = fused.filter(|_| !self.estimator.is_foreseen(index, &self.peers)) {
+            self.estimator.note_track(index, fused);
+        }
     }
+}
+
+/// By how much the place in a view errs usually: a third of its largest error.
+fn usual(sight: &Sight) -> Distance {
+    Distance::from_bits(sight.uncertainty.position.to_bits() / 3)
+}
+
+/// What of a distance is beyond this magnitude.
+fn beyond(distance: Distance, magnitude: Distance) -> Distance {
+    distance.minus(distance.limited(magnitude.negated(), magnitude))
 }
 
 /// The weight of the sensor: `width² / (width² + accuracy²)`, as a fraction of small numbers.

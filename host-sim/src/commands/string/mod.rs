@@ -18,6 +18,7 @@ pub mod table;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::input::scenario::Switch;
 use crate::output;
 use crate::verdict::Verdict;
 use options::StringOptions;
@@ -56,8 +57,8 @@ pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let results = Results {
         limit: rows::LIMIT,
         range_sensors: options.range_sensors.is_on(),
-        shipped_time_gap_s: options::shipped_time_gap_s(),
-        shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(),
+        shipped_time_gap_s: options::shipped_time_gap_s(Switch::Off),
+        shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(Switch::On),
         smallest_time_gap_s: rows::smallest_time_gap_s(&rows),
         smallest: rows::smallest(&rows),
         seed: options.seed,

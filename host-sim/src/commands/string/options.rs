@@ -43,7 +43,7 @@ impl StringOptions {
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
         let StringArguments { time_gaps, delays, losses, frequencies, step_only, range_sensors, seed, seeds, output } =
             arguments;
-        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s()] } else { time_gaps };
+        let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s(range_sensors)] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
@@ -91,11 +91,11 @@ impl StringOptions {
     }
 }
 
-/// The default time gap of a unit. One with a range sensor keeps the same: the law does not use what the sensor sees of the acceleration
-/// ahead.
+/// The time gap that is shipped for a unit without a range sensor, and for one with it.
 #[must_use]
-pub fn shipped_time_gap_s() -> f64 {
-    f64::from(parameters::TIME_GAP.to_millis()) / 1e3
+pub fn shipped_time_gap_s(sensors: Switch) -> f64 {
+    let time_gap = if sensors.is_on() { parameters::TIME_GAP_WITH_SENSOR } else { parameters::TIME_GAP };
+    f64::from(time_gap.to_millis()) / 1e3
 }
 
 fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {

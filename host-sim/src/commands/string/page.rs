@@ -113,7 +113,7 @@ fn over_time_gap(page: &mut Page, options: &StringOptions, rows: &[Row]) {
         line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
     ];
     let axes = (Axis::linear("time gap", "s"), Axis::linear("largest ratio", "").including(1.0));
-    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s());
+    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s(options.range_sensors));
     let chart =
         Chart { description: caption.into(), layers, guides: vec![guide()], ..Chart::new(&title, axes.0, axes.1) };
     page.figure(&title, caption, &[&chart]);

@@ -51,7 +51,7 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
     }
     match smallest_time_gap_s(rows) {
         Some(gap) => {
-            let shipped = shipped_time_gap_s();
+            let shipped = shipped_time_gap_s(options.range_sensors);
             let _ = writeln!(
                 text,
                 "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried; {shipped} s is shipped"
