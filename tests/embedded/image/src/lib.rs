@@ -3,12 +3,15 @@
 #![no_std]
 
 #[cfg(machine = "netduinoplus2")]
+pub mod bench;
+#[cfg(machine = "netduinoplus2")]
 pub mod counter;
 pub mod file;
 #[cfg(machine = "netduinoplus2")]
 pub mod float;
 #[cfg(machine = "netduinoplus2")]
 pub mod kalman;
+pub mod junction;
 pub mod output;
 pub mod road;
 pub mod semihosting;
