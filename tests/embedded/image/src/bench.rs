@@ -150,7 +150,13 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             // Among intersections it may be that nobody is in the way.
             let follows = road.has_junctions() || answer.estimate.is_some_and(|estimate| estimate.link_on);
             let is_driven = follows && answer.mode == Mode::Cooperative;
-            assert!(number < 2 || is_driven, "{number} {tick} {:?} {:?} {:?}", answer.mode, answer.estimate, unit.health());
+            assert!(
+                number < 2 || is_driven,
+                "{number} {tick} {:?} {:?} {:?}",
+                answer.mode,
+                answer.estimate,
+                unit.health()
+            );
         }
         most
     }
@@ -159,7 +165,7 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
     fn hear(&mut self, at: Instant, tick: u64, traffic: Traffic) {
         let Self { unit, counter, road, frames, .. } = self;
         let mut hear = |frame: &_| frames.note(counter.count(|| unit.receive(at, frame)).1);
-        if tick % 50 == 0 {
+        if tick.is_multiple_of(50) {
             road.synchronise(at, &mut hear);
         }
         road.ego(at, &mut hear);
@@ -169,7 +175,7 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
                 continue;
             }
             if !traffic.last_alone {
-                road.parameters_of(peer, traffic.changed && tick % 20 == 0, &mut hear);
+                road.parameters_of(peer, traffic.changed && tick.is_multiple_of(20), &mut hear);
             }
             road.motion_of(peer, at, traffic.age, &mut hear);
             if traffic.horizons {

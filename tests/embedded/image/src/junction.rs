@@ -105,7 +105,8 @@ impl Place {
         let stamp = PassTime::down(now);
         // At 11 m/s, in hundredths of a second.
         let until = ((at - self.along).max(0) / 110) as u16;
-        let claim = |after: u16| Claimed { at: stamp, entry: PassTime(stamp.0.wrapping_add(until + after)), length: 150 };
+        let claim =
+            |after: u16| Claimed { at: stamp, entry: PassTime(stamp.0.wrapping_add(until + after)), length: 150 };
         Pass {
             tag,
             station_id: station,

@@ -9,9 +9,9 @@ pub mod counter;
 pub mod file;
 #[cfg(machine = "netduinoplus2")]
 pub mod float;
+pub mod junction;
 #[cfg(machine = "netduinoplus2")]
 pub mod kalman;
-pub mod junction;
 pub mod output;
 pub mod road;
 pub mod semihosting;

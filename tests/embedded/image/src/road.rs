@@ -82,7 +82,7 @@ impl Road {
         self.say(&Message::DriverRequest(request), hear);
         let motion = self.motion(at, self.peers, EGO);
         self.say(&Message::Ego(Said::Motion(motion)), hear);
-        if self.has_junctions && at.as_micros() % 100_000 == 0 {
+        if self.has_junctions && at.as_micros().is_multiple_of(100_000) {
             let geo = self.place(at, self.peers).on_globe(self.tag, motion.stamp);
             self.say(&Message::Ego(Said::Geo(geo)), hear);
         }

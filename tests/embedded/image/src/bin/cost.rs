@@ -108,11 +108,10 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("late-3", silent(4, Traffic::ALL.aged(3_000))),
             ("late-most", silent(stale as u64 / 1_000 + 1, Traffic::ALL.aged(oldest))),
             ("together", silent(stale as u64 / 1_000 + 1, Traffic::TOGETHER.aged(oldest))),
-            ("receive", frames.most),
-            ("bus", frames.full_bus),
-            ("stack", deep),
         ];
-        for (row, count) in rows {
+        let worst = rows.iter().map(|(_, count)| *count).max().unwrap_or(0);
+        let others = [("worst", worst), ("receive", frames.most), ("bus", frames.full_bus), ("stack", deep)];
+        for (row, count) in rows.into_iter().chain(others) {
             say(format_args!("{name}-{row} 8 359 {count}"));
         }
     }
