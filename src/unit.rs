@@ -189,7 +189,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
         let target = self.review(now, last);
-        let (before, reading) = self.update(now, target);
+        let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
+        let (before, reading) = self.update(now, target, is_due);
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
@@ -198,7 +199,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
-            let is_due = self.outbox.is_due(now, self.scene.config.link.period);
             let own = is_due.then(|| self.foresee(now, last, target));
             let pass = own.as_ref().and_then(|_| self.claim(now, ego.as_ref()));
             self.send(now, own.as_ref().map(Option::as_ref), pass, answer);
@@ -239,12 +239,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Brings every horizon up to now. The target's reading of now by the horizon as it was, in a holdover, and as it is.
-    fn update(&mut self, now: Instant, target: Option<usize>) -> (Option<Reading>, Option<Reading>) {
+    fn update(&mut self, now: Instant, target: Option<usize>, is_own_due: bool) -> (Option<Reading>, Option<Reading>) {
         let before = match self.mode {
             Mode::Holdover { .. } => target.and_then(|index| self.scene.estimated(index, now)),
             _ => None,
         };
-        let unreachable = self.scene.estimator.update(now, &self.scene.peers);
+        let unreachable = self.scene.estimator.update(now, &self.scene.peers, target, is_own_due);
         self.health.add(Cause::Unreachable, unreachable);
         (before, target.and_then(|index| self.scene.estimated(index, now)))
     }
