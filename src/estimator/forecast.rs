@@ -253,7 +253,8 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         if let Some(delay) = self.delay {
             return self.ahead_delayed(ahead, index, delay);
         }
-        if let Some(step) = ahead.at(index) {
+        // Beyond its end the last step is held, as where it is read.
+        if let Some(step) = ahead.at(index.min(ahead.last())) {
             return Some((step.position, step.speed));
         }
         let reading = ahead.read(self.grid.time_of(index), self.grid, true)?;

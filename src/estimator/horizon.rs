@@ -24,13 +24,21 @@ impl Grid {
     /// The last step at or before an instant.
     #[must_use]
     pub fn at_or_before(&self, at: Instant) -> i64 {
+        self.split(at).0
+    }
+
+    /// The last step at or before an instant, and how much later the instant is.
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+    #[must_use]
+    pub fn split(&self, at: Instant) -> (i64, Duration) {
         let (since, step) = (at.since(self.origin).as_micros(), self.step.as_micros());
-        // Rounded towards -∞: a step before the origin has a negative index.
         let towards_zero = quotient(since, step);
-        if since < 0 && towards_zero.saturating_mul(step) != since {
-            towards_zero.saturating_sub(1)
+        let after = since.wrapping_sub(towards_zero.wrapping_mul(step));
+        // Rounded towards -∞: a step before the origin has a negative index.
+        if after < 0 {
+            (towards_zero.saturating_sub(1), Duration::from_micros(after.saturating_add(step)))
         } else {
-            towards_zero
+            (towards_zero, Duration::from_micros(after))
         }
     }
 
@@ -274,14 +282,13 @@ impl<const STEPS: usize> Horizon<STEPS> {
         if !interpolate {
             return self.held(grid.nearest(at));
         }
-        let index = grid.at_or_before(at);
-        let time = grid.time_of(index);
+        let (index, since) = grid.split(at);
         match (self.at(index), self.at(index.saturating_add(1))) {
-            (Some(step), _) if time == at => Some(self.reading(step)),
+            (Some(step), _) if since == Duration::ZERO => Some(self.reading(step)),
             (Some(before), Some(after)) => {
                 let from = self.reading(before);
                 let way = after.position.ahead_of(before.position);
-                Some(Cubic::new(from, way, after.speed, grid.step).at(at.since(time)))
+                Some(Cubic::new(from, way, after.speed, grid.step).at(since))
             }
             (None, _) if index < self.first => Some(self.approach(grid)?.at(at)),
             _ => self.held(index),

@@ -7,6 +7,7 @@
 //!   Otherwise source (b) is the unit's own model of the peer, from the peer's state at the stamp: Algorithm 2 for a leader, Algorithm 4
 //!   for a follower whose predecessor is known, the fading acceleration for any other peer.
 //! * *News of many at once* is spread over ticks, that of the target first (`turns`).
+//! * *After missed ticks*, every horizon starts anew in the same way.
 //! * *No news:* the step that has passed is dropped, and one more is computed at the far end by the same model. So a horizon never runs
 //!   out.
 //!
@@ -27,16 +28,20 @@ pub use horizon::{Anchor, End, Grid, Horizon};
 pub use own::Manner;
 
 use chain::Chain;
-use forecast::{Ahead, Forecast, News};
-use turns::{Room, Turn, Turns};
+use forecast::{Ahead, Forecast, News, steps};
+use turns::{Room, Turn, Turns, steps_a_tick};
 
-use crate::config::Prediction;
+use crate::config::Config;
 use crate::held::Held;
 use crate::model::{Model, Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
 use crate::wire::{Predecessor, StationHash};
+
+/// Ticks that are missed are made up for by extending every horizon, up to so many steps, or four periods if that is more. After a longer
+/// pause the horizons start anew in turns, which is bounded.
+const PAUSE: i64 = 32;
 
 /// What a horizon is brought up to now from.
 enum Source<'a> {
@@ -63,6 +68,12 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     /// The vehicle that each peer follows.
     aheads: [Held<Ahead>; PEERS],
     turns: Turns<PEERS>,
+    /// How many steps of horizons that start anew a tick has room for.
+    room: usize,
+    /// The step of the last tick.
+    present: Held<i64>,
+    /// If more steps than this lie between two ticks, horizons start anew.
+    pause: i64,
     /// The state of a peer as another sensor corrected it, until it is used.
     correction: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
@@ -82,6 +93,9 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             strides: [Held::Nothing; PEERS],
             aheads: [Held::Nothing; PEERS],
             turns: Turns::NONE,
+            room: 0,
+            present: Held::Nothing,
+            pause: 0,
             correction: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
@@ -91,18 +105,21 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Starts with nothing known. `length` is the number of steps that a horizon keeps.
-    pub fn start(&mut self, prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) {
-        self.grid = Grid { origin: Instant::ZERO, step: prediction.step };
-        self.model = prediction.model;
+    pub fn start(&mut self, config: &Config, length: usize) {
+        self.grid = Grid { origin: Instant::ZERO, step: config.prediction.step };
+        self.model = config.prediction.model;
         self.length = length.min(STEPS);
         self.horizons.iter_mut().for_each(Horizon::clear);
         self.strides = [Held::Nothing; PEERS];
         self.aheads = [Held::Nothing; PEERS];
         self.turns = Turns::NONE;
+        self.room = steps_a_tick(config.period);
+        self.present.clear();
+        self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
         self.correction.clear();
         self.own.clear();
-        self.station = station;
-        self.own_length = own_length;
+        self.station = config.station;
+        self.own_length = config.length;
         self.chain = Chain::new();
     }
 
@@ -174,7 +191,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         };
         let corrected = correction.as_ref().map(|(index, _)| *index);
         // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
-        let room = if self.model.endless { Room::of(self.length, is_own_due) } else { Room::ENDLESS };
+        let room = if self.model.endless { Room::of(self.room, self.length, is_own_due) } else { Room::ENDLESS };
+        if self.present.get().is_some_and(|last| present.saturating_sub(last) > self.pause) {
+            (0..PEERS).for_each(|index| self.turns.note(index));
+        }
+        self.present.set(present);
         self.turns.take(room, &self.chain, target, corrected);
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
@@ -200,7 +221,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         track: &Track<SAMPLES>,
         source: &Source<'_>,
     ) -> bool {
-        let Self { grid, model, length, horizons, strides, own, own_length, aheads, .. } = self;
+        let Self { grid, model, length, horizons, strides, own, own_length, aheads, pause, .. } = self;
         let ahead = aheads.get(index).and_then(Held::get);
         // How the peer drives is needed only when its prediction step is made, or when its horizon starts anew.
         let course = || {
@@ -238,7 +259,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             }
             Source::Seen(sample) => (sample, None),
             Source::Nothing => {
-                forecast.extend(horizon, present);
+                // One that waits since a pause is read as it is until its turn comes.
+                let behind = present.saturating_sub(horizon.first());
+                if behind <= *pause || behind > steps(STEPS) {
+                    forecast.extend(horizon, present);
+                }
                 return true;
             }
         };

@@ -163,7 +163,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     let mut config = Config::car(StationHash(9));
     config.prediction.step = Duration::from_millis(10); // all times below are steps
     let mut estimator = Estimator::<2, STEPS>::idle();
-    estimator.start(&config.prediction, STEPS, config.station, config.length);
+    estimator.start(&config, STEPS);
     estimator.start_grid(GRID.origin);
     let mut peers = Peers::<2, 4>::idle();
     peers.start(config.link.period);
@@ -192,7 +192,7 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
     let config = Config::car(StationHash(9));
     for (front, back) in [(0, 1), (1, 0)] {
         let mut estimator = Estimator::<2, STEPS>::idle();
-        estimator.start(&config.prediction, STEPS, config.station, config.length);
+        estimator.start(&config, STEPS);
         estimator.start_grid(GRID.origin);
         let mut peers = Peers::<2, 4>::idle();
         peers.start(config.link.period);

@@ -14,15 +14,24 @@
 //! sample in every tick.
 
 use super::chain::Chain;
+use crate::time::Duration;
 
-/// A tick has room for so many steps of horizons that start anew: three horizons of 400 steps.
+/// A tick of 10 ms has room for so many steps of horizons that start anew: three horizons of 400 steps.
 const STEPS_A_TICK: usize = 3 * (400 + BEGINNING);
+const TICK_MS: usize = 10;
 
 /// To start a horizon anew takes as long as so many steps in addition: its constants, its sample or its knots, and the steps up to now.
 const BEGINNING: usize = 64;
 
 /// The ego's own horizon, past its changes of target and with its messages, takes as long as so many others.
 const OWN: usize = 3;
+
+/// For how many steps a tick of this period has room. In a longer period there is more time. A shorter one has no less room: then one horizon
+/// would not fit.
+pub(super) fn steps_a_tick(period: Duration) -> usize {
+    let ticks = usize::try_from(period.as_millis()).unwrap_or(0) / TICK_MS;
+    STEPS_A_TICK.saturating_mul(ticks.max(1))
+}
 
 /// For how many steps there is room in a tick, and how many a horizon takes.
 #[derive(Clone, Copy)]
@@ -35,11 +44,11 @@ impl Room {
     /// For all.
     pub const ENDLESS: Self = Self { left: usize::MAX, each: 0 };
 
-    /// With horizons of so many steps, and the ego's own beside them if that is due.
-    pub const fn of(length: usize, is_own_due: bool) -> Self {
+    /// For so many steps, with horizons of so many steps, and the ego's own beside them if that is due.
+    pub const fn of(room: usize, length: usize, is_own_due: bool) -> Self {
         let each = length.saturating_add(BEGINNING);
         let own = if is_own_due { each.saturating_mul(OWN) } else { 0 };
-        Self { left: STEPS_A_TICK.saturating_sub(own), each }
+        Self { left: room.saturating_sub(own), each }
     }
 
     fn take(&mut self) -> bool {
@@ -158,7 +167,7 @@ mod tests {
 
         /// The slots whose horizons start anew, and those which do once more.
         fn tick(&mut self, length: usize, is_own_due: bool) -> (Vec<usize>, Vec<usize>) {
-            self.turns.take(Room::of(length, is_own_due), &Chain::new(), self.target, None);
+            self.turns.take(Room::of(STEPS_A_TICK, length, is_own_due), &Chain::new(), self.target, None);
             let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
             (of(Turn::News), of(Turn::Again))
         }

@@ -18,12 +18,13 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
 
-/// For so long the order is reviewed in the horizon as often as it will be, and after that once in so many reviews. Where the ego follows
-/// another vehicle at one of these than at the one before, or has to brake harder, the reviews between them are held after all.
-const FINE: Duration = Duration::from_millis(1_000);
-const COARSE: i64 = 4;
-/// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and the
-/// reviews between two coarse ones.
+/// The order is reviewed in the horizon once in so many reviews: for a second, and after that. Where the ego follows another vehicle at one
+/// of these than at the one before, or has to brake harder, the review at which that begins is looked for between them, by halves.
+const NEAR: Duration = Duration::from_millis(1_000);
+const REVIEWS_NEAR: i64 = 4;
+const REVIEWS: i64 = 8;
+/// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three
+/// more reviews.
 const CHANGES: u8 = 8;
 
 /// Computes the ego's own horizon from its own state, behind the target with the gains of the association.
@@ -39,10 +40,11 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     scene.estimator.foresee_own(now, review, sample, &manner);
     let Some(mut review) = review.map(|review| review.max(now)) else { return };
     let (mut crossing, mut comfort) = (scene.coordination.next(), scene.coordination.choice().comfort);
-    let (mut gains, mut changes, mut fine_until) = (gains, CHANGES, now.plus(FINE));
+    let (mut gains, mut changes) = (gains, CHANGES);
     let minded = minded(scene, now, crossing);
-    // The review before, if others between it and this one were left out.
-    let mut before = None::<(Instant, End)>;
+    // The last review, with the end of the horizon then; how many reviews later this one is; and the width of the interval in which a change
+    // is looked for, or 0.
+    let (mut before, mut passed, mut left) = (None::<(Instant, End)>, 1i64, 0i64);
     while scene.estimator.is_own_short(now) {
         let Some((step, own)) = scene.estimator.own_end() else { return };
         let next = scene.coordination.next_of(crossing, own.position, scene.config.length);
@@ -51,26 +53,28 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
         let target = ahead.map(|peer| peer.index);
         let is_new = target != manner.target;
         let may = view.comfort(target);
-        if (is_new || may < comfort) && changes > 0 {
-            if let Some((earlier, end)) = before.take() {
-                scene.estimator.cut_own(&end);
-                fine_until = review;
-                review = earlier.plus(REVIEW);
-                scene.estimator.carry_own_on(now, review, &manner);
-                continue;
+        let changes_now = (is_new || may < comfort) && changes > 0;
+        if let Some((earlier, end)) = before.filter(|_| changes_now && passed > 1) {
+            scene.estimator.cut_own(&end);
+            (left, passed) = (passed, passed / 2);
+            review = earlier.plus(REVIEW.times(passed));
+        } else {
+            if changes_now {
+                changes = changes.saturating_sub(1);
+                comfort = may;
+                if is_new {
+                    gains = ahead.map(|peer| gains_behind(scene, &peer.reading, &own));
+                }
+                let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
+                manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
             }
-            changes = changes.saturating_sub(1);
-            comfort = may;
-            if is_new {
-                gains = ahead.map(|peer| gains_behind(scene, &peer.reading, &own));
-            }
-            let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
-            manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
+            crossing = next;
+            before = Some((review, scene.estimator.own_mark()));
+            left = if changes_now { 0 } else { left.saturating_sub(passed).max(0) };
+            let widest = if review.since(now) < NEAR { REVIEWS_NEAR } else { REVIEWS };
+            passed = if left > 0 { (left / 2).max(1) } else { widest };
+            review = review.plus(REVIEW.times(passed));
         }
-        crossing = next;
-        let is_fine = review < fine_until;
-        before = if is_fine { None } else { Some((review, scene.estimator.own_mark())) };
-        review = review.plus(if is_fine { REVIEW } else { REVIEW.times(COARSE) });
         scene.estimator.carry_own_on(now, review, &manner);
     }
 }

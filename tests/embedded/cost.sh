@@ -125,6 +125,7 @@ tables() {
             row("samples of 3 s ago, after a silence", "late-3")
             row("of the admitted maximum", "late-most")
             row("everything at once", "together")
+            row("the same after 3 s without a tick", "pause")
             row("worst of these", "worst")
             row("`receive`, worst", "receive")
             row("40 frames, a full bus in a period", "bus")

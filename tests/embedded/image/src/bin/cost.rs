@@ -37,8 +37,10 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         let seconds = [Traffic::USUAL, Traffic::USUAL, Traffic::ONE, Traffic::ALL, Traffic::HORIZONS];
         // Before the samples of 2 s ago it is quiet for that long: they are to be the newest.
         let late = Traffic::ALL.aged(2_000);
-        let [_, usual, one, all, horizons, late] =
-            [0, 1, 2, 3, 4, 8].map(|number| bench.second(number, *seconds.get(number as usize).unwrap_or(&late)));
+        let [_, usual, one, all, horizons, _, _, _, late] = core::array::from_fn(|number| {
+            let silence = if number < 8 { Traffic::SILENCE } else { late };
+            bench.second(number as u64, *seconds.get(number).unwrap_or(&silence))
+        });
         let frames = bench.frames;
         for (name, count) in [
             ("quiet", usual.quiet),
@@ -88,11 +90,14 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
         let [usual, all, horizons, passes] = cycle;
         let (frames, deep) = (bench.frames, stack::depth(bench.top) as u32);
         // The first tick with horizons, and samples that come after a silence that was as long as they are old.
-        let mut silent = |silence: u64, traffic: Traffic| {
+        let mut after = |silence: u64, has_ticks: bool, traffic: Traffic| {
             begin(bench.unit);
             let mut bench = Bench::new(bench.unit, counter, road());
             for number in 0..3 {
                 bench.second(number, Traffic::USUAL);
+            }
+            for number in (3..3 + silence).filter(|_| has_ticks) {
+                bench.second(number, Traffic::SILENCE);
             }
             bench.second(3 + silence, traffic).any
         };
@@ -104,10 +109,11 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("all", all.any),
             ("horizons", horizons.any),
             ("passes", passes.any),
-            ("first", silent(0, Traffic::HORIZONS)),
-            ("late-3", silent(4, Traffic::ALL.aged(3_000))),
-            ("late-most", silent(stale as u64 / 1_000 + 1, Traffic::ALL.aged(oldest))),
-            ("together", silent(stale as u64 / 1_000 + 1, Traffic::TOGETHER.aged(oldest))),
+            ("first", after(0, true, Traffic::HORIZONS)),
+            ("late-3", after(4, true, Traffic::ALL.aged(3_000))),
+            ("late-most", after(stale as u64 / 1_000 + 1, true, Traffic::ALL.aged(oldest))),
+            ("together", after(stale as u64 / 1_000 + 1, true, Traffic::TOGETHER.aged(oldest))),
+            ("pause", after(3, false, Traffic::TOGETHER)),
         ];
         let worst = rows.iter().map(|(_, count)| *count).max().unwrap_or(0);
         let others = [("worst", worst), ("receive", frames.most), ("bus", frames.full_bus), ("stack", deep)];
