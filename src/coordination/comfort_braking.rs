@@ -27,10 +27,11 @@ impl ComfortBraking {
     #[allow(clippy::cast_possible_truncation)] // at most three
     pub(crate) fn within(way: Distance, speed: Speed) -> Self {
         let left = way.minus(speed.over(GENTLE_REACTION));
-        // `v² <= 2 b s`, which takes no division: speeds below 2¹⁸ mm/s, and ways of at most 2²¹ mm, rounded down.
-        let (mm_per_s, mm) = (i64::from(speed.to_mm_per_s()), i64::from(left.to_bits()).saturating_mul(1_000) >> 20);
+        // `v²/2b <= s`, without a division and to the whole millimetre: speeds are below 2¹⁸ mm/s and ways below 2²² mm.
+        let (mm_per_s, bits) = (i64::from(speed.to_mm_per_s()), i64::from(left.to_bits()));
+        let beyond = (bits.saturating_mul(1_000).saturating_add(500) >> 20).saturating_add(1);
         let squared = mm_per_s.saturating_mul(mm_per_s);
-        let stands = |mm_per_s2: &&i32| squared <= mm.saturating_mul(i64::from(**mm_per_s2)).saturating_mul(2);
+        let stands = |mm_per_s2: &&i32| squared < beyond.saturating_mul(i64::from(**mm_per_s2)).saturating_mul(2);
         Self(GENTLE_MM_PER_S2.iter().take_while(stands).count() as u8)
     }
 
