@@ -5,7 +5,7 @@ use super::{End, Estimator, Horizon};
 use crate::model::{Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample};
 use crate::time::Instant;
-use crate::units::Distance;
+use crate::units::{Distance, Position};
 
 /// How the ego drives, over a step of its own horizon.
 #[derive(Clone, Copy, Debug)]
@@ -42,20 +42,21 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         });
     }
 
-    /// Carries the ego's own horizon on up to an instant, but no farther than a horizon that begins now reaches.
-    pub fn carry_own_on(&mut self, now: Instant, until: Instant, manner: &Manner) {
-        let end = self.grid.at_or_before(until).min(self.end(now));
+    /// Carries the ego's own horizon on up to an instant, but no farther than this step.
+    pub fn carry_own_on(&mut self, until: Instant, end: i64, manner: &Manner) {
+        let end = self.grid.at_or_before(until).min(end);
         self.own_forecast(manner, self.length, |forecast, own| forecast.carry(own, end));
     }
 
-    /// Whether the ego's own horizon ends earlier than a horizon that begins now.
+    /// Whether the ego's own horizon ends before this step.
     #[must_use]
-    pub fn is_own_short(&self, now: Instant) -> bool {
-        !self.own.is_empty() && self.own.last() < self.end(now)
+    pub fn is_own_short(&self, end: i64) -> bool {
+        !self.own.is_empty() && self.own.last() < end
     }
 
     /// The last step of a horizon that begins now.
-    fn end(&self, now: Instant) -> i64 {
+    #[must_use]
+    pub fn own_end_of(&self, now: Instant) -> i64 {
         self.grid.at_or_before(now).saturating_add(steps(self.length)).saturating_sub(1)
     }
 
@@ -85,6 +86,18 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     #[must_use]
     pub fn own_end(&self) -> Option<(i64, Reading)> {
         Some((self.own.last(), self.own.end()?))
+    }
+
+    /// Whether the ego will be at a place at an instant, by its newest own horizon: asked of the steps around the instant, and read between
+    /// them only where they do not agree. It never moves backwards.
+    #[must_use]
+    pub fn is_own_there(&self, at: Instant, place: Position) -> bool {
+        let index = self.grid.at_or_before(at);
+        let is_there = |index| self.own.held(index).is_none_or(|reading| reading.position >= place);
+        if index >= self.own.first() && is_there(index) == is_there(index.saturating_add(1)) {
+            return is_there(index);
+        }
+        self.read_own(at).is_none_or(|reading| reading.position >= place)
     }
 
     /// Where the ego will be at an instant, by its newest own horizon.

@@ -45,7 +45,8 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     // The last review, with the end of the horizon then; how many reviews later this one is; and the width of the interval in which a change
     // is looked for, or 0.
     let (mut before, mut passed, mut left) = (None::<(Instant, End)>, 1i64, 0i64);
-    while scene.estimator.is_own_short(now) {
+    let last = scene.estimator.own_end_of(now);
+    while scene.estimator.is_own_short(last) {
         let Some((step, own)) = scene.estimator.own_end() else { return };
         let next = scene.coordination.next_of(crossing, own.position, scene.config.length);
         let view = Vantage { scene, at: review, next, front: own.position, speed: own.speed };
@@ -75,7 +76,7 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
             passed = if left > 0 { (left / 2).max(1) } else { widest };
             review = review.plus(REVIEW.times(passed));
         }
-        scene.estimator.carry_own_on(now, review, &manner);
+        scene.estimator.carry_own_on(review, last, &manner);
     }
 }
 
