@@ -18,11 +18,14 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
 
-/// The order is reviewed in the horizon once in so many reviews: for a second, and after that. Where the ego follows another vehicle at one
-/// of these than at the one before, or has to brake harder, the review at which that begins is looked for between them, by halves.
+/// The order is reviewed in the horizon once in so many reviews: for a second, for four, and after that. Where the ego follows another
+/// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves. In the first
+/// second that is also done where the ego has to brake harder for the same vehicle.
 const NEAR: Duration = Duration::from_millis(1_000);
 const REVIEWS_NEAR: i64 = 4;
+const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
+const REVIEWS_FAR: i64 = 16;
 /// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three
 /// more reviews.
 const CHANGES: u8 = 8;
@@ -55,7 +58,8 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
         let is_new = target != manner.target;
         let may = view.comfort(target);
         let changes_now = (is_new || may < comfort) && changes > 0;
-        if let Some((earlier, end)) = before.filter(|_| changes_now && passed > 1) {
+        let is_sought = is_new || before.is_some_and(|(earlier, _)| earlier.since(now) < NEAR);
+        if let Some((earlier, end)) = before.filter(|_| changes_now && is_sought && passed > 1) {
             scene.estimator.cut_own(&end);
             (left, passed) = (passed, passed / 2);
             review = earlier.plus(REVIEW.times(passed));
@@ -72,7 +76,11 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
             crossing = next;
             before = Some((review, scene.estimator.own_mark()));
             left = if changes_now { 0 } else { left.saturating_sub(passed).max(0) };
-            let widest = if review.since(now) < NEAR { REVIEWS_NEAR } else { REVIEWS };
+            let widest = match review.since(now) {
+                ahead if ahead < NEAR => REVIEWS_NEAR,
+                ahead if ahead < FAR => REVIEWS,
+                _ => REVIEWS_FAR,
+            };
             passed = if left > 0 { (left / 2).max(1) } else { widest };
             review = review.plus(REVIEW.times(passed));
         }

@@ -90,11 +90,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     /// braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead, the ego drives as on a free road; to follow
     /// would only make it hurry. A vehicle that the ego already follows may get farther ahead by [`APART`].
     pub fn is_in_the_way(&self, peer: &Candidate, followed: Option<usize>) -> bool {
-        let wanted = self.scene.target_speed();
-        let free =
-            self.front.ahead(wanted.over(self.scene.time_gap())).ahead(wanted.over(self.scene.config.law.damping));
+        let (wanted, law) = (self.scene.target_speed(), &self.scene.config.law);
         let apart = if followed == Some(peer.index) { APART } else { Distance::ZERO };
-        self.asks(peer) < free.ahead(apart)
+        let free = wanted.over(self.scene.time_gap()).plus(wanted.over(law.damping)).plus(apart);
+        self.asks(peer) < self.front.ahead(free)
     }
 
     /// `q_j` of a vehicle ahead.
