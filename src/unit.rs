@@ -71,7 +71,12 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     last_tick: Option<Instant>,
     /// The demand of the tick before the last one.
     demand_before: Acceleration,
+    /// By how many ticks the own messages have been put off.
+    put_off: u8,
 }
+
+/// The own messages are put off by so many ticks at most.
+const PUT_OFF: u8 = 2;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// A unit that is not started: it refuses to hear anything and says nothing. Every byte of it is zero, so a `static`
@@ -90,6 +95,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             last_tick: None,
             demand_before: Acceleration::ZERO,
+            put_off: 0,
         }
     }
 
@@ -118,6 +124,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.last_tick = None;
         self.demand_before = Acceleration::ZERO;
+        self.put_off = 0;
         Ok(())
     }
 
@@ -188,8 +195,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
+        let is_due = self.is_own_due(now);
         let target = self.review(now, last);
-        let (before, reading) = self.update(now, target);
+        let (before, reading) = self.update(now, target, is_due);
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
@@ -198,12 +206,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
-            let is_due = self.outbox.is_due(now, self.scene.config.link.period);
             let own = is_due.then(|| self.foresee(now, last, target));
             let pass = own.as_ref().and_then(|_| self.claim(now, ego.as_ref()));
             self.send(now, own.as_ref().map(Option::as_ref), pass, answer);
         }
         self.demand_before = last.demand;
+    }
+
+    /// Whether the own messages are due. On a way through intersections the own horizon takes as long as all that a tick has room for. So it
+    /// is put off, by [`PUT_OFF`] ticks at most, while there is news, which it would not know in full, or a review.
+    fn is_own_due(&mut self, now: Instant) -> bool {
+        let scene = &self.scene;
+        let is_busy = scene.estimator.has_news() || scene.coordination.is_due(now);
+        if scene.is_decided_by_order() && is_busy && self.put_off < PUT_OFF && self.outbox.would_be_due(now) {
+            self.put_off = self.put_off.saturating_add(1);
+            return false;
+        }
+        let is_due = self.is_started() && self.outbox.is_due(now, scene.config.link.period);
+        self.put_off = if is_due { 0 } else { self.put_off };
+        is_due
     }
 
     /// The time of this tick, and the demand of the last one with its age.
@@ -239,12 +260,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Brings every horizon up to now. The target's reading of now by the horizon as it was, in a holdover, and as it is.
-    fn update(&mut self, now: Instant, target: Option<usize>) -> (Option<Reading>, Option<Reading>) {
+    fn update(&mut self, now: Instant, target: Option<usize>, is_own_due: bool) -> (Option<Reading>, Option<Reading>) {
         let before = match self.mode {
             Mode::Holdover { .. } => target.and_then(|index| self.scene.estimated(index, now)),
             _ => None,
         };
-        let unreachable = self.scene.estimator.update(now, &self.scene.peers);
+        let unreachable = self.scene.estimator.update(now, &self.scene.peers, target, is_own_due);
         self.health.add(Cause::Unreachable, unreachable);
         (before, target.and_then(|index| self.scene.estimated(index, now)))
     }

@@ -163,6 +163,16 @@ fn knot((way, speed, acceleration): (f64, f64, f64)) -> Knot {
     }
 }
 
+/// The knots of a path.
+fn through(start: Knot, length: Duration, path: &Path) -> Knots {
+    let at = |after: Duration| knot(path.at(after.as_micros() as f64 / 1e6));
+    let place = |after| {
+        let Knot { displacement, speed, .. } = at(after);
+        (displacement, speed)
+    };
+    Knots::through(1, start, length, place, |after| at(after).acceleration)
+}
+
 fn metres(distance: Distance) -> f64 {
     f64::from(distance.to_bits()) / f64::from(1 << 20)
 }
@@ -179,7 +189,7 @@ fn start_of(path: &Path) -> Knot {
 fn rebuild_errors(path: &Path) -> (f64, f64) {
     let length = Duration::from_micros(((path.way.len() - 1) as f64 * STEP * 1e6).round() as i64);
     let start = start_of(path);
-    let sent = Knots::through(1, start, length, |after| knot(path.at(after.as_micros() as f64 / 1e6)));
+    let sent = through(start, length, path);
     let heard = Knots::decode(&sent.encode());
     assert_eq!(sent, heard);
     let curve = Curve::new(start, &heard, length);
@@ -277,7 +287,7 @@ fn a_grid_and_single_readings_agree_from_any_start_with_any_step() {
         let path = follower(&mut random, 400);
         let start = start_of(&path);
         let length = Duration::from_millis(4000);
-        let knots = Knots::through(1, start, length, |after| knot(path.at(after.as_micros() as f64 / 1e6)));
+        let knots = through(start, length, &path);
         let curve = Curve::new(start, &knots, length);
         let first = Duration::from_micros(random.between(0.0, 4.2e6) as i64);
         let step = Duration::from_micros(random.between(1e3, 1e6) as i64);

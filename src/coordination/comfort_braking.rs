@@ -1,7 +1,6 @@
 //! How gently the ego makes way for a vehicle on another leg. The way to the conflict area and the ego's speed enter; a limit on the
 //! ego's braking leaves.
 
-use crate::fixed::{quotient, saturate_i32};
 use crate::units::{Acceleration, Distance, Seconds, Speed};
 
 /// How hard the ego brakes, at most, to make way for a vehicle on another leg, whether that leg crosses the ego's or not. Of these, the
@@ -27,11 +26,12 @@ impl ComfortBraking {
     /// The gentlest braking by which the ego comes to a stand within this way.
     #[allow(clippy::cast_possible_truncation)] // at most three
     pub(crate) fn within(way: Distance, speed: Speed) -> Self {
-        let (mm_per_s, left) = (i64::from(speed.to_mm_per_s()), way.minus(speed.over(GENTLE_REACTION)));
-        let stands = |mm_per_s2: &&i32| {
-            let mm = quotient(mm_per_s.saturating_mul(mm_per_s), i64::from(**mm_per_s2).saturating_mul(2));
-            Distance::from_mm(saturate_i32(mm)) <= left
-        };
+        let left = way.minus(speed.over(GENTLE_REACTION));
+        // `v²/2b <= s`, without a division and to the whole millimetre: speeds are below 2¹⁸ mm/s and ways below 2²² mm.
+        let (mm_per_s, bits) = (i64::from(speed.to_mm_per_s()), i64::from(left.to_bits()));
+        let beyond = (bits.saturating_mul(1_000).saturating_add(500) >> 20).saturating_add(1);
+        let squared = mm_per_s.saturating_mul(mm_per_s);
+        let stands = |mm_per_s2: &&i32| squared < beyond.saturating_mul(i64::from(**mm_per_s2)).saturating_mul(2);
         Self(GENTLE_MM_PER_S2.iter().take_while(stands).count() as u8)
     }
 

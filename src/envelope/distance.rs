@@ -74,15 +74,16 @@ pub fn spare(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle) -> Spare {
 /// end of the lag. But if one condition holds at one end only and the other at the other end only, then between the ends neither need
 /// hold.
 fn spare_of_all_lags(envelope: &Envelope, ego: &Ego, obstacle: &Obstacle, comes_to_rest: bool) -> Spare {
-    let rest = rest(envelope, obstacle);
-    let at = |lag| spare_at(envelope, ego, obstacle, rest, lag, comes_to_rest);
+    let braking = hardest(envelope);
+    let rest = rest(braking, obstacle);
+    let at = |lag| spare_at(envelope, ego, obstacle, (braking, rest), lag, comes_to_rest);
     let [shortest, longest] = lags(envelope, ego.lag).map(at);
     shortest.0.min(longest.0).max(shortest.1.min(longest.1))
 }
 
 /// The way that the obstacle still makes to its point of rest with the harder of the two brakings, in µm.
-fn rest(envelope: &Envelope, obstacle: &Obstacle) -> i64 {
-    let (v, harder) = (speed_down(obstacle.speed), micros_up(hardest(envelope).max(obstacle.braking)));
+fn rest(braking: Acceleration, obstacle: &Obstacle) -> i64 {
+    let (v, harder) = (speed_down(obstacle.speed), micros_up(braking.max(obstacle.braking)));
     quotient(v.saturating_mul(v), harder.saturating_mul(2))
 }
 
@@ -92,13 +93,13 @@ fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
     [lag.minus(more).max(FineSeconds::ZERO), lag.plus(more)]
 }
 
-/// The speed to spare at this lag, by the points of rest and by closing. While the ego is about to stand, `y` may move backwards; once
+/// The speed to spare at this lag, by the points of rest and by closing. The ego's hardest braking enters with the obstacle's way to rest. While the ego is about to stand, `y` may move backwards; once
 /// the ego stands, it does not any more. So nothing is built on that, unless the ego `comes_to_rest` for good.
 fn spare_at(
     envelope: &Envelope,
     ego: &Ego,
     obstacle: &Obstacle,
-    rest: i64,
+    (braking, rest): (Acceleration, i64),
     lag: FineSeconds,
     comes_to_rest: bool,
 ) -> (Spare, Spare) {
@@ -111,7 +112,7 @@ fn spare_at(
     }
     let room = distance_down(gap).saturating_sub(distance_up(way(ego.speed, lag)));
 
-    let braking = micros_down(hardest(envelope).to_bits());
+    let braking = micros_down(braking.to_bits());
     let by_rest = spare_of(braking, room.saturating_add(rest), z);
     let less = braking.saturating_sub(micros_up(obstacle.braking));
     if less <= 0 {

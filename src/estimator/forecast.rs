@@ -3,6 +3,8 @@
 
 use super::delay::adjusted;
 use super::horizon::{Anchor, Grid, Horizon};
+use super::interpolation::Approach;
+use crate::fixed::quotient;
 use crate::model::{Model, Remainders, State, Step, Stride, VehicleModel};
 use crate::peers::Sample;
 use crate::time::Duration;
@@ -10,6 +12,9 @@ use crate::units::{Distance, Position, RingPosition, Speed};
 use crate::wire::curve::Curve;
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
+
+/// A sample that is older than so many steps of the grid is brought up to now in fewer.
+const LATE: i64 = 32;
 
 /// Whose horizon is ahead: a follower's horizon is computed from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,8 +131,27 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         } else {
             index = self.grid.nearest(sample.at);
         }
+        let (index, state) = self.catch_up(filling.present, news, index, state);
         filling.put(index, state);
         Some((index, state))
+    }
+
+    /// Brings the state of an old sample nearly up to now, in steps that are several of the grid's, so that it takes as long as a younger
+    /// one. They are no longer than a [`LATE`]th of its age: an error that they make is small against that of the age.
+    fn catch_up(&self, present: i64, news: &News<'_>, index: i64, state: State) -> (i64, State) {
+        let late = present.saturating_sub(index);
+        if late <= LATE {
+            return (index, state);
+        }
+        let (mut index, mut state) = (index, state);
+        let each = quotient(late, LATE).saturating_add(1);
+        let stride = news.vehicle.over(self.grid.step.times(each), news.length_ahead, self.model);
+        let approach = self.approach(index);
+        while index.saturating_add(each) <= present {
+            index = index.saturating_add(each);
+            state = stride.take(state, self.ahead_before(approach.as_ref(), index));
+        }
+        (index, state)
     }
 
     /// Source (a): the sent horizon on the grid, from now to its end. A sent horizon that ended before now is not used.
@@ -177,10 +201,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     /// predecessor's have begun, and from there on all in one go.
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
-        // The curve before the predecessor's first step is made once, for all steps that are before it.
-        let begins = self.ahead.filter(|_| self.delay.is_none()).map_or(from, Horizon::first);
-        let approach =
-            self.ahead.filter(|_| from.saturating_add(1) < begins).and_then(|ahead| ahead.approach(self.grid));
+        let approach = self.approach(from);
         while index < end {
             let next = index.saturating_add(1);
             let left = usize::try_from(end.saturating_sub(index)).unwrap_or(0);
@@ -199,19 +220,29 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
                 Some(done) if done > 0 => index = index.saturating_add(steps(done)),
                 _ => {
                     index = next;
-                    let ahead = match &approach {
-                        Some(approach) if index < begins => {
-                            let reading = approach.at(self.grid.time_of(index));
-                            Some((reading.position.ring(), reading.speed))
-                        }
-                        _ => self.ahead_at(index),
-                    };
-                    state = self.stride.take(state, ahead);
+                    state = self.stride.take(state, self.ahead_before(approach.as_ref(), index));
                     filling.put(index, state);
                     continue;
                 }
             }
             state = filling.horizon.tip();
+        }
+    }
+
+    /// The curve before the predecessor's first step, if the steps after this one begin there. It is made once for all of them.
+    fn approach(&self, from: i64) -> Option<Approach> {
+        let ahead = self.ahead.filter(|_| self.delay.is_none())?;
+        if from.saturating_add(1) < ahead.first() { ahead.approach(self.grid) } else { None }
+    }
+
+    /// The predecessor at a step, by that curve up to its end.
+    fn ahead_before(&self, approach: Option<&Approach>, index: i64) -> Option<(RingPosition, Speed)> {
+        match approach.zip(self.ahead) {
+            Some((approach, ahead)) if index < ahead.first() => {
+                let reading = approach.at(self.grid.time_of(index));
+                Some((reading.position.ring(), reading.speed))
+            }
+            _ => self.ahead_at(index),
         }
     }
 
@@ -222,7 +253,8 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         if let Some(delay) = self.delay {
             return self.ahead_delayed(ahead, index, delay);
         }
-        if let Some(step) = ahead.at(index) {
+        // Beyond its end the last step is held, as where it is read.
+        if let Some(step) = ahead.at(index.min(ahead.last())) {
             return Some((step.position, step.speed));
         }
         let reading = ahead.read(self.grid.time_of(index), self.grid, true)?;

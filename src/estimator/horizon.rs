@@ -24,13 +24,21 @@ impl Grid {
     /// The last step at or before an instant.
     #[must_use]
     pub fn at_or_before(&self, at: Instant) -> i64 {
+        self.split(at).0
+    }
+
+    /// The last step at or before an instant, and how much later the instant is.
+    #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+    #[must_use]
+    pub fn split(&self, at: Instant) -> (i64, Duration) {
         let (since, step) = (at.since(self.origin).as_micros(), self.step.as_micros());
-        // Rounded towards -∞: a step before the origin has a negative index.
         let towards_zero = quotient(since, step);
-        if since < 0 && towards_zero.saturating_mul(step) != since {
-            towards_zero.saturating_sub(1)
+        let after = since.wrapping_sub(towards_zero.wrapping_mul(step));
+        // Rounded towards -∞: a step before the origin has a negative index.
+        if after < 0 {
+            (towards_zero.saturating_sub(1), Duration::from_micros(after.saturating_add(step)))
         } else {
-            towards_zero
+            (towards_zero, Duration::from_micros(after))
         }
     }
 
@@ -66,6 +74,13 @@ pub struct Anchor {
     pub speed: Speed,
     /// Acceleration.
     pub acceleration: Acceleration,
+}
+
+/// Where a horizon ends.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    len: usize,
+    tip: State,
 }
 
 /// A ring of up to `STEPS` steps.
@@ -226,6 +241,18 @@ impl<const STEPS: usize> Horizon<STEPS> {
         self.first = self.first.saturating_add(1);
     }
 
+    /// Where it ends now.
+    #[must_use]
+    pub const fn mark(&self) -> End {
+        End { len: self.len, tip: self.tip }
+    }
+
+    /// Takes back the steps that were added since it ended there. None was dropped at the near end since.
+    pub fn cut(&mut self, end: &End) {
+        self.len = self.len.min(end.len);
+        self.tip = end.tip;
+    }
+
     /// Moves every step ahead by this way.
     pub fn shift(&mut self, way: Distance) {
         self.steps.iter_mut().for_each(|step| step.position = step.position.ahead(way));
@@ -255,14 +282,13 @@ impl<const STEPS: usize> Horizon<STEPS> {
         if !interpolate {
             return self.held(grid.nearest(at));
         }
-        let index = grid.at_or_before(at);
-        let time = grid.time_of(index);
+        let (index, since) = grid.split(at);
         match (self.at(index), self.at(index.saturating_add(1))) {
-            (Some(step), _) if time == at => Some(self.reading(step)),
+            (Some(step), _) if since == Duration::ZERO => Some(self.reading(step)),
             (Some(before), Some(after)) => {
                 let from = self.reading(before);
                 let way = after.position.ahead_of(before.position);
-                Some(Cubic::new(from, way, after.speed, grid.step).at(at.since(time)))
+                Some(Cubic::new(from, way, after.speed, grid.step).at(since))
             }
             (None, _) if index < self.first => Some(self.approach(grid)?.at(at)),
             _ => self.held(index),
@@ -277,10 +303,17 @@ impl<const STEPS: usize> Horizon<STEPS> {
         Some(Approach::new(start, Reading { position, speed }, way, first.speed, grid.time_of(self.first).since(start)))
     }
 
+    /// The vehicle at its last step.
+    #[must_use]
+    pub fn end(&self) -> Option<Reading> {
+        self.held(self.last())
+    }
+
     /// The step of an index, or the first or last one if the index is outside.
-    fn held(&self, index: i64) -> Option<Reading> {
-        let index = index.min(self.last()).max(self.first);
-        self.at(index).map(|step| self.reading(step))
+    pub(super) fn held(&self, index: i64) -> Option<Reading> {
+        let beyond = index.wrapping_sub(self.first); // of steps of a millisecond or more: no overflow
+        let n = if beyond <= 0 { 0 } else { usize::try_from(beyond).unwrap_or(usize::MAX) };
+        self.nth(n.min(self.len.wrapping_sub(1))).map(|step| self.reading(step)) // an empty one has no step 0
     }
 
     fn reading(&self, step: Step) -> Reading {
@@ -307,74 +340,4 @@ impl<const STEPS: usize> Default for Horizon<STEPS> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const GRID: Grid = Grid { origin: Instant::from_micros(5_000), step: Duration::from_millis(10) };
-
-    fn state(mm: i64) -> State {
-        State { position: Position::from_mm(mm).ring(), speed: Speed::from_mm_per_s(10_000), ..State::default() }
-    }
-
-    fn at_ten_metres_per_second<const N: usize>(first: i64, count: i64) -> Horizon<N> {
-        let mut horizon = Horizon::empty();
-        let time = GRID.time_of(first);
-        let place = |index: i64| 100_000 + (index - first) * 100;
-        let speed = Speed::from_mm_per_s(10_000);
-        let anchor = Anchor {
-            at: time.minus(Duration::from_millis(5)),
-            position: Position::from_mm(99_950),
-            speed,
-            ..Anchor::default()
-        };
-        horizon.start(anchor, first, Position::from_mm(100_000), state(100_000));
-        for index in first + 1..first + count {
-            horizon.push(state(place(index)));
-        }
-        horizon
-    }
-
-    #[test]
-    fn a_reading_between_steps_lies_on_the_line_of_a_constant_speed() {
-        let horizon = at_ten_metres_per_second::<8>(3, 8);
-        for micros in (-30_000..=70_000i64).step_by(700) {
-            let at = GRID.time_of(3).plus(Duration::from_micros(micros));
-            let reading = horizon.read(at, &GRID, true).unwrap();
-            let exact = 100.0 + micros as f64 * 1e-5;
-            assert!((reading.position.get().to_num::<f64>() - exact).abs() < 5e-6, "{micros} {reading:?}");
-            assert_eq!(reading.speed.to_mm_per_s(), 10_000);
-        }
-    }
-
-    #[test]
-    fn beyond_its_end_the_last_value_is_held() {
-        let horizon = at_ten_metres_per_second::<8>(0, 4);
-        let reading = horizon.read(GRID.time_of(1000), &GRID, true).unwrap();
-        assert_eq!(reading.position.to_mm(), 100_300);
-    }
-
-    #[test]
-    fn a_full_ring_drops_its_first_step_and_keeps_absolute_positions() {
-        let mut horizon = at_ten_metres_per_second::<8>(0, 8);
-        for n in 8..100_000 {
-            horizon.push(state(100_000 + n * 100));
-            assert_eq!((horizon.first(), horizon.last(), horizon.len()), (n - 7, n, 8));
-        }
-        let reading = horizon.read(GRID.time_of(99_999), &GRID, true).unwrap();
-        assert_eq!(reading.position.to_mm(), 100_000 + 9_999_900);
-    }
-
-    #[test]
-    fn without_interpolation_the_nearest_step_is_read() {
-        let horizon = at_ten_metres_per_second::<8>(0, 8);
-        let read = |micros| horizon.read(GRID.time_of(2).plus(Duration::from_micros(micros)), &GRID, false).unwrap();
-        assert_eq!(read(4_999).position.to_mm(), 100_200);
-        assert_eq!(read(5_000).position.to_mm(), 100_300);
-    }
-
-    #[test]
-    fn an_empty_horizon_has_nothing_to_read() {
-        assert_eq!(Horizon::<8>::empty().read(GRID.time_of(0), &GRID, true), None);
-        assert_eq!(Horizon::<8>::empty().read(GRID.time_of(0), &GRID, false), None);
-    }
-}
+mod tests;

@@ -6,6 +6,8 @@
 //!   that the peer computed itself and sent: it is resampled onto the unit's grid, and the unit's model carries it on from its end.
 //!   Otherwise source (b) is the unit's own model of the peer, from the peer's state at the stamp: Algorithm 2 for a leader, Algorithm 4
 //!   for a follower whose predecessor is known, the fading acceleration for any other peer.
+//! * *News of many at once* is spread over ticks, that of the target first (`turns`).
+//! * *After missed ticks*, every horizon starts anew in the same way.
 //! * *No news:* the step that has passed is dropped, and one more is computed at the far end by the same model. So a horizon never runs
 //!   out.
 //!
@@ -19,13 +21,17 @@ mod delay;
 mod forecast;
 mod horizon;
 mod interpolation;
+mod own;
+mod turns;
 
-pub use horizon::{Anchor, Grid, Horizon};
+pub use horizon::{Anchor, End, Grid, Horizon};
+pub use own::Manner;
 
 use chain::Chain;
 use forecast::{Ahead, Forecast, News, steps};
+use turns::{Room, Turn, Turns, steps_a_tick};
 
-use crate::config::Prediction;
+use crate::config::Config;
 use crate::held::Held;
 use crate::model::{Model, Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample, Track};
@@ -33,24 +39,20 @@ use crate::time::{Duration, Instant};
 use crate::units::Distance;
 use crate::wire::{Predecessor, StationHash};
 
+/// Ticks that are missed are made up for by extending every horizon, up to so many steps, or four periods if that is more. After a longer
+/// pause the horizons start anew in turns, which is bounded.
+const PAUSE: i64 = 32;
+
 /// What a horizon is brought up to now from.
 enum Source<'a> {
     /// The peer's newest sample, which is new.
     Heard(&'a Sample),
+    /// The same again, because news of others had to wait when it was new.
+    Again(&'a Sample),
     /// The peer's state by its messages and another sensor together.
     Fused(&'a Sample),
     /// No news.
     Nothing,
-}
-
-/// How the ego drives, over a step of its own horizon.
-#[derive(Clone, Copy, Debug)]
-pub struct Manner {
-    /// The slot of the vehicle that the ego follows.
-    pub target: Option<usize>,
-    vehicle: VehicleModel,
-    length_ahead: Distance,
-    stride: Stride,
 }
 
 /// All horizons of one unit.
@@ -65,7 +67,13 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     strides: [Held<Stride>; PEERS],
     /// The vehicle that each peer follows.
     aheads: [Held<Ahead>; PEERS],
-    news: [bool; PEERS],
+    turns: Turns<PEERS>,
+    /// How many steps of horizons that start anew a tick has room for.
+    room: usize,
+    /// The step of the last tick.
+    present: Held<i64>,
+    /// If more steps than this lie between two ticks, horizons start anew.
+    pause: i64,
     /// The state of a peer by its messages and another sensor together, until it is used.
     track: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
@@ -84,7 +92,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             horizons: [const { Horizon::empty() }; PEERS],
             strides: [Held::Nothing; PEERS],
             aheads: [Held::Nothing; PEERS],
-            news: [false; PEERS],
+            turns: Turns::NONE,
+            room: 0,
+            present: Held::Nothing,
+            pause: 0,
             track: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
@@ -94,18 +105,21 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Starts with nothing known. `length` is the number of steps that a horizon keeps.
-    pub fn start(&mut self, prediction: &Prediction, length: usize, station: StationHash, own_length: Distance) {
-        self.grid = Grid { origin: Instant::ZERO, step: prediction.step };
-        self.model = prediction.model;
+    pub fn start(&mut self, config: &Config, length: usize) {
+        self.grid = Grid { origin: Instant::ZERO, step: config.prediction.step };
+        self.model = config.prediction.model;
         self.length = length.min(STEPS);
         self.horizons.iter_mut().for_each(Horizon::clear);
         self.strides = [Held::Nothing; PEERS];
         self.aheads = [Held::Nothing; PEERS];
-        self.news = [false; PEERS];
+        self.turns = Turns::NONE;
+        self.room = steps_a_tick(config.period);
+        self.present.clear();
+        self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
         self.track.clear();
         self.own.clear();
-        self.station = station;
-        self.own_length = own_length;
+        self.station = config.station;
+        self.own_length = config.length;
         self.chain = Chain::new();
     }
 
@@ -116,9 +130,13 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// Notes that there is news of a peer.
     pub fn note_news(&mut self, index: usize) {
-        if let Some(news) = self.news.get_mut(index) {
-            *news = true;
-        }
+        self.turns.note(index);
+    }
+
+    /// Whether there is news of a peer that is not used yet.
+    #[must_use]
+    pub fn has_news(&self) -> bool {
+        self.turns.has_news()
     }
 
     /// Notes a peer's state by its messages and another sensor together. What the peer itself says of how it will drive takes
@@ -169,25 +187,42 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.strides = [Held::Nothing; PEERS];
     }
 
-    /// Brings every peer's horizon up to now. Returns how many sent horizons were not used, because their senders cannot drive them.
-    pub fn update<const SAMPLES: usize>(&mut self, now: Instant, peers: &Peers<PEERS, SAMPLES>) -> u32 {
+    /// Brings every peer's horizon up to now. News is used by [`turns`]: that of the target at once, that of others as there is room for
+    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. Returns how many sent horizons were not used,
+    /// because their senders cannot drive them.
+    pub fn update<const SAMPLES: usize>(
+        &mut self,
+        now: Instant,
+        peers: &Peers<PEERS, SAMPLES>,
+        target: Option<usize>,
+        is_own_due: bool,
+    ) -> u32 {
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
         let fused = match &self.track {
             Held::Nothing => None, // without a sensor always, and then nothing is copied
             Held::Value(_) => core::mem::take(&mut self.track).get(),
         };
+        let corrected = fused.as_ref().map(|(index, _)| *index);
+        // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
+        let room = if self.model.endless { Room::of(self.room, self.length, is_own_due) } else { Room::ENDLESS };
+        if self.present.get().is_some_and(|last| present.saturating_sub(last) > self.pause) {
+            (0..PEERS).for_each(|index| self.turns.note(index));
+        }
+        self.present.set(present);
+        self.turns.take(room, &self.chain, target, corrected);
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
-            let (Some(sample), Some(news)) = (track.newest(), self.news.get_mut(index)) else { continue };
-            let is_news = core::mem::take(news);
+            let Some(sample) = track.newest() else { continue };
             let ahead = self.aheads.get(index).and_then(Held::get);
             let says_how = track.knots().is_some() || is_known(track, ahead);
-            let source = match &fused {
-                Some((fused, sample)) if *fused == index && !(is_news && says_how) => Source::Fused(sample),
-                _ if is_news => Source::Heard(sample),
-                _ => Source::Nothing,
+            let source = match (self.turns.of(index), &fused) {
+                (Turn::News, _) if says_how => Source::Heard(sample),
+                (_, Some((fused, sample))) if *fused == index => Source::Fused(sample),
+                (Turn::News, _) => Source::Heard(sample),
+                (Turn::Again, _) => Source::Again(sample),
+                (Turn::None, _) => Source::Nothing,
             };
             let is_used = self.update_one(present, peers, index, track, &source);
             unreachable = unreachable.saturating_add(u32::from(!is_used));
@@ -203,7 +238,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         track: &Track<SAMPLES>,
         source: &Source<'_>,
     ) -> bool {
-        let Self { grid, model, length, horizons, strides, own, own_length, aheads, .. } = self;
+        let Self { grid, model, length, horizons, strides, own, own_length, aheads, pause, .. } = self;
         let ahead = aheads.get(index).and_then(Held::get);
         // How the peer drives is needed only when its prediction step is made, or when its horizon starts anew.
         let course = || {
@@ -232,10 +267,16 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let delay = if model.stamped { None } else { Some(track.link().delay()) };
         let forecast = Forecast { grid, length: *length, model, stride, ahead, delay };
         let (sample, received) = match source {
-            Source::Heard(sample) => (sample, track.knots().filter(|_| model.received).zip(track.parameters())),
+            Source::Heard(sample) | Source::Again(sample) => {
+                (sample, track.knots().filter(|_| model.received).zip(track.parameters()))
+            }
             Source::Fused(sample) => (sample, None),
             Source::Nothing => {
-                forecast.extend(horizon, present);
+                // One that waits since a pause is read as it is until its turn comes.
+                let behind = present.saturating_sub(horizon.first());
+                if behind <= *pause || behind > steps(STEPS) {
+                    forecast.extend(horizon, present);
+                }
                 return true;
             }
         };
@@ -249,59 +290,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         });
         let (vehicle, length_ahead) = course();
         forecast.anchor(horizon, present, &News { sample, received: usable, vehicle, length_ahead });
-        usable.is_some() == received.is_some()
-    }
-
-    /// How the ego drives behind this peer, or without a target, for the ego's own horizon.
-    pub fn manner<const SAMPLES: usize>(
-        &self,
-        vehicle: VehicleModel,
-        target: Option<usize>,
-        peers: &Peers<PEERS, SAMPLES>,
-    ) -> Manner {
-        let length_ahead = target.map_or(Distance::ZERO, |index| peers.length_of(index));
-        Manner { target, vehicle, length_ahead, stride: vehicle.over(self.grid.step, length_ahead, &self.model) }
-    }
-
-    /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.
-    pub fn foresee_own(&mut self, now: Instant, until: Option<Instant>, sample: &Sample, manner: &Manner) {
-        let present = self.grid.at_or_before(now);
-        let whole = steps(self.length);
-        let length = until.map_or(whole, |until| {
-            self.grid.at_or_before(until).saturating_sub(present).saturating_add(1).min(whole).max(1)
-        });
-        let (vehicle, length_ahead) = (manner.vehicle, manner.length_ahead);
-        self.own_forecast(manner, usize::try_from(length).unwrap_or(0), |forecast, own| {
-            forecast.anchor(own, present, &News { sample, received: None, vehicle, length_ahead });
-        });
-    }
-
-    /// Carries the ego's own horizon on up to an instant, but no farther than a horizon that begins now reaches.
-    pub fn carry_own_on(&mut self, now: Instant, until: Instant, manner: &Manner) {
-        let end = self.grid.at_or_before(until).min(self.end(now));
-        self.own_forecast(manner, self.length, |forecast, own| forecast.carry(own, end));
-    }
-
-    /// Whether the ego's own horizon ends earlier than a horizon that begins now.
-    #[must_use]
-    pub fn is_own_short(&self, now: Instant) -> bool {
-        !self.own.is_empty() && self.own.last() < self.end(now)
-    }
-
-    /// The last step of a horizon that begins now.
-    fn end(&self, now: Instant) -> i64 {
-        self.grid.at_or_before(now).saturating_add(steps(self.length)).saturating_sub(1)
-    }
-
-    fn own_forecast(
-        &mut self,
-        manner: &Manner,
-        length: usize,
-        act: impl FnOnce(&Forecast<'_, STEPS>, &mut Horizon<STEPS>),
-    ) {
-        let ahead = manner.target.and_then(|index| self.horizons.get(index)).filter(|horizon| !horizon.is_empty());
-        let (grid, model, stride) = (&self.grid, &self.model, &manner.stride);
-        act(&Forecast { grid, length, model, stride, ahead, delay: None }, &mut self.own);
+        usable.is_some() == received.is_some() || matches!(source, Source::Again(_))
     }
 
     /// Where a peer is at an instant, inside what is certain of it then.
@@ -323,10 +312,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.horizons.get(index)?.read(at, &self.grid, self.model.interpolate)
     }
 
-    /// Where the ego will be at an instant, by its newest own horizon.
+    /// Where a peer is at a step of the grid, by its horizon: without interpolation, and whatever is certain of it.
     #[must_use]
-    pub fn read_own(&self, at: Instant) -> Option<Reading> {
-        self.own.read(at, &self.grid, true)
+    pub fn read_step(&self, index: usize, step: i64) -> Option<Reading> {
+        self.horizons.get(index)?.held(step)
     }
 
     /// The horizon of a peer.

@@ -163,7 +163,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     let mut config = Config::car(StationHash(9));
     config.prediction.step = Duration::from_millis(10); // all times below are steps
     let mut estimator = Estimator::<2, STEPS>::idle();
-    estimator.start(&config.prediction, STEPS, config.station, config.length);
+    estimator.start(&config, STEPS);
     estimator.start_grid(GRID.origin);
     let mut peers = Peers::<2, 4>::idle();
     peers.start(config.link.period);
@@ -177,7 +177,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     );
     estimator.note_change(&peers);
     estimator.note_news(1);
-    estimator.update(GRID.origin, &peers);
+    estimator.update(GRID.origin, &peers, None, false);
     for hundredths in [0, 10, 40, 60] {
         let t = f64::from(hundredths) * 0.01;
         let at = GRID.origin.plus(Duration::from_millis(i64::from(hundredths) * 10));
@@ -192,7 +192,7 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
     let config = Config::car(StationHash(9));
     for (front, back) in [(0, 1), (1, 0)] {
         let mut estimator = Estimator::<2, STEPS>::idle();
-        estimator.start(&config.prediction, STEPS, config.station, config.length);
+        estimator.start(&config, STEPS);
         estimator.start_grid(GRID.origin);
         let mut peers = Peers::<2, 4>::idle();
         peers.start(config.link.period);
@@ -208,7 +208,7 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);
-        estimator.update(GRID.origin, &peers);
+        estimator.update(GRID.origin, &peers, None, false);
         let end = GRID.origin.plus(Duration::from_millis(600));
         let (leads, follows) = (estimator.read(front.into(), end).unwrap(), estimator.read(back.into(), end).unwrap());
         assert_eq!(metres(leads), 5_000.0);

@@ -11,7 +11,7 @@ use heapless::Vec;
 
 use super::lane;
 use super::scene::Scene;
-use super::vantage::Vantage;
+use super::vantage::{Candidate, Vantage};
 use crate::coordination::{Arrival, Present, Side, Slots};
 use crate::health::{Cause, Health};
 use crate::time::Instant;
@@ -127,11 +127,12 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) {
     let view = scene.vantage(now, front, speed);
     let before = scene.coordination.choice();
-    let is_heeded = |index: &usize| view.is_heeded(*index);
-    let order = before.order.map(usize::from).filter(is_heeded);
-    let lane = nearest.filter(is_heeded);
+    let heeded = |index| Candidate::at(scene, index, now).filter(|peer| view.is_heeded(peer));
+    let order = before.order.map(usize::from).and_then(heeded);
+    let lane = nearest.and_then(heeded);
     let followed = before.target.map(usize::from);
-    let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(*target, followed));
+    let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(target, followed));
+    let (target, lane) = (target.map(|peer| peer.index), lane.map(|peer| peer.index));
     let may = view.comfort(target);
     // For the same target the ego does not brake more gently than it already had to.
     let comfort = if followed == target { may.min(before.comfort) } else { may };

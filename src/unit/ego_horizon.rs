@@ -6,14 +6,29 @@
 //! those horizons. So its own horizon includes the change. Every vehicle that hears it then knows of the change, and so do the vehicles
 //! behind.
 
+use heapless::Vec;
+
 use super::scene::Scene;
-use super::vantage::Vantage;
+use super::vantage::{Candidate, Vantage};
 use crate::controller::Gains;
-use crate::coordination::{Entry, REVIEW, Slots};
+use crate::coordination::{Entry, REVIEW};
+use crate::estimator::End;
 use crate::model::Reading;
 use crate::peers::Sample;
-use crate::time::Instant;
-use crate::units::Position;
+use crate::time::{Duration, Instant};
+use crate::units::Distance;
+
+/// The order is reviewed in the horizon once in so many reviews: for a second, for three, and after that. Where the ego follows another
+/// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves. In the first
+/// second that is also done where the ego has to brake harder for the same vehicle.
+const NEAR: Duration = Duration::from_millis(1_000);
+const REVIEWS_NEAR: i64 = 4;
+const FAR: Duration = Duration::from_millis(3_000);
+const REVIEWS: i64 = 8;
+const REVIEWS_FAR: i64 = 16;
+/// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three
+/// more reviews.
+const CHANGES: u8 = 8;
 
 /// Computes the ego's own horizon from its own state, behind the target with the gains of the association.
 pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
@@ -28,38 +43,71 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     scene.estimator.foresee_own(now, review, sample, &manner);
     let Some(mut review) = review.map(|review| review.max(now)) else { return };
     let (mut crossing, mut comfort) = (scene.coordination.next(), scene.coordination.choice().comfort);
-    let mut gains = gains;
+    let (mut gains, mut changes) = (gains, CHANGES);
     let minded = minded(scene, now, crossing);
-    while scene.estimator.is_own_short(now) {
-        let Some(own) = scene.estimator.read_own(review) else { return };
-        crossing = scene.coordination.next_of(crossing, own.position, scene.config.length);
-        let view = Vantage { scene, at: review, next: crossing, front: own.position, speed: own.speed };
-        let target = outlook(&view, minded, manner.target);
+    // The last review, with the end of the horizon then; how many reviews later this one is; and the width of the interval in which a change
+    // is looked for, or 0.
+    let (mut before, mut passed, mut left) = (None::<(Instant, End)>, 1i64, 0i64);
+    let last = scene.estimator.own_end_of(now);
+    while scene.estimator.is_own_short(last) {
+        let Some((step, own)) = scene.estimator.own_end() else { return };
+        let next = scene.coordination.next_of(crossing, own.position, scene.config.length);
+        let view = Vantage { scene, at: review, next, front: own.position, speed: own.speed };
+        let ahead = outlook(&view, step, &minded, manner.target);
+        let target = ahead.map(|peer| peer.index);
         let is_new = target != manner.target;
         let may = view.comfort(target);
-        if is_new || may < comfort {
-            comfort = may;
-            if is_new {
-                gains = target.and_then(|index| gains_behind(scene, index, &own, review));
+        let changes_now = (is_new || may < comfort) && changes > 0;
+        let is_sought = is_new || before.is_some_and(|(earlier, _)| earlier.since(now) < NEAR);
+        if let Some((earlier, end)) = before.filter(|_| changes_now && is_sought && passed > 1) {
+            scene.estimator.cut_own(&end);
+            (left, passed) = (passed, passed / 2);
+            review = earlier.plus(REVIEW.times(passed));
+        } else {
+            if changes_now {
+                changes = changes.saturating_sub(1);
+                comfort = may;
+                if is_new {
+                    gains = ahead.map(|peer| gains_behind(scene, &peer.reading, &own));
+                }
+                let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
+                manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
             }
-            let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(crossing, index)));
-            manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
+            crossing = next;
+            before = Some((review, scene.estimator.own_mark()));
+            left = if changes_now { 0 } else { left.saturating_sub(passed).max(0) };
+            let widest = match review.since(now) {
+                ahead if ahead < NEAR => REVIEWS_NEAR,
+                ahead if ahead < FAR => REVIEWS,
+                _ => REVIEWS_FAR,
+            };
+            passed = if left > 0 { (left / 2).max(1) } else { widest };
+            review = review.plus(REVIEW.times(passed));
         }
-        review = review.plus(REVIEW);
-        scene.estimator.carry_own_on(now, review, &manner);
+        scene.estimator.carry_own_on(review, last, &manner);
     }
 }
 
-/// The gains of an association that begins at `at`.
+/// The gains of an association that begins there.
 fn gains_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
-    index: usize,
+    ahead: &Reading,
     own: &Reading,
-    at: Instant,
-) -> Option<Gains> {
-    let ahead = scene.estimated(index, at)?;
+) -> Gains {
     let headway = ahead.position.ahead_of(own.position);
-    Some(Gains::look_up(&scene.config.law, own.speed, ahead.speed, headway))
+    Gains::look_up(&scene.config.law, own.speed, ahead.speed, headway)
+}
+
+/// A vehicle that the ego may follow at some time.
+struct Minded {
+    index: usize,
+    /// Its crossing.
+    crossing: usize,
+    is_on_lane: bool,
+    /// Its place in the order, and whether that is ahead of the ego's at the next crossing.
+    entry: Option<Entry>,
+    is_ahead: bool,
+    length: Distance,
 }
 
 /// The vehicles that the ego may follow at some time, with `next` as its next crossing: a vehicle that is ahead on its leg now, because
@@ -68,62 +116,69 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     next: usize,
-) -> Slots {
-    let mut minded = Slots::NONE;
+) -> Vec<Minded, PEERS> {
+    let mut minded = Vec::new();
     let Some(own) = scene.estimator.read_own(now) else { return minded };
+    let step = scene.estimator.grid().at_or_before(now);
     for index in 0..PEERS {
-        let is_minded = scene.coordination.approach(index).is_some_and(|approach| {
-            if scene.coordination.is_on_lane(approach) {
-                scene.estimated(index, now).is_some_and(|reading| reading.position > own.position)
-            } else {
-                let is_ahead = || scene.entry(index, approach).is_some_and(|entry| is_ahead(scene, index, &entry));
-                approach.crossing > next || approach.crossing == next && is_ahead()
-            }
-        });
-        minded.set(index, is_minded);
+        let Some(approach) = scene.coordination.approach(index) else { continue };
+        let is_on_lane = scene.coordination.is_on_lane(approach);
+        let entry = scene.entry(index, approach);
+        let is_ahead = entry.as_ref().is_some_and(|entry| is_ahead(scene, index, entry));
+        let is_minded = if is_on_lane {
+            scene.estimator.read_step(index, step).is_some_and(|reading| reading.position > own.position)
+        } else {
+            approach.crossing > next || approach.crossing == next && is_ahead
+        };
+        if is_minded {
+            let (crossing, length) = (approach.crossing, scene.peers.length_of(index));
+            let _ = minded.push(Minded { index, crossing, is_on_lane, entry, is_ahead, length }); // no more than slots
+        }
     }
     minded
 }
 
-/// The vehicle that the ego will follow, by the order and the horizons as they are known now. A vehicle that registers in between is not
-/// known.
+/// The vehicle that the ego will follow, by the order and the horizons as they are known now, at a step of the grid. A vehicle that
+/// registers in between is not known. The horizons are read at the step itself, where they take no interpolation; and beyond what is
+/// certain of a vehicle its horizon does not go, because the horizon keeps to the limits that this rests on.
 fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
-    minded: Slots,
+    step: i64,
+    minded: &[Minded],
     followed: Option<usize>,
-) -> Option<usize> {
+) -> Option<Candidate> {
     let (scene, coordination) = (view.scene, &view.scene.coordination);
     let end = coordination.end_of(view.next);
     let is_later = view.next != coordination.next();
-    let (mut order, mut lane) = (None::<(usize, Entry)>, None::<(usize, Position)>);
-    for index in (0..PEERS).filter(|index| minded.contains(*index)) {
-        let Some(approach) = coordination.approach(index) else { continue };
-        let is_on_lane = coordination.is_on_lane(approach);
+    let (mut order, mut lane) = (None::<(Candidate, &Entry)>, None::<(Candidate, usize)>);
+    for Minded { index, crossing, is_on_lane, entry, is_ahead, length } in minded {
         // The entry is asked for first, because it needs no horizon.
-        let entry = scene.entry(index, approach).filter(|entry| {
-            let is_ahead = is_later || is_ahead(scene, index, entry);
-            is_ahead && approach.crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
+        let entry = entry.as_ref().filter(|entry| {
+            let is_ahead = is_later || *is_ahead;
+            is_ahead && *crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
         });
         if !is_on_lane && entry.is_none() {
             continue;
         }
-        let Some((reading, rear)) = scene.rear(index, view.at) else { continue };
-        if is_on_lane && reading.position > view.front && lane.is_none_or(|(_, nearest)| reading.position < nearest) {
-            lane = Some((index, reading.position));
+        let Some(reading) = scene.estimator.read_step(*index, step) else { continue };
+        let peer = Candidate { index: *index, reading, rear: reading.position.ahead(length.negated()) };
+        let is_nearest = lane.is_none_or(|(nearest, _)| reading.position < nearest.reading.position);
+        if *is_on_lane && reading.position > view.front && is_nearest {
+            lane = Some((peer, *crossing));
         }
-        let Some(entry) = entry.filter(|_| end.is_some_and(|end| rear < end)) else { continue };
-        if followed == Some(index) || view.is_announced(approach) {
-            order = Some((index, entry));
+        let Some(entry) = entry.filter(|_| end.is_some_and(|end| peer.rear < end)) else { continue };
+        let is_announced = || coordination.approach(*index).is_some_and(|approach| view.is_announced(approach));
+        if followed == Some(*index) || is_announced() {
+            order = Some((peer, entry));
         }
     }
     // A vehicle that is ahead on the same leg, and not yet at the later crossing, comes there before the ego, and after all that are
     // there now.
-    let comes_last = |index| coordination.approach(index).is_some_and(|approach| approach.crossing != view.next);
-    let order = order.filter(|_| !(is_later && lane.is_some_and(|(index, _)| comes_last(index))));
-    let is_heeded = |index: &usize| view.is_heeded(*index);
-    let (order, lane) = (order.map(|(index, _)| index), lane.map(|(index, _)| index));
+    let order = order.filter(|_| !(is_later && lane.is_some_and(|(_, crossing)| crossing != view.next)));
+    let is_heeded = |peer: &Candidate| view.is_heeded(peer);
+    let (order, lane) = (order.map(|(peer, _)| peer), lane.map(|(peer, _)| peer));
     let target = view.more_careful(order.filter(is_heeded), lane.filter(is_heeded))?;
-    view.is_in_the_way(target, followed).then_some(target)
+    view.is_in_the_way(&target, followed).then_some(target)
 }
 
 /// Whether a station was ahead at the last review, and still is by what it has said since then.

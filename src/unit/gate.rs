@@ -87,7 +87,10 @@ impl Gate {
         let entrance = self.entrance(limits, scene, &ego, &range);
         let wanted = demand;
         let demand = entrance.demand(scene, &range, demand);
-        let view = Rearmost { scene, now, rearmost, entrance };
+        let mut view = Rearmost { scene, now, rearmost, entrance, stop: None };
+        if scene.coordination.itinerary().is_some() {
+            view.stop = (0..PEERS).filter_map(|index| view.stop_for(index)).min();
+        }
         // At the limit of the braking the ego may be unable to stop for a tick. It does not go in for that, past what it stops for.
         if view.entrance.can_stop && view.is_held() {
             self.is_covered = false;
@@ -198,6 +201,8 @@ struct Rearmost<'a, const PEERS: usize, const SAMPLES: usize, const STEPS: usize
     /// Front bumper of the ego, as far back as it may be.
     rearmost: Position,
     entrance: Entrance,
+    /// Where the ego stops for the peers whose ways cross its own.
+    stop: Option<Position>,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, PEERS, SAMPLES, STEPS> {
@@ -214,8 +219,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
     /// the area all the same. The ego also stops before an area at which it has not arrived because it does not know the time: no vehicle
     /// minds it there.
     fn stop_at_crossing(&self) -> Option<Position> {
-        let others = (0..PEERS).filter_map(|index| self.stop_for(index));
-        others
+        self.stop
+            .into_iter()
             .chain(self.entrance.line(self.seen()))
             .chain(self.stop_without_time())
             .chain(self.stop_before_later())
@@ -229,7 +234,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
 
     /// Whether the ego has to stop before the area although it has a pass.
     fn is_held(&self) -> bool {
-        self.seen().is_some() || (0..PEERS).any(|index| self.stop_for(index).is_some())
+        self.seen().is_some() || self.stop.is_some()
     }
 
     /// Where the ego stops for a peer whose way crosses its own. A peer that keeps passes is out of the area when the ego's pass begins.

@@ -100,10 +100,12 @@ pub(super) fn spare<const PEERS: usize, const SAMPLES: usize, const STEPS: usize
 ) -> Option<Spare> {
     let ahead = ahead(scene, now);
     // The rear of a vehicle is not behind its own near end, nor behind the place that it is known to have passed. So the better of both
-    // holds.
+    // holds. Of a vehicle that stands farther back than another one drives, less is to spare, and it need not be computed.
     let behind = |index: usize| {
-        let passed = scene.coordination.passed(index).map(Obstacle::standing);
-        [scene.obstacle(now, index), passed].into_iter().flatten().map(spare).max()
+        let near = scene.obstacle(now, index);
+        let is_farther = |passed: &Position| near.is_none_or(|near| *passed > near.position);
+        let passed = scene.coordination.passed(index).filter(is_farther).map(Obstacle::standing);
+        [near, passed].into_iter().flatten().map(spare).max()
     };
     ahead.filter_map(behind).min()
 }

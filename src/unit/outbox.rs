@@ -113,6 +113,11 @@ impl Outbox {
         true
     }
 
+    /// Whether the own messages would be due now.
+    pub(super) fn would_be_due(&self, now: Instant) -> bool {
+        self.due.is_none_or(|due| now >= due)
+    }
+
     /// Whether the driving parameters are due: because they have changed, or because their turn has come.
     fn are_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
         if self.parameters != Held::Value(parameters) {
@@ -343,16 +348,14 @@ fn own_knots<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let whole = Duration::from_millis(100).times(i64::from(horizon_tenths(scene)));
     let half = scene.estimator.grid().step.min(Duration::from_millis(50));
     let read = |at| scene.estimator.read_own(at).unwrap_or(Reading { position: ego.position, speed: ego.speed });
-    Knots::through(tag, start.rounded(), whole, |after| {
+    let path = |after| {
+        let reading = read(ego.at.plus(after));
+        (reading.position.ahead_of(ego.position), reading.speed)
+    };
+    Knots::through(tag, start.rounded(), whole, path, |after| {
         let at = ego.at.plus(after);
-        let reading = read(at);
         let change = read(at.plus(half)).speed.minus(read(at.minus(half)).speed);
-        Knot {
-            displacement: reading.position.ahead_of(ego.position),
-            speed: reading.speed,
-            acceleration: Acceleration::of_change(change, half.times(2).as_micros()),
-            bow: Distance::ZERO,
-        }
+        Acceleration::of_change(change, half.times(2).as_micros())
     })
 }
 

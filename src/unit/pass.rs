@@ -244,7 +244,7 @@ fn arrives<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let (mut before, mut after) = (Duration::ZERO, length);
     while after.minus(before) > STEP {
         let middle = Duration::from_micros(before.plus(after).as_micros() >> 1);
-        let is_there = read(middle).is_none_or(|reading| reading.position >= place);
+        let is_there = scene.estimator.is_own_there(ego.now.plus(middle), place);
         (before, after) = if is_there { (before, middle) } else { (middle, after) };
     }
     Some(after)

@@ -101,7 +101,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.request.clear();
         self.requested_at = Instant::ZERO;
         self.peers.start(config.link.period);
-        self.estimator.start(&config.prediction, config.steps(), config.station, config.length);
+        self.estimator.start(config, config.steps());
         self.coordination.reset();
         self.ranging = Ranging::new();
         self.fused = const { Fused::NONE };

@@ -19,9 +19,6 @@ const HEEDED_TIME: Seconds = Seconds::from_millis(3_990);
 /// By how much more the ego goes on following a vehicle that gets away from it, so that the choice does not alternate.
 const APART: Distance = Distance::from_mm(3_000);
 
-/// A position farther ahead than any vehicle.
-const NOWHERE: Position = Position::from_bits(i64::MAX);
-
 /// The ego at an instant, and the scene.
 #[derive(Clone, Copy)]
 pub(super) struct Vantage<'a, const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {
@@ -34,19 +31,39 @@ pub(super) struct Vantage<'a, const PEERS: usize, const SAMPLES: usize, const ST
     pub speed: Speed,
 }
 
+/// A peer that the ego might follow, as it is estimated at that instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub index: usize,
+    /// Its front bumper and its speed.
+    pub reading: Reading,
+    pub rear: Position,
+}
+
+impl Candidate {
+    /// A peer inside what is certain of it; `None` where it is not known.
+    pub fn at<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        index: usize,
+        at: Instant,
+    ) -> Option<Self> {
+        let (reading, rear) = scene.rear(index, at)?;
+        Some(Self { index, reading, rear })
+    }
+}
+
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
     /// Whether the ego may follow a peer. The gate minds the peer all the same. A vehicle that was far ahead when it was heard last has
     /// got out of reach, and no vehicle is ahead then as far as it matters. This also holds if that vehicle is estimated to have stopped
     /// since, behind a vehicle that is not heard any more.
-    pub fn is_heeded(&self, index: usize) -> bool {
-        self.scene.is_in_reach(index, self.at)
-            || !self.scene.coordination.choice().lost.contains(index) && !self.is_far_ahead(index)
+    pub fn is_heeded(&self, peer: &Candidate) -> bool {
+        self.scene.is_in_reach(peer.index, self.at)
+            || !self.scene.coordination.choice().lost.contains(peer.index) && !self.is_far_ahead(peer)
     }
 
-    fn is_far_ahead(&self, index: usize) -> bool {
+    fn is_far_ahead(&self, peer: &Candidate) -> bool {
         let way = self.speed.over(HEEDED_TIME);
-        let heeded = self.front.ahead(HEEDED).ahead(way).ahead(way);
-        self.scene.rear(index, self.at).is_none_or(|(_, rear)| rear > heeded)
+        peer.rear > self.front.ahead(HEEDED).ahead(way).ahead(way)
     }
 
     /// Of the vehicle just ahead in the order and the vehicle just ahead on the leg, the one that asks for more caution.
@@ -54,36 +71,35 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
     /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in
     /// the order, it brakes with no more than `b`. So that vehicle asks for no less than `r + (t_g + γ) v - b/k`.
-    pub fn more_careful(&self, order: Option<usize>, lane: Option<usize>) -> Option<usize> {
+    pub fn more_careful(&self, order: Option<Candidate>, lane: Option<Candidate>) -> Option<Candidate> {
         let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
         let law = &self.scene.config.law;
-        let gentle = self.comfort(order).limit(Acceleration::MAX);
-        let least = self
-            .front
-            .ahead(self.speed.over(self.scene.time_gap()))
-            .ahead(self.speed.over(law.damping))
-            .ahead(braked_over(gentle, law.gain));
-        let asks_first = if gentle == Acceleration::MAX { self.asks(first) } else { self.asks(first).max(least) };
-        Some(if asks_first <= self.asks(ahead) { first } else { ahead })
+        let gentle = self.comfort(Some(first.index)).limit(Acceleration::MAX);
+        let least = || {
+            self.front
+                .ahead(self.speed.over(self.scene.time_gap()))
+                .ahead(self.speed.over(law.damping))
+                .ahead(braked_over(gentle, law.gain))
+        };
+        let (asks_first, asks_ahead) = (self.asks(&first), self.asks(&ahead));
+        let is_first = asks_first <= asks_ahead && (gentle == Acceleration::MAX || least() <= asks_ahead);
+        Some(if is_first { first } else { ahead })
     }
 
     /// Whether a vehicle ahead is so near that the ego follows it. At the speed `v_∞` that the ego wants on a free road, eq. 5 asks for
     /// braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead, the ego drives as on a free road; to follow
     /// would only make it hurry. A vehicle that the ego already follows may get farther ahead by [`APART`].
-    pub fn is_in_the_way(&self, index: usize, followed: Option<usize>) -> bool {
-        let wanted = self.scene.target_speed();
-        let free =
-            self.front.ahead(wanted.over(self.scene.time_gap())).ahead(wanted.over(self.scene.config.law.damping));
-        let apart = if followed == Some(index) { APART } else { Distance::ZERO };
-        self.asks(index) < free.ahead(apart)
+    pub fn is_in_the_way(&self, peer: &Candidate, followed: Option<usize>) -> bool {
+        let (wanted, law) = (self.scene.target_speed(), &self.scene.config.law);
+        let apart = if followed == Some(peer.index) { APART } else { Distance::ZERO };
+        let free = wanted.over(self.scene.time_gap()).plus(wanted.over(law.damping)).plus(apart);
+        self.asks(peer) < self.front.ahead(free)
     }
 
     /// `q_j` of a vehicle ahead.
-    fn asks(&self, index: usize) -> Position {
-        self.scene.rear(index, self.at).map_or(NOWHERE, |(reading, rear)| {
-            let damped = reading.speed.over(self.scene.config.law.damping);
-            rear.ahead(damped).ahead(self.scene.standstill_at(self.next, index).negated())
-        })
+    fn asks(&self, peer: &Candidate) -> Position {
+        let damped = peer.reading.speed.over(self.scene.config.law.damping);
+        peer.rear.ahead(damped).ahead(self.scene.standstill_at(self.next, peer.index).negated())
     }
 
     /// How gently the ego may brake for a peer that it follows.

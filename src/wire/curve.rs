@@ -299,16 +299,25 @@ const fn share_of(length: Duration, per_mille: u16) -> i64 {
 }
 
 impl Knots {
-    /// The knots that rebuild a predicted path, given as the state so long after the motion's stamp, its displacement
-    /// counted from the position in the motion message. Start and tag are that message's; the start has to be
-    /// [`Knot::rounded`], so that the sender sees it as the receiver will.
+    /// The knots that rebuild a predicted path, given as way and speed so long after the motion's stamp, the way counted from the position
+    /// in the motion message, and as the acceleration, which is asked for at the knots alone. Start and tag are that message's; the start
+    /// has to be [`Knot::rounded`], so that the sender sees it as the receiver will.
     #[must_use]
-    pub fn through(tag: u8, start: Knot, length: Duration, mut path: impl FnMut(Duration) -> Knot) -> Self {
+    pub fn through(
+        tag: u8,
+        start: Knot,
+        length: Duration,
+        mut path: impl FnMut(Duration) -> (Distance, Speed),
+        mut acceleration: impl FnMut(Duration) -> Acceleration,
+    ) -> Self {
         let mut from = (0, start);
         let knots = KNOTS_PER_MILLE.map(|per_mille| {
             let (time, before) = from;
             let end = share_of(length, per_mille);
-            let mut knot = Knot { bow: Distance::ZERO, ..path(Duration::from_micros(end)) }.rounded();
+            let after = Duration::from_micros(end);
+            let (displacement, speed) = path(after);
+            let mut knot =
+                Knot { displacement, speed, acceleration: acceleration(after), bow: Distance::ZERO }.rounded();
             if knot.speed == Speed::ZERO {
                 knot.acceleration = if before.speed > Speed::ZERO {
                     braking_to_rest(
@@ -325,7 +334,7 @@ impl Knots {
             let [first, ..] = segment.pieces;
             if first.micros > 0 {
                 let midway = first.micros / 2;
-                let truth = path(Duration::from_micros(time.saturating_add(midway))).displacement;
+                let (truth, _) = path(Duration::from_micros(time.saturating_add(midway)));
                 knot.bow = truth.minus(first.at(midway).displacement);
             }
             knot = knot.rounded();
@@ -337,11 +346,12 @@ impl Knots {
 }
 
 /// When the vehicle came to rest between these times, at which it moves and stands; bisected to 1 ms.
-fn rest_time(moving: i64, standing: i64, path: &mut impl FnMut(Duration) -> Knot) -> i64 {
+fn rest_time(moving: i64, standing: i64, path: &mut impl FnMut(Duration) -> (Distance, Speed)) -> i64 {
     let (mut moving, mut standing) = (moving, standing);
     while standing.saturating_sub(moving) > SHORTEST {
         let middle = moving.saturating_add(standing) / 2;
-        if path(Duration::from_micros(middle)).rounded().speed > Speed::ZERO {
+        let (_, speed) = path(Duration::from_micros(middle));
+        if (Knot { speed, ..Knot::default() }).rounded().speed > Speed::ZERO {
             moving = middle;
         } else {
             standing = middle;

@@ -62,13 +62,15 @@ limits() {
         }
         END {
             fixed = count["step-fixed,1,400"]; single = count["step-f32,1,400"]; double = count["step-f64,1,400"]
-            row("quiet tick, instructions", 6000, at("quiet"))
-            row("worst tick, own models of all peers, instructions", 240000, at("all"))
-            row("worst tick, horizons received from all peers, instructions", 240000, at("horizons"))
-            row("per vehicle and step, in the worst tick, instructions", 60, sprintf("%.1f", (at("all") - at("all", 100)) / 300 / 9))
+            row("quiet tick, no intersection, instructions", 6000, at("quiet"))
+            row("quiet tick at an intersection, instructions", 9000, at("both-quiet", 359))
+            row("worst tick, 400 steps, no intersection, instructions", 240000, at("horizons") > at("late") ? at("horizons") : at("late"))
+            row("worst tick of any input, with map and envelope, instructions", 240000, at("both-worst", 359))
+            row("worst `receive`, instructions", 6000, at("both-receive", 359))
+            row("per vehicle and step, instructions", 60, sprintf("%.1f", (at("send") - at("send", 100)) / 300))
             row("flash without logs, bytes", 65536, at("flash"))
-            row("static RAM, bytes", 65536, at("ram"))
-            row("deepest stack, bytes", 4096, at("stack"))
+            row("static RAM, bytes", 49152, at("ram"))
+            row("deepest stack, bytes", 4096, at("both-stack", 359) > at("stack") ? at("both-stack", 359) : at("stack"))
             row("a follower'\''s step against f32 on the FPU", 1.5, sprintf("%.2f", fixed / single))
             row("a follower'\''s step against f64", 1, sprintf("%.3f", fixed / double))
         }' "$1"
@@ -102,6 +104,32 @@ tables() {
                 for (j = 1; j <= m; j++) printf " %d |", count[names[j] "," order[i]]
                 print ""
             }
+        }' "$1"
+    echo
+    echo '| a drive, 8 peers, 359 steps of 30 ms | bare | envelope | map | both |'
+    echo '|---|--:|--:|--:|--:|'
+    awk -F, '
+        { count[$1 "," $2 "," $3] = $4 }
+        function row(what, name, figure, i) {
+            for (i = 1; i <= 4; i++) { figure = figure " | " count[kinds[i] "-" name ",8,359"] }
+            print "| " what figure " |"
+        }
+        END {
+            split("bare envelope map both", kinds, " ")
+            row("quiet tick", "quiet")
+            row("send tick, no news", "send")
+            row("send tick, all peers new", "all")
+            row("the same, with their horizons", "horizons")
+            row("the first of these", "first")
+            row("passes of 20 stations", "passes")
+            row("samples of 3 s ago, after a silence", "late-3")
+            row("of the admitted maximum", "late-most")
+            row("everything at once", "together")
+            row("the same after 3 s without a tick", "pause")
+            row("worst of these", "worst")
+            row("`receive`, worst", "receive")
+            row("40 frames, a full bus in a period", "bus")
+            row("stack, bytes", "stack")
         }' "$1"
     echo
     echo '| the frames of one peer in 100 ms, of 8 | instructions of `receive` | |'

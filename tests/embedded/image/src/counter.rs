@@ -1,76 +1,68 @@
-//! Instructions executed between two readings of the core's timer.
+//! Instructions executed between two readings of the chip's timer TIM2.
 //!
-//! Under `-icount shift=6` the emulator lets 64 ns of virtual time pass with each instruction, and the timer counts them at
-//! 168 MHz. So this counts instructions, not cycles: the emulator has no pipeline, no flash wait states and no caches.
+//! Under `-icount shift=6` the emulator lets 64 ns of virtual time pass with each instruction, and its TIM2 counts nanoseconds. Divided by
+//! 64, this counts instructions, up to 2³²; the core's own timer, of 24 bits, would wrap within a tick that is too long. They are not
+//! cycles: the emulator has no pipeline, no flash wait states and no caches.
 
-use core::cell::RefCell;
-use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m::peripheral::{Peripherals, SYST};
-
-/// Timer counts in 1000 instructions.
-const COUNTS: u32 = 64 * 168;
-
-/// What the timer's 24 bits can count.
-const MOST: u32 = ((1u64 << 24) * 1000 / COUNTS as u64) as u32;
+/// Registers of TIM2: control, event, count and prescaler, which divides by one more.
+const CONTROL: *mut u32 = 0x4000_0000 as *mut u32;
+const EVENT: *mut u32 = 0x4000_0014 as *mut u32;
+const COUNT: *mut u32 = 0x4000_0024 as *mut u32;
+const PRESCALER: *mut u32 = 0x4000_0028 as *mut u32;
+const PER_INSTRUCTION: u32 = 64;
 
 /// The counter, started.
 pub struct Counter {
-    timer: RefCell<SYST>,
     /// What an empty measurement reads.
     empty: u32,
 }
 
 impl Counter {
-    /// Takes the core's timer; only the first call gets it.
-    pub fn start() -> Option<Self> {
-        let mut timer = Peripherals::take()?.SYST;
-        timer.set_clock_source(SystClkSource::Core);
-        timer.set_reload(0x00ff_ffff);
-        timer.clear_current();
-        timer.enable_counter();
-        let mut counter = Self { timer: RefCell::new(timer), empty: 0 };
+    /// Starts it.
+    pub fn start() -> Self {
+        // SAFETY: nothing else in these programs uses the timer, and its registers have no effect on memory.
+        unsafe {
+            PRESCALER.write_volatile(PER_INSTRUCTION - 1);
+            CONTROL.write_volatile(1);
+            EVENT.write_volatile(1);
+        }
+        let mut counter = Self { empty: 0 };
         counter.empty = counter.count(|| ()).1;
-        Some(counter)
+        counter
     }
 
-    /// How many instructions this takes, up to 1.56 million.
-    ///
-    /// # Panics
-    /// If it takes more.
-    pub fn count<T>(&self, work: impl FnOnce() -> T) -> (T, u32) {
-        let (result, count) = self.counted(work);
-        (result, count.expect("no more instructions than the timer can count"))
+    #[inline(always)]
+    fn read() -> u32 {
+        // SAFETY: as above.
+        unsafe { COUNT.read_volatile() }
     }
 
-    /// The same; `None` if it takes more.
+    /// How many instructions this takes, up to 4,294 million.
     #[inline(never)]
-    fn counted<T>(&self, work: impl FnOnce() -> T) -> (T, Option<u32>) {
-        let mut timer = self.timer.borrow_mut();
-        timer.clear_current();
-        // It begins anew at its next count, and only then the mark that it has wrapped is one of this measurement: reading clears it,
-        // and it stays set however often the timer wraps. To compare the readings would miss a whole turn.
-        while SYST::get_current() == 0 {}
-        timer.has_wrapped();
-        let before = SYST::get_current();
+    pub fn count<T>(&self, work: impl FnOnce() -> T) -> (T, u32) {
+        let begun = self.begin();
         let result = work();
-        let after = SYST::get_current();
-        if timer.has_wrapped() {
-            return (result, None);
-        }
-        let counts = before.wrapping_sub(after) & 0x00ff_ffff;
-        let thousandths = u64::from(counts) * 1000 + u64::from(COUNTS) / 2;
-        let count = (thousandths / u64::from(COUNTS)) as u32;
-        (result, Some(count.saturating_sub(self.empty)))
+        (result, self.since(begun))
     }
 
-    /// Counts more and more up to beyond what the timer can, and fails if a turn of it goes unseen.
+    /// Where the count is now, for work whose result is not to be moved.
+    #[inline(always)]
+    pub fn begin(&self) -> u32 {
+        Self::read()
+    }
+
+    /// How many instructions it took since then.
+    #[inline(always)]
+    pub fn since(&self, begun: u32) -> u32 {
+        Self::read().wrapping_sub(begun).saturating_sub(self.empty)
+    }
+
+    /// Counts waits of a known length, short ones and far beyond what a tick may take, and fails if the count is another.
     pub fn check(&self) {
-        let mut last = Some(0);
-        for beyond in -64..256 {
-            let asked = (MOST as i32 + beyond) as u32;
-            last = self.counted(|| cortex_m::asm::delay(asked)).1;
-            assert!(last.is_none_or(|count| count.abs_diff(asked) < 64), "{asked} instructions counted as {last:?}");
+        for rounds in (0..27).map(|power| (1 << power) + 1_000) {
+            // A round is two instructions, and there is one more.
+            let (asked, (_, count)) = (2 * rounds + 2, self.count(|| cortex_m::asm::delay(rounds)));
+            assert!(count.abs_diff(asked) < 64, "{asked} instructions counted as {count}");
         }
-        assert_eq!(last, None);
     }
 }

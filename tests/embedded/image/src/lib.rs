@@ -3,10 +3,13 @@
 #![no_std]
 
 #[cfg(machine = "netduinoplus2")]
+pub mod bench;
+#[cfg(machine = "netduinoplus2")]
 pub mod counter;
 pub mod file;
 #[cfg(machine = "netduinoplus2")]
 pub mod float;
+pub mod junction;
 #[cfg(machine = "netduinoplus2")]
 pub mod kalman;
 pub mod output;

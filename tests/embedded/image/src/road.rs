@@ -1,6 +1,9 @@
 //! A road on which the peers drive one behind the other, and the ego behind the last of them: a time enters, the frames
-//! that the ego's bus carries then leave.
+//! that the ego's bus carries then leave. Where there are intersections, every other peer is on the crossing street, as far from there as
+//! it would be ahead of the ego.
 
+use crate::junction::Place;
+use holdover::coordination::Arrival;
 use holdover::parameters::{DAMPING, GAIN};
 use holdover::time::{Duration, GnssTime, Instant};
 use holdover::units::{Acceleration, Distance, FineSeconds, Fraction, Jerk, Position, Seconds, Speed};
@@ -22,10 +25,16 @@ const EPOCH: u64 = 1_465_000_123_000_000;
 const SPEED: i32 = 11_000;
 /// Front bumper to front bumper, for a gap that the law is content with.
 const SPACING: i64 = 18_000;
+/// Where the ego is along its street at the beginning, and where the street begins on its axis.
+const BEGINS: i64 = 60_000;
+const AXIS: i64 = 40_000;
+/// Stations of which only the passes are heard are named from here on.
+const PASSERS_BY: u32 = 200;
 
 /// The road.
 pub struct Road {
     peers: u8,
+    has_junctions: bool,
     sender: Sender<8>,
     tag: u8,
     sequence: u8,
@@ -37,7 +46,17 @@ impl Road {
         let sender = Sender::new(Identifiers::DEFAULT);
         #[cfg(feature = "fd")]
         let sender = sender.over(Transport::Fd);
-        Self { peers, sender, tag: 0, sequence: 0 }
+        Self { peers, has_junctions: false, sender, tag: 0, sequence: 0 }
+    }
+
+    /// The same with intersections on it.
+    pub fn with_junctions(self) -> Self {
+        Self { has_junctions: true, ..self }
+    }
+
+    /// Whether there are intersections on it.
+    pub fn has_junctions(&self) -> bool {
+        self.has_junctions
     }
 
     fn say(&mut self, message: &Message, hear: &mut impl FnMut(&Frame)) {
@@ -54,12 +73,61 @@ impl Road {
 
     /// The ego's own motion and the driver's request.
     pub fn ego(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
-        let predecessor = Predecessor::Station(StationHash(self.peers - 1));
+        let predecessor = match self.has_junctions {
+            true => Predecessor::Unknown,
+            false => Predecessor::Station(StationHash(self.peers - 1)),
+        };
         let request =
             DriverRequest { engaged: true, predecessor, target_speed: Speed::from_mm_per_s(13_400), time_gap: None };
         self.say(&Message::DriverRequest(request), hear);
         let motion = self.motion(at, self.peers, EGO);
         self.say(&Message::Ego(Said::Motion(motion)), hear);
+        if self.has_junctions && at.as_micros().is_multiple_of(100_000) {
+            let geo = self.place(at, self.peers).on_globe(self.tag, motion.stamp);
+            self.say(&Message::Ego(Said::Geo(geo)), hear);
+        }
+    }
+
+    /// Where there are intersections: where a peer is on the globe, its route, and its passes. All are of the motion that it sent last,
+    /// which was sampled `age` ago.
+    pub fn way_of(&mut self, peer: u8, at: Instant, age: Duration, hear: &mut impl FnMut(&Frame)) {
+        if !self.has_junctions {
+            return;
+        }
+        let (now, arrival) = (gnss(at.minus(age)), self.arrival(peer));
+        let (place, stamp) = (self.place(at.minus(age), peer), now.stamp());
+        let (geo, route) =
+            (place.on_globe(self.tag, stamp), place.route(self.tag, stamp, arrival, peer.checked_sub(1)));
+        self.say(&Message::Peer(Slot(peer), Said::Geo(geo)), hear);
+        self.say(&Message::Peer(Slot(peer), Said::Route(route)), hear);
+        self.say(&Message::PeerPass(place.pass(self.tag, peer.into(), now, arrival)), hear);
+    }
+
+    /// The passes of so many stations without a slot, on the crossing street behind the peers.
+    pub fn passers_by(&mut self, stations: u8, at: Instant, hear: &mut impl FnMut(&Frame)) {
+        for station in 0..stations {
+            let along = self.place(at, 1).along - 5_000 * i64::from(station) - 1_000;
+            let pass = Place { leg: 1, along }.pass(
+                self.tag,
+                PASSERS_BY + u32::from(station),
+                gnss(at),
+                self.arrival(self.peers),
+            );
+            self.say(&Message::PeerPass(pass), hear);
+        }
+    }
+
+    fn place(&self, at: Instant, place: u8) -> Place {
+        let ahead = SPACING * (i64::from(self.peers) - i64::from(place));
+        let along = BEGINS + ahead + i64::from(SPEED) * at.as_micros() as i64 / 1_000_000;
+        let is_ego = place == self.peers;
+        Place { leg: if is_ego { 0 } else { place % 2 }, along }
+    }
+
+    /// When a vehicle arrived: one after the other, and before the ego.
+    fn arrival(&self, peer: u8) -> Arrival {
+        let before = 10_000 * 50 * u64::from(self.peers - peer.min(self.peers) + 1);
+        Arrival::of_micros(EPOCH - before)
     }
 
     /// A peer's motion, sampled `age` ago.
@@ -106,20 +174,23 @@ impl Road {
 
     fn motion(&mut self, at: Instant, place: u8, station: StationHash) -> Motion {
         self.tag = (self.tag + 1) % 4;
-        let ahead = SPACING * (i64::from(self.peers) - i64::from(place));
-        let way = i64::from(SPEED) * at.as_micros() as i64 / 1_000_000;
+        let along = self.place(at, place).along;
         Motion {
             tag: self.tag,
-            position: WirePosition::from_position(Position::from_mm(100_000 + ahead + way)),
+            position: WirePosition::from_position(Position::from_mm(AXIS + along)),
             speed: Speed::from_mm_per_s(SPEED),
             acceleration: Acceleration::ZERO,
             demand: Acceleration::ZERO,
-            stamp: GnssTime::from_micros(EPOCH + at.as_micros()).stamp(),
+            stamp: gnss(at).stamp(),
             position_accuracy: Some(Distance::from_mm(500)),
             speed_accuracy: Some(Speed::from_mm_per_s(200)),
             station,
         }
     }
+}
+
+fn gnss(at: Instant) -> GnssTime {
+    GnssTime::from_micros(EPOCH + at.as_micros())
 }
 
 /// How a peer drives; with another time gap if `other`.

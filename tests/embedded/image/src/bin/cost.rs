@@ -9,114 +9,15 @@ use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Seconds, Speed};
 use holdover::wire::Transport;
 use holdover::{Config, OnboardUnit};
+use holdover_image::bench::{Bench, CAPACITY, Most, PERIOD, Traffic};
 use holdover_image::counter::Counter;
 use holdover_image::float::{double, single};
+use holdover_image::junction::WAY;
 use holdover_image::kalman::predict;
 use holdover_image::output::say;
 use holdover_image::road::{EGO, Road};
 use holdover_image::semihosting::end;
 use holdover_image::stack;
-
-const CAPACITY: usize = 400;
-const PERIOD: u64 = 10_000;
-/// How old the peers' samples are when they arrive, unless something else is measured.
-const AGE: Duration = Duration::from_millis(40);
-
-/// What a second of ticks is to show.
-#[derive(Clone, Copy, PartialEq)]
-enum Second {
-    /// All peers talk, in ticks in which the unit does not.
-    Usual,
-    /// The last peer talks by itself.
-    One,
-    /// All peers talk and have changed their minds, in the tick in which the unit sends.
-    All,
-    /// As before, and send their horizons.
-    Horizons,
-    /// As `All`, with samples of 2 s ago.
-    Late,
-}
-
-/// The most that each door took.
-#[derive(Default)]
-struct Worst {
-    quiet: u32,
-    send: u32,
-    one: u32,
-    all: u32,
-    horizons: u32,
-    late: u32,
-    receive: u32,
-    frames: u32,
-    received: u32,
-    /// Where the stack was when a tick began.
-    top: usize,
-}
-
-struct Bench<'a, const PEERS: usize> {
-    unit: &'a mut OnboardUnit<PEERS, 8, CAPACITY>,
-    counter: &'a Counter,
-    road: Road,
-    worst: Worst,
-}
-
-impl<const PEERS: usize> Bench<'_, PEERS> {
-    fn second(&mut self, number: u64, second: Second) {
-        let Self { unit, counter, road, worst } = self;
-        for tick in 0..100 {
-            let at = Instant::from_micros(1_000_000 * number + PERIOD * tick);
-            let mut hear = |frame: &_| {
-                let (_, count) = counter.count(|| unit.receive(at, frame));
-                worst.receive = worst.receive.max(count);
-                worst.received += count;
-                worst.frames += 1;
-            };
-            if tick % 50 == 0 {
-                road.synchronise(at, &mut hear);
-            }
-            road.ego(at, &mut hear);
-            let phase = tick % 10;
-            let age = if second == Second::Late { Duration::from_millis(2_000) } else { AGE };
-            for peer in 0..PEERS as u8 {
-                let is_last = usize::from(peer) == PEERS - 1;
-                let due = match second {
-                    Second::Usual => 5,
-                    Second::One if is_last => 5,
-                    Second::One => 7,
-                    Second::All | Second::Horizons | Second::Late => 0,
-                };
-                if phase != due {
-                    continue;
-                }
-                if second != Second::One {
-                    road.parameters_of(peer, second != Second::Usual && tick % 20 == 0, &mut hear);
-                }
-                road.motion_of(peer, at, age, &mut hear);
-                if second == Second::Horizons {
-                    road.horizon_of(peer, &mut hear);
-                }
-            }
-            // A tick begins some microseconds after its step, and then everything is read between two steps.
-            let now = at.plus(Duration::from_micros(3));
-            let (answer, count) = counter.count(|| {
-                worst.top = stack::pointer();
-                unit.tick(now)
-            });
-            let place = match (second, phase) {
-                (Second::Usual, 0) => &mut worst.send,
-                (Second::Usual, 1..=4 | 6..=9) => &mut worst.quiet,
-                (Second::One, 5) => &mut worst.one,
-                (Second::All, 0) => &mut worst.all,
-                (Second::Horizons, 0) => &mut worst.horizons,
-                (Second::Late, 0) => &mut worst.late,
-                _ => continue,
-            };
-            *place = (*place).max(count);
-            let is_followed = answer.estimate.is_some_and(|estimate| estimate.link_on);
-            assert!(number < 2 || is_followed, "{number} {tick} {:?} {:?}", answer.estimate, unit.health());
-        }
-    }
-}
 
 /// All measurements with so many peers.
 #[inline(never)]
@@ -131,29 +32,28 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         stack::paint();
         let (started, count) = counter.count(|| unit.start(&config));
         assert!(started.is_ok());
-        say(format_args!("start {} {} {}", PEERS, steps, count));
-        let mut bench = Bench { unit, counter, road: Road::new(PEERS as u8), worst: Worst::default() };
-        let seconds = [Second::Usual, Second::Usual, Second::One, Second::All, Second::Horizons];
+        say(format_args!("start {PEERS} {steps} {count}"));
+        let mut bench = Bench::new(unit, counter, Road::new(PEERS as u8));
+        let seconds = [Traffic::USUAL, Traffic::USUAL, Traffic::ONE, Traffic::ALL, Traffic::HORIZONS];
         // Before the samples of 2 s ago it is quiet for that long: they are to be the newest.
-        for (number, second) in (0..).zip(seconds).chain([(8, Second::Late)]) {
-            if number == 1 {
-                bench.worst = Worst::default();
-            }
-            bench.second(number, second);
-        }
-        let worst = bench.worst;
+        let late = Traffic::ALL.aged(2_000);
+        let [_, usual, one, all, horizons, _, _, _, late] = core::array::from_fn(|number| {
+            let silence = if number < 8 { Traffic::SILENCE } else { late };
+            bench.second(number as u64, *seconds.get(number).unwrap_or(&silence))
+        });
+        let frames = bench.frames;
         for (name, count) in [
-            ("quiet", worst.quiet),
-            ("send", worst.send),
-            ("one", worst.one),
-            ("all", worst.all),
-            ("horizons", worst.horizons),
-            ("late", worst.late),
-            ("receive", worst.receive),
-            ("receive-mean", worst.received / worst.frames),
-            ("stack", stack::depth(worst.top) as u32),
+            ("quiet", usual.quiet),
+            ("send", usual.send),
+            ("one", one.one),
+            ("all", all.any),
+            ("horizons", horizons.any),
+            ("late", late.any),
+            ("receive", frames.most),
+            ("receive-mean", frames.sum / frames.count),
+            ("stack", stack::depth(bench.top) as u32),
         ] {
-            say(format_args!("{} {} {} {}", name, PEERS, steps, count));
+            say(format_args!("{name} {PEERS} {steps} {count}"));
         }
     }
     for (steps, size) in [
@@ -162,7 +62,64 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
         (359, size_of::<OnboardUnit<PEERS, 8, 359>>()),
         (400, size_of::<OnboardUnit<PEERS, 8, 400>>()),
     ] {
-        say(format_args!("unit {} {} {}", PEERS, steps, size));
+        say(format_args!("unit {PEERS} {steps} {size}"));
+    }
+}
+
+/// What the configuration of the manual takes on a drive past an intersection, and without parts of it.
+#[inline(never)]
+fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
+    for (name, has_map, has_envelope) in
+        [("bare", false, false), ("envelope", false, true), ("map", true, false), ("both", true, true)]
+    {
+        let config = Config { envelope: Config::car(EGO).envelope.filter(|_| has_envelope), ..Config::car(EGO) };
+        let road = || if has_map { Road::new(8).with_junctions() } else { Road::new(8) };
+        let begin = |unit: &mut OnboardUnit<8, 8, CAPACITY>| {
+            assert!(unit.start(&config).is_ok());
+            assert!(!has_map || unit.set_out(&WAY).is_ok());
+        };
+        begin(unit);
+        stack::paint();
+        let mut bench = Bench::new(unit, counter, road());
+        let mut cycle = [Most::default(); 4];
+        for number in 0..16 {
+            let kinds = [Traffic::USUAL, Traffic::ALL, Traffic::HORIZONS, Traffic::PASSES];
+            let (kind, most) = (kinds[number as usize % 4], &mut cycle[number as usize % 4]);
+            *most = bench.second(number, kind).max(*most);
+        }
+        let [usual, all, horizons, passes] = cycle;
+        let (frames, deep) = (bench.frames, stack::depth(bench.top) as u32);
+        // The first tick with horizons, and samples that come after a silence that was as long as they are old.
+        let mut after = |silence: u64, has_ticks: bool, traffic: Traffic| {
+            begin(bench.unit);
+            let mut bench = Bench::new(bench.unit, counter, road());
+            for number in 0..3 {
+                bench.second(number, Traffic::USUAL);
+            }
+            for number in (3..3 + silence).filter(|_| has_ticks) {
+                bench.second(number, Traffic::SILENCE);
+            }
+            bench.second(3 + silence, traffic).any
+        };
+        let stale = config.link.stale.as_millis();
+        let oldest = stale - 100;
+        let rows = [
+            ("quiet", usual.quiet),
+            ("send", usual.send),
+            ("all", all.any),
+            ("horizons", horizons.any),
+            ("passes", passes.any),
+            ("first", after(0, true, Traffic::HORIZONS)),
+            ("late-3", after(4, true, Traffic::ALL.aged(3_000))),
+            ("late-most", after(stale as u64 / 1_000 + 1, true, Traffic::ALL.aged(oldest))),
+            ("together", after(stale as u64 / 1_000 + 1, true, Traffic::TOGETHER.aged(oldest))),
+            ("pause", after(3, false, Traffic::TOGETHER)),
+        ];
+        let worst = rows.iter().map(|(_, count)| *count).max().unwrap_or(0);
+        let others = [("worst", worst), ("receive", frames.most), ("bus", frames.full_bus), ("stack", deep)];
+        for (row, count) in rows.into_iter().chain(others) {
+            say(format_args!("{name}-{row} 8 359 {count}"));
+        }
     }
 }
 
@@ -182,7 +139,7 @@ fn peer(name: &str, unit: &mut OnboardUnit<8, 8, CAPACITY>, config: &Config, cou
         }
         road.ego(at, &mut deaf);
         for peer in (0..8).filter(|_| tick % 10 == 5) {
-            road.state_of(peer, at, AGE, tick % 50 == 5, &mut |frame| {
+            road.state_of(peer, at, Traffic::USUAL.age, tick % 50 == 5, &mut |frame| {
                 let (_, count) = counter.count(|| unit.receive(at, frame));
                 sum += if peer == 7 && tick >= 100 { count } else { 0 };
             });
@@ -249,19 +206,18 @@ fn main() -> ! {
     static mut EIGHT: OnboardUnit<8, 8, CAPACITY> = OnboardUnit::idle();
     static mut FOUR: OnboardUnit<4, 8, CAPACITY> = OnboardUnit::idle();
     static mut ONE: OnboardUnit<1, 8, CAPACITY> = OnboardUnit::idle();
-    if let Some(counter) = Counter::start() {
-        counter.check();
-        // The compiler does not know, so that it inlines the same in both programs.
-        if black_box(cfg!(feature = "fd")) {
-            peer("peer-fd", EIGHT, &Config { transport: Transport::Fd, ..Config::car(EGO) }, &counter);
-            end(true);
-        }
-        measure(ONE, &counter);
-        measure(FOUR, &counter);
-        measure(EIGHT, &counter);
-        peer("peer", EIGHT, &Config::car(EGO), &counter);
-        compare(&counter);
+    let counter = Counter::start();
+    counter.check();
+    // The compiler does not know, so that it inlines the same in both programs.
+    if black_box(cfg!(feature = "fd")) {
+        peer("peer-fd", EIGHT, &Config { transport: Transport::Fd, ..Config::car(EGO) }, &counter);
         end(true);
     }
-    end(false)
+    measure(ONE, &counter);
+    measure(FOUR, &counter);
+    measure(EIGHT, &counter);
+    drive(EIGHT, &counter);
+    peer("peer", EIGHT, &Config::car(EGO), &counter);
+    compare(&counter);
+    end(true);
 }

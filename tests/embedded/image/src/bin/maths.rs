@@ -66,7 +66,7 @@ macro_rules! place {
 fn main() -> ! {
     static mut SINGLE: [[single::Step; STEPS]; 2] = [[single::Step { position: 0.0, speed: 0.0 }; STEPS]; 2];
     static mut DOUBLE: [[double::Step; STEPS]; 2] = [[double::Step { position: 0.0, speed: 0.0 }; STEPS]; 2];
-    let Some(counter) = Counter::start() else { end(false) };
+    let counter = Counter::start();
     let (_, fixed) = counter.count(|| black_box(decay(black_box(300))));
     let (_, single) = counter.count(|| black_box(LAW.with_lag(black_box(0.3))).slip);
     let (_, root) = counter.count(|| black_box(black_box(0.3f32).sqrt()));

@@ -1,0 +1,230 @@
+//! Whose horizon starts anew in a tick. News of peers enters; for each of them whether its turn has come leaves.
+//!
+//! To start a horizon anew takes as long as all its steps, and the peers may all have talked since the last tick. So that a tick is
+//! bounded, it has room for so many steps. The rules:
+//!
+//! * The target's news is used at once, so that after a silence the controller is led from the old horizon to the new one in one tick. So
+//!   is a view of another sensor.
+//! * The other peers with news follow in the order of the chain, as many as there is room for. The rest waits, and the next tick begins with
+//!   the first of those that wait. So nobody waits for longer than all the others take.
+//! * If others had to wait, the target's horizon was computed from an old horizon of the vehicle ahead of it. So it starts anew once more
+//!   when nobody waits any longer.
+//!
+//! Until its turn comes, a horizon goes on as one without news. What is certain of a peer does not wait: it is computed from the newest
+//! sample in every tick.
+
+use super::chain::Chain;
+use crate::time::Duration;
+
+/// A tick of 10 ms has room for so many steps of horizons that start anew: three horizons of 400 steps.
+const STEPS_A_TICK: usize = 3 * (400 + BEGINNING);
+const TICK_MS: usize = 10;
+
+/// To start a horizon anew takes as long as so many steps in addition: its constants, its sample or its knots, and the steps up to now.
+const BEGINNING: usize = 64;
+
+/// The ego's own horizon, past its changes of target and with its messages, takes as long as so many others.
+const OWN: usize = 3;
+
+/// For how many steps a tick of this period has room. In a longer period there is more time. A shorter one has no less room: then one horizon
+/// would not fit.
+pub(super) fn steps_a_tick(period: Duration) -> usize {
+    let ticks = usize::try_from(period.as_millis()).unwrap_or(0) / TICK_MS;
+    STEPS_A_TICK.saturating_mul(ticks.max(1))
+}
+
+/// For how many steps there is room in a tick, and how many a horizon takes.
+#[derive(Clone, Copy)]
+pub(super) struct Room {
+    left: usize,
+    each: usize,
+}
+
+impl Room {
+    /// For all.
+    pub const ENDLESS: Self = Self { left: usize::MAX, each: 0 };
+
+    /// For so many steps, with horizons of so many steps, and the ego's own beside them if that is due.
+    pub const fn of(room: usize, length: usize, is_own_due: bool) -> Self {
+        let each = length.saturating_add(BEGINNING);
+        let own = if is_own_due { each.saturating_mul(OWN) } else { 0 };
+        Self { left: room.saturating_sub(own), each }
+    }
+
+    fn take(&mut self) -> bool {
+        let left = self.left.checked_sub(self.each);
+        self.left = left.unwrap_or(self.left);
+        left.is_some()
+    }
+}
+
+/// What becomes of a peer's horizon in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum Turn {
+    /// It goes on.
+    None = 0,
+    /// It starts anew from news.
+    News = 1,
+    /// It starts anew once more.
+    Again = 2,
+}
+
+/// News that is not used yet, and what becomes of the horizons in this tick.
+#[derive(Clone, Debug)]
+pub(super) struct Turns<const PEERS: usize> {
+    news: [bool; PEERS],
+    turns: [Turn; PEERS],
+    /// The slot of the target whose horizon is to start anew once more, and one more; or 0.
+    again: u8,
+    /// The place in the chain of the first peer that waits.
+    first: u8,
+}
+
+impl<const PEERS: usize> Turns<PEERS> {
+    /// No news: all zero.
+    pub const NONE: Self = Self { news: [false; PEERS], turns: [Turn::None; PEERS], again: 0, first: 0 };
+
+    /// Notes news of a peer.
+    pub fn note(&mut self, index: usize) {
+        if let Some(news) = self.news.get_mut(index) {
+            *news = true;
+        }
+    }
+
+    /// Whether there is news that is not used yet.
+    pub fn has_news(&self) -> bool {
+        self.news.contains(&true)
+    }
+
+    /// What becomes of a peer's horizon in this tick.
+    pub fn of(&self, index: usize) -> Turn {
+        self.turns.get(index).copied().unwrap_or(Turn::None)
+    }
+
+    /// Decides on a tick. News of these two does not wait.
+    #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
+    pub fn take(&mut self, mut room: Room, chain: &Chain<PEERS>, target: Option<usize>, corrected: Option<usize>) {
+        self.turns = [Turn::None; PEERS];
+        if self.again == 0 && !self.has_news() {
+            return;
+        }
+        let has_news = target.is_some_and(|index| self.serve(index));
+        if has_news {
+            room.take();
+        }
+        if corrected.is_some_and(|index| self.serve(index)) || corrected.is_some() {
+            room.take();
+        }
+        let (first, mut waits) = (usize::from(self.first), None);
+        for place in (first..PEERS).chain(0..first.min(PEERS)) {
+            let Some(index) = chain.at(place).filter(|index| self.news.get(*index) == Some(&true)) else { continue };
+            if waits.is_none() && room.take() {
+                self.serve(index);
+            } else if waits.is_none() {
+                waits = Some(place);
+            }
+        }
+        let name = target.map_or(0, |index| (index as u8).saturating_add(1));
+        let is_behind = if has_news { waits.is_some() } else { self.again == name };
+        self.again = if is_behind { name } else { 0 };
+        if let Some(index) = target.filter(|_| is_behind && waits.is_none() && room.take()) {
+            self.set(index, Turn::Again);
+            self.again = 0;
+        }
+        self.first = waits.unwrap_or(0) as u8;
+    }
+
+    /// Uses the news of a peer, if there is any.
+    fn serve(&mut self, index: usize) -> bool {
+        let has_news = self.news.get_mut(index).is_some_and(core::mem::take);
+        if has_news {
+            self.set(index, Turn::News);
+        }
+        has_news
+    }
+
+    fn set(&mut self, index: usize, turn: Turn) {
+        if let Some(place) = self.turns.get_mut(index) {
+            *place = turn;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ticks of eight peers, who follow one another in the order of their slots, with horizons of 359 steps.
+    struct Ticks {
+        turns: Turns<8>,
+        target: Option<usize>,
+    }
+
+    impl Ticks {
+        fn new(target: Option<usize>) -> Self {
+            Self { turns: Turns::NONE, target }
+        }
+
+        fn hear(&mut self, peers: impl IntoIterator<Item = usize>) {
+            peers.into_iter().for_each(|index| self.turns.note(index));
+        }
+
+        /// The slots whose horizons start anew, and those which do once more.
+        fn tick(&mut self, length: usize, is_own_due: bool) -> (Vec<usize>, Vec<usize>) {
+            self.turns.take(Room::of(STEPS_A_TICK, length, is_own_due), &Chain::new(), self.target, None);
+            let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
+            (of(Turn::News), of(Turn::Again))
+        }
+    }
+
+    #[test]
+    fn the_target_is_first_and_starts_anew_once_more_after_all_others() {
+        let mut ticks = Ticks::new(Some(7));
+        ticks.hear(0..8);
+        assert_eq!(ticks.tick(359, false), (vec![0, 1, 7], vec![]));
+        assert_eq!(ticks.tick(359, false), (vec![2, 3, 4], vec![]));
+        assert_eq!(ticks.tick(359, false), (vec![5, 6], vec![7]));
+        assert_eq!(ticks.tick(359, false), (vec![], vec![]));
+    }
+
+    #[test]
+    fn where_the_own_horizon_is_due_only_the_target_has_its_turn() {
+        let mut ticks = Ticks::new(Some(2));
+        ticks.hear([0, 2]);
+        assert_eq!(ticks.tick(400, true), (vec![2], vec![]));
+        assert_eq!(ticks.tick(400, false), (vec![0], vec![2]));
+    }
+
+    #[test]
+    fn short_horizons_never_wait() {
+        let mut ticks = Ticks::new(Some(7));
+        ticks.hear(0..8);
+        assert_eq!(ticks.tick(12, true), ((0..8).collect(), vec![]));
+        assert_eq!(ticks.tick(12, true), (vec![], vec![]));
+    }
+
+    #[test]
+    fn nobody_waits_for_longer_than_all_the_others_take_however_often_they_talk() {
+        let mut ticks = Ticks::new(Some(0));
+        let mut waited = [0; 8];
+        for _ in 0..100 {
+            ticks.hear(0..8);
+            let (anew, _) = ticks.tick(359, false);
+            for (index, waited) in waited.iter_mut().enumerate() {
+                *waited = if anew.contains(&index) { 0 } else { *waited + 1 };
+                assert!(*waited <= 3, "{index}");
+            }
+        }
+    }
+
+    #[test]
+    fn another_target_does_not_start_anew_for_the_old_one() {
+        let mut ticks = Ticks::new(Some(7));
+        ticks.hear(0..8);
+        ticks.tick(359, false);
+        ticks.target = Some(6);
+        assert_eq!(ticks.tick(359, false), (vec![2, 3, 6], vec![]));
+        assert_eq!(ticks.tick(359, false), (vec![4, 5], vec![6]));
+    }
+}
