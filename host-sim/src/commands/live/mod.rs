@@ -11,11 +11,16 @@ pub mod arguments;
 pub mod bus_view;
 pub mod engine;
 pub mod guard;
+pub mod methods;
+pub mod onlookers;
 pub mod options;
 pub mod order;
 pub mod page;
+pub mod road;
+mod road_scene;
 pub mod scene;
 pub mod server;
+pub mod snapshots;
 pub mod stage;
 
 use std::io;
@@ -30,6 +35,7 @@ use crate::commands::interruption::Interruption;
 use crate::error::{Error, plain};
 use crate::output;
 use crate::verdict::Verdict;
+use archive::Piece;
 use engine::Engine;
 use options::LiveOptions;
 use server::Desk;
@@ -56,7 +62,6 @@ pub fn run(options: &LiveOptions) -> Result<Verdict, Error> {
     let heard = listener.local_addr().map_err(unheard)?;
     let (asks, asked) = mpsc::channel();
     let (scenes, shown) = watch::channel(Arc::from("{}"));
-    let scenario = archive.scenario.clone();
     server::serve(listener, Desk::new(asks, shown, Arc::clone(archive), heard.ip().is_loopback())).map_err(unheard)?;
     output::print(&format!("http://{heard}/\n"))?;
     if !heard.ip().is_loopback() {
@@ -65,7 +70,11 @@ pub fn run(options: &LiveOptions) -> Result<Verdict, Error> {
     if *opens_browser {
         open(&format!("http://{heard}/"));
     }
-    let (events, ticks) = Engine::new(scenario, asked, scenes).run(&end).map_err(|error| {
+    let ended = match &archive.piece {
+        Piece::String(scenario) => Engine::new(scenario, asked, scenes).run(&end),
+        Piece::Road(road) => Engine::new(&**road, asked, scenes).run(&end),
+    };
+    let (events, ticks) = ended.map_err(|error| {
         Error::new(format!("the simulation ended ({error})"), "change the scenario accordingly, or report this")
     })?;
     match mcap {

@@ -4,13 +4,15 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::archive::Archive;
+use super::archive::{Archive, Piece};
 use super::arguments::LiveArguments;
+use super::road::RoadPlay;
 use crate::error::Error;
 use crate::input::library::{self, Kind};
 use crate::input::scenario::{Overrides, Scenario};
 use crate::output;
 use crate::places::can_be_file;
+use crate::roads::read;
 
 /// A live run.
 #[derive(Clone, Debug)]
@@ -36,21 +38,21 @@ impl LiveOptions {
             Some(named) => library::text(named)?,
             None => (PathBuf::new(), String::new()),
         };
-        if library::kind(&file, &text)? == Kind::Corridor {
-            let remedy = "give a string of vehicles, such as paper or motorway";
-            return Err(Error::new("is a corridor, and the live page shows strings of vehicles", remedy).in_file(&file));
-        }
         if let Some(mcap) = &arguments.mcap {
             can_be_file("--mcap", mcap, &[&file])?;
         }
-        let scenario = Scenario::parse(&file, &text, &overrides)?;
-        scenario.findings().iter().for_each(|finding| output::say(&format!("warning: {finding}")));
+        let piece = match library::kind(&file, &text)? {
+            Kind::String => Piece::String(Scenario::parse(&file, &text, &overrides)?),
+            Kind::Corridor => Piece::Road(Box::new(RoadPlay::new(read::corridor(&file, &text, &overrides)?))),
+        };
         let title = match &arguments.scenario {
             Some(named) => named.file_stem().unwrap_or(named.as_os_str()).to_string_lossy().into_owned(),
             None => "the paper's scenario".into(),
         };
+        let archive = Archive::new(piece, (file, text), overrides, title)?;
+        archive.findings().iter().for_each(|finding| output::say(&format!("warning: {finding}")));
         Ok(Self {
-            archive: Arc::new(Archive::new(scenario, (file, text), overrides, title)?),
+            archive: Arc::new(archive),
             address: SocketAddr::new(arguments.listen, arguments.port),
             mcap: arguments.mcap,
             opens_browser: !arguments.no_browser,
