@@ -26,7 +26,7 @@ use crate::sim::world::{Trace, World, config};
 /// What is played.
 pub enum Piece {
     /// A string of vehicles.
-    String(Scenario),
+    String(Box<Scenario>),
     /// A corridor.
     Road(Box<RoadPlay>),
 }

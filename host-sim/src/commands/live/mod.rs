@@ -71,7 +71,7 @@ pub fn run(options: &LiveOptions) -> Result<Verdict, Error> {
         open(&format!("http://{heard}/"));
     }
     let ended = match &archive.piece {
-        Piece::String(scenario) => Engine::new(scenario, asked, scenes).run(&end),
+        Piece::String(scenario) => Engine::new(&**scenario, asked, scenes).run(&end),
         Piece::Road(road) => Engine::new(&**road, asked, scenes).run(&end),
     };
     let (events, ticks) = ended.map_err(|error| {

@@ -42,7 +42,7 @@ impl LiveOptions {
             can_be_file("--mcap", mcap, &[&file])?;
         }
         let piece = match library::kind(&file, &text)? {
-            Kind::String => Piece::String(Scenario::parse(&file, &text, &overrides)?),
+            Kind::String => Piece::String(Box::new(Scenario::parse(&file, &text, &overrides)?)),
             Kind::Corridor => Piece::Road(Box::new(RoadPlay::new(read::corridor(&file, &text, &overrides)?))),
         };
         let title = match &arguments.scenario {
