@@ -80,7 +80,7 @@ fn played<'a>(play: &'a RoadPlay, mut each: impl FnMut(&<RoadPlay as Play>::Stag
         }
         stage.step().unwrap();
         each(&stage);
-        if stage.ticks() % 777 == 0 {
+        if stage.ticks().is_multiple_of(777) {
             stage = stage.clone();
         }
     }
@@ -143,7 +143,7 @@ fn each_vehicle_is_told_with_its_leg_its_place_and_whom_it_follows() {
     let mut stage = play.begin(&[]).unwrap();
     while stage.next_s() < 60.0 {
         stage.step().unwrap();
-        if stage.ticks() % 20 != 0 {
+        if !stage.ticks().is_multiple_of(20) {
             continue;
         }
         let Scene { vehicles, .. } = stage.scene(&Pulse::default());

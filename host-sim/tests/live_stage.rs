@@ -71,7 +71,7 @@ fn a_drive_that_is_saved_and_run_is_the_same_to_the_last_bit() {
         stage.step().unwrap();
         live.push(stage.latest().iter().map(bits).collect::<Vec<_>>());
         let _ = stage.scene(&Pulse::default()); // to look changes nothing
-        if stage.ticks() % 97 == 0 {
+        if stage.ticks().is_multiple_of(97) {
             stage = stage.clone(); // a copy goes on in the same way
         }
     }

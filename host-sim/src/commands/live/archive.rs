@@ -39,7 +39,8 @@ pub struct Archive {
     pub source: (PathBuf, String),
     /// What the command line sets.
     pub overrides: Overrides,
-    cast: String,
+    cast: Cast,
+    said: String,
 }
 
 impl std::fmt::Debug for Archive {
@@ -58,16 +59,32 @@ impl Archive {
             Piece::String(scenario) => cast_of(scenario, title),
             Piece::Road(road) => cast_of_road(road, title),
         };
-        Ok(Self { cast: crate::commands::ending::json(&cast)?, piece, source, overrides })
+        Ok(Self { said: crate::commands::ending::json(&cast)?, cast, piece, source, overrides })
     }
 
     /// What stays the same over the run, as JSON.
     #[must_use]
     pub fn cast(&self) -> &str {
-        &self.cast
+        &self.said
     }
 
-    /// Whether the scenario has been read from a recording, or from anything else that is strange.
+    /// From now on a device drives the ego.
+    ///
+    /// # Errors
+    /// What JSON cannot represent.
+    pub fn has_device(&mut self) -> Result<(), Error> {
+        self.cast.device = Some(self.cast.ego);
+        self.said = crate::commands::ending::json(&self.cast)?;
+        Ok(())
+    }
+
+    /// Whether a device drives this vehicle, whose log only the interface has.
+    #[must_use]
+    pub fn is_device(&self, vehicle: usize) -> bool {
+        self.cast.device == Some(vehicle)
+    }
+
+    /// What the scenario's recordings say that cannot be.
     #[must_use]
     pub fn findings(&self) -> Vec<Error> {
         match &self.piece {
@@ -157,6 +174,7 @@ fn cast_of_road(road: &RoadPlay, title: String) -> Cast {
         has_envelope: envelope.engaged,
         is_recorded: false,
         vehicles: Vec::new(),
+        device: None,
         map: Some(road_scene::map(road)),
     }
 }
@@ -189,6 +207,7 @@ fn cast_of(scenario: &Scenario, title: String) -> Cast {
         has_envelope: scenario.envelope.engaged,
         is_recorded: scenario.leader.motion.is_some(),
         vehicles: (0..scenario.vehicles.len()).map(role).collect(),
+        device: None,
         map: None,
     }
 }

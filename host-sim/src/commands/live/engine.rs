@@ -235,7 +235,8 @@ fn is_there(stage: &impl Stage, event: &Event) -> Result<(), Error> {
     absent.map_or(Ok(()), |vehicle| Err(Error::new(cause(vehicle), "choose one that the page shows")))
 }
 
-fn text(value: &impl Serialize) -> Option<Arc<str>> {
+/// As JSON.
+pub(super) fn text(value: &impl Serialize) -> Option<Arc<str>> {
     serde_json::to_string(value).ok().map(Arc::from)
 }
 

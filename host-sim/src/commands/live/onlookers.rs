@@ -89,6 +89,12 @@ impl Onlookers {
         &self.trace.latest
     }
 
+    /// Where the literal paper's method puts the measured vehicle.
+    #[must_use]
+    pub fn paper_m(&self, Measured { by, .. }: Measured) -> Option<f64> {
+        by.checked_sub(1).and_then(|place| self.watchers.get(place)?.paper_m)
+    }
+
     /// The newest frames on the bus of a vehicle.
     #[must_use]
     pub fn frames(&self, vehicle: usize) -> Option<Vec<Row>> {
@@ -109,7 +115,7 @@ impl Onlookers {
     fn judge(&mut self, Measured { vehicle, by }: Measured) {
         let (Some(truth), Some(seen)) = (self.trace.latest.get(vehicle), self.trace.latest.get(by)) else { return };
         let ours = seen.target.map(|target| target.position_m);
-        let papers = by.checked_sub(1).and_then(|place| self.watchers.get(place)?.paper_m);
+        let papers = self.paper_m(Measured { vehicle, by });
         for (largest, estimate) in self.largest_error_m.iter_mut().zip([ours, papers]) {
             let error = estimate.map(|estimate_m| (estimate_m - truth.position_m).abs());
             *largest = error.map_or(*largest, |error| Some(largest.map_or(error, |before| before.max(error))));

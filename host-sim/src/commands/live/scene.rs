@@ -153,6 +153,8 @@ pub struct Cast {
     pub is_recorded: bool,
     /// The vehicles; none in a corridor, where they come and go.
     pub vehicles: Vec<Role>,
+    /// The vehicle that a device drives, in real time.
+    pub device: Option<usize>,
     /// The corridor, if it is one.
     #[serde(flatten)]
     pub map: Option<Map>,

@@ -37,6 +37,14 @@ if (state.isRoad) {
   byId("follows").checked = false;
 }
 
+// Beside a device time is the device's.
+const hasDevice = cast.device != null;
+if (hasDevice) {
+  for (const id of ["play", "step", "back", "restart", "pace", "envelope"]) byId(id).disabled = true;
+  byId("title").textContent += `, with a device as vehicle ${cast.vehicles[cast.device].name}`;
+  byId("save").hidden = true;
+}
+
 // Choosing a vehicle.
 const rows = new Map();
 function rowOf(id) {

@@ -181,6 +181,10 @@ export function map(state, choose) {
     paint.textAlign = "left";
     paint.fillStyle = hue.line;
     paint.fillRect(x(square.half_m), 0, x(-square.half_m) - x(square.half_m), height);
+    paint.fillStyle = hue.faint;
+    paint.textAlign = "right";
+    paint.fillText(`virtual lane of ${square.name}`, width - 4, height - 5);
+    paint.textAlign = "left";
     legs.forEach((road) => {
       paint.fillStyle = hue.road;
       paint.fillRect(0, y(road) - 5, width, 10);
@@ -194,7 +198,7 @@ export function map(state, choose) {
       paint.fillStyle = one.is_driven ? hue.paper : one.id === state.chosen ? hue.chosen : hue.vehicle;
       paint.fillRect(rear, y(one.road) - 4, front - rear, 8);
       paint.fillStyle = hue.ink;
-      paint.fillText(one.place ? `${one.place}.` : "–", (front + rear) / 2, y(one.road) - 7);
+      paint.fillText(one.place ? `${one.place}.` : "–", front + 10, y(one.road) + 4);
     }
     if (!byId("ghosts").checked) return;
     for (const one of vehicles) {

@@ -62,8 +62,8 @@ const STEPS = [
 ];
 
 export function tour(state) {
-  // It is of the paper's string of vehicles.
-  if (state.isRoad) {
+  // It is of the paper's string of vehicles, and goes back in time.
+  if (state.isRoad || state.cast.device != null) {
     byId("tour").hidden = true;
     return {};
   }
