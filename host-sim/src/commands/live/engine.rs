@@ -18,7 +18,7 @@ use crate::error::Error;
 use crate::input::scenario::{Change, Event, Part};
 
 /// Scenes a second.
-const SCENE_EVERY: Duration = Duration::from_millis(33);
+const SCENE_EVERY: Duration = Duration::from_millis(30);
 /// While time stands still, a scene so often shows that the engine is there.
 const SCENE_EVERY_AT_REST: Duration = Duration::from_millis(500);
 /// The world goes on for no longer than this before the pages are heard again.

@@ -177,6 +177,8 @@ addEventListener("keydown", (event) => {
     "-": () => view.zoom(0.8),
     ArrowLeft: () => view.pan(-0.1),
     ArrowRight: () => view.pan(0.1),
+    PageUp: () => view.pan(0, 0.1),
+    PageDown: () => view.pan(0, -0.1),
   };
   if (!onButton) keys[" "] = toggle;
   if (/^\d$/.test(event.key)) choose(state.isRoad ? [...rows.keys()][Number(event.key)] ?? state.chosen : Number(event.key));
@@ -216,7 +218,9 @@ function tell(scene) {
 }
 
 let told = 0;
+let heard = 0;
 listen((scene) => {
+  heard += 1;
   attend(scene);
   const before = state.scene;
   if (!before || scene.ticks < before.ticks) {
@@ -252,5 +256,5 @@ function draw(now) {
 }
 requestAnimationFrame(draw);
 // For those who measure, and for the tour.
-globalThis.holdover = { state, choose, frames: () => drawn };
+globalThis.holdover = { state, choose, frames: () => drawn, heard: () => heard };
 document.documentElement.dataset.ready = "yes";

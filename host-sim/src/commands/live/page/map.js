@@ -33,7 +33,7 @@ export function map(state, choose) {
     camera.e += x / camera.perM;
     camera.n -= y / camera.perM;
   };
-  const pan = (share) => move(share * canvas.clientWidth, 0);
+  const pan = (share, up = 0) => move(share * canvas.clientWidth, -up * canvas.clientHeight);
   byId("closer").onclick = () => zoom(1.25);
   byId("farther").onclick = () => zoom(0.8);
   canvas.addEventListener("wheel", (event) => {
