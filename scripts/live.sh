@@ -13,7 +13,7 @@ cargo build --locked --release -p holdover-sim
 sim=$target/release/holdover-sim
 for check in live_check live_input_check live_road_check; do
     echo "$check:"
-    timeout 400 "$python/bin/python" "scripts/$check.py" "$sim" "$(command -v chromium)" "$target/live"
+    timeout 600 "$python/bin/python" "scripts/$check.py" "$sim" "$(command -v chromium)" "$target/live"
 done
 "$sim" run --no-report --trace "$target/live/run.csv" --mcap "$target/live/run.mcap" >/dev/null
 "$python/bin/python" scripts/mcap_check.py "$target/live/run.mcap" "$target/live/run.csv"

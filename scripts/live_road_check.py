@@ -118,7 +118,7 @@ def many(browser):
     with live("corridor", *DENSE) as address:
         page = Page(browser, address, viewport={"width": 1280, "height": 900})
         page.order('{"do":"pace","factor":20}')
-        holds(f"{MANY} vehicles are there", page.until(f"state.scene.vehicles.length >= {MANY}", 60))
+        holds(f"{MANY} vehicles are there", page.until(f"state.scene.vehicles.length >= {MANY}", 180))
         page.order('{"do":"pace","factor":1}')
         # A machine that does other things too may be slow for a moment.
         for _ in range(3):
