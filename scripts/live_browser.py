@@ -3,6 +3,7 @@
 Each check is called as `CHECK HOLDOVER_SIM CHROMIUM FOLDER`; its pictures go to FOLDER.
 """
 
+import os
 import subprocess
 import sys
 import time
@@ -14,13 +15,28 @@ PROGRAM, CHROMIUM, FOLDER = sys.argv[1:4]
 FRAMES_A_SECOND = 30
 
 
+class Address(str):
+    """The address of a `live`, which knows what its process has cost."""
+
+    def __new__(cls, text, pid):
+        address = super().__new__(cls, text)
+        address.pid = pid
+        return address
+
+    def core_s(self):
+        """Time that it has had a core, all threads together."""
+        with open(f"/proc/{self.pid}/stat", encoding="ascii") as stat:
+            fields = stat.read().rsplit(")", 1)[1].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 @contextmanager
 def live(*arguments):
     """The address of a running `live`."""
     command = [PROGRAM, "live", "--no-browser", "--port", "0", *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
-            yield process.stdout.readline().strip()
+            yield Address(process.stdout.readline().strip(), process.pid)
         finally:
             process.terminate()
 
