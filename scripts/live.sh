@@ -10,7 +10,13 @@ python=$target/live-python
 mkdir -p "$python" "$target/live"
 need_python "$python" scripts/live-requirements.txt
 cargo build --locked --release -p holdover-sim
-timeout 170 "$python/bin/python" scripts/live_check.py "$target/release/holdover-sim" "$(command -v chromium)" "$target/live"
 sim=$target/release/holdover-sim
+for check in live_check live_input_check live_road_check; do
+    echo "$check:"
+    timeout 600 "$python/bin/python" "scripts/$check.py" "$sim" "$(command -v chromium)" "$target/live"
+done
 "$sim" run --no-report --trace "$target/live/run.csv" --mcap "$target/live/run.mcap" >/dev/null
 "$python/bin/python" scripts/mcap_check.py "$target/live/run.mcap" "$target/live/run.csv"
+"$sim" run corridor --no-report --set duration_s=15 --mcap "$target/live/roads.mcap" --trajectories "$target/live/roads.csv" \
+    --trajectories-every 0.01 >/dev/null
+"$python/bin/python" scripts/mcap_check.py "$target/live/roads.mcap" "$target/live/roads.csv" roads

@@ -5,77 +5,14 @@
 """
 
 import re
-import subprocess
-import sys
 import time
-from contextlib import contextmanager
 
-from playwright.sync_api import sync_playwright
-
-PROGRAM, CHROMIUM, FOLDER = sys.argv[1:4]
-FRAMES_A_SECOND = 30
-
-
-@contextmanager
-def live(*arguments):
-    command = [PROGRAM, "live", "--no-browser", "--port", "0", *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        try:
-            yield process.stdout.readline().strip()
-        finally:
-            process.terminate()
-
-
-def holds(what, fact):
-    print(f"{'holds' if fact else 'FAILS'}: {what}", flush=True)
-    if not fact:
-        sys.exit(1)
-
-
-class Page:
-    """A page that counts what its console says."""
-
-    def __init__(self, browser, address, **shape):
-        self.page = browser.new_page(**shape)
-        self.faults = []
-        self.page.on("console", lambda said: self.faults.append(said.text) if said.type == "error" else None)
-        self.page.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.page.goto(address)
-        self.page.wait_for_selector("html[data-ready]")
-        self.until("state.scene")
-
-    def __getattr__(self, name):
-        return getattr(self.page, name)
-
-    def read(self, expression):
-        return self.page.evaluate(f"(({{ state }}) => {expression})(globalThis.holdover)")
-
-    def until(self, expression, seconds=15):
-        """Waits until something is so, and returns whether it came to be."""
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            if self.read(expression):
-                return True
-            time.sleep(0.02)
-        return False
-
-    def seen(self, vehicle, what):
-        return self.read(f"state.scene.vehicles[{vehicle}].{what}")
-
-    def order(self, text):
-        return self.page.evaluate("(body) => fetch('/order', { method: 'POST', body }).then((answer) => answer.status)", text)
-
-    def figures(self, vehicle):
-        target = self.seen(vehicle, "target")
-        low, high = target["bound_m"]
-        return abs(target["error_m"]), high - low, target["age_s"]
+from live_browser import FOLDER, FRAMES_A_SECOND, Page, chromium, holds, live
 
 
 def vehicles_move(page):
     before = page.read("state.scene.vehicles.map((one) => one.position_m)")
-    drawn, began = page.evaluate("globalThis.holdover.frames()"), time.monotonic()
-    time.sleep(2)
-    frames = (page.evaluate("globalThis.holdover.frames()") - drawn) / (time.monotonic() - began)
+    frames, _ = page.frames_a_second(2)
     after = page.read("state.scene.vehicles.map((one) => one.position_m)")
     holds("every vehicle moves", all(later - sooner > 5 for sooner, later in zip(before, after)))
     holds(f"the display is smooth: {frames:.0f} frames a second, of at least {FRAMES_A_SECOND}", frames >= FRAMES_A_SECOND)
@@ -154,9 +91,7 @@ def the_tour(page):
 
 
 def main():
-    with sync_playwright() as playwright, live() as address:
-        browser = playwright.chromium.launch(
-            executable_path=CHROMIUM, args=["--no-sandbox", "--enable-unsafe-swiftshader"])
+    with chromium() as browser, live() as address:
         page = Page(browser, address, viewport={"width": 1280, "height": 900})
         vehicles_move(page)
         silence_and_a_driver(page)
@@ -166,16 +101,7 @@ def main():
         page.uncheck("#rides")
         page.keyboard.press(" ")
         the_tour(page)
-        phone = Page(browser, address, viewport={"width": 390, "height": 800}, color_scheme="dark")
-        holds("on a phone nothing is wider than the screen",
-              phone.evaluate("document.documentElement.scrollWidth <= window.innerWidth"))
-        phone.screenshot(path=f"{FOLDER}/phone.png")
-        ticks = page.read("state.scene.ticks"), phone.read("state.scene.ticks")
-        holds("two pages see the same world go on", page.until(f"state.scene.ticks > {ticks[0]}")
-              and phone.until(f"state.scene.ticks > {ticks[1]}"))
-        for one in (page, phone):
-            holds(f"no error in the console {one.faults}", one.faults == [])
-        browser.close()
+        holds(f"no error in the console {page.faults}", page.faults == [])
 
 
 main()

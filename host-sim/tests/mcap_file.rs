@@ -1,7 +1,14 @@
-//! `--mcap`: its figures are those of the CSV.
+//! `--mcap`: its figures are those of the CSV, and in a corridor those that were seen.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::process::Command;
+
+use holdover_sim::commands::live::road::RoadPlay;
+use holdover_sim::commands::mcap_road::RoadMcap;
+use holdover_sim::input::scenario::Overrides;
+use holdover_sim::roads::read::corridor;
+use holdover_sim::roads::watch::{Sighting, Watch};
 
 #[test]
 fn the_file_has_every_tick_of_every_vehicle_with_the_figures_of_the_csv() {
@@ -43,4 +50,49 @@ fn the_file_has_every_tick_of_every_vehicle_with_the_figures_of_the_csv() {
     assert!(rows.next().is_none());
     assert_eq!(counts.len(), 11);
     assert!(counts.values().all(|count| *count == 300), "{counts:?}");
+}
+
+/// Every sighting of a run.
+#[derive(Default)]
+struct All(Vec<(f64, Sighting)>);
+
+impl Watch for All {
+    fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
+        self.0.extend(sightings.iter().map(|own| (at_s, *own)));
+    }
+    fn left(&mut self, _: f64, _: usize) {}
+}
+
+#[test]
+fn of_a_corridor_it_has_every_vehicle_at_every_tick_with_its_place_on_the_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("roads.mcap");
+    let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
+    let play = RoadPlay::new(corridor(Path::new("corridor.toml"), &text, &Overrides::default()).unwrap());
+    let (mut mcap, mut all) = (RoadMcap::of(&file, &play.experiment.network).unwrap(), All::default());
+    play.again(&[], 3000, None, &mut [&mut mcap, &mut all]).unwrap();
+    mcap.finish().unwrap();
+    let bytes = std::fs::read(&file).unwrap();
+    let (mut states, mut fixes) = (Vec::new(), Vec::new());
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        let values: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+        let topic = message.channel.topic.clone();
+        if topic.ends_with("/fix") { &mut fixes } else { &mut states }.push((topic, values));
+    }
+    assert!(all.0.len() > 10_000 && (states.len(), fixes.len()) == (all.0.len(), all.0.len()));
+    for (((topic, state), (_, fix)), (at_s, own)) in states.iter().zip(&fixes).zip(&all.0) {
+        assert_eq!(*topic, format!("/station/{}", own.station.0));
+        let number = |name: &str| state[name].as_f64();
+        assert_eq!((number("t_s"), number("trip")), (Some(*at_s), Some(own.trip as f64)));
+        assert_eq!((number("position_m"), number("speed_mps")), (Some(own.way_m), Some(own.speed_mps)));
+        assert_eq!(number("target_position_m"), own.belief.map(|belief| belief.position_m - own.odometer_m));
+        let point = play.experiment.network.lanes[own.road].road.at(own.way_m).0;
+        assert_eq!(
+            (fix["latitude"].as_f64(), fix["longitude"].as_f64()),
+            (Some(point.latitude), Some(point.longitude))
+        );
+    }
+    let errors: Vec<f64> = states.iter().filter_map(|(_, state)| state["target_error_m"].as_f64()).collect();
+    assert!(errors.len() > 1000 && errors.iter().all(|error_m| error_m.abs() < 20.0));
 }

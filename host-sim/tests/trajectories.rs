@@ -59,7 +59,7 @@ fn of_a_corridor_the_largest_error_in_the_file_is_the_one_that_is_reported() {
     let wanted = Wanted::read(folder.path().join("all.csv"), experiment.corridor.period_s).unwrap();
     let mut records = Records::of(&wanted, &experiment.network).unwrap();
     let conditions = Conditions::of(&experiment.corridor);
-    let outcome = experiment.run_before(1, conditions, None, Some(&mut records)).unwrap();
+    let outcome = experiment.run_before(1, conditions, None, &mut [&mut records]).unwrap();
     records.finish().unwrap();
     let said = serde_json::to_value(Side::of(&[&outcome])).unwrap();
     let rows = rows(&wanted.file);

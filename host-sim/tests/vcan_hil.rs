@@ -113,6 +113,39 @@ fn in_lock_step_a_unit_that_ticks_by_itself_is_told_so() {
     assert!(reason.starts_with("the device ticks by itself"), "{reason}");
 }
 
+/// The newest scene of a page, or nothing yet.
+fn scene(address: &str) -> Option<Value> {
+    use std::io::{BufRead, BufReader, Write};
+    let mut stream = std::net::TcpStream::connect(address).ok()?;
+    stream.set_read_timeout(Some(Duration::from_secs(5))).ok()?;
+    write!(stream, "GET /scenes HTTP/1.1\r\nHost: {address}\r\n\r\n").ok()?;
+    let lines = BufReader::new(stream).lines().map_while(Result::ok);
+    let mut scenes = lines.filter_map(|line| serde_json::from_str(line.strip_prefix("data: ")?).ok());
+    scenes.find(|scene: &Value| scene["vehicles"].is_array())
+}
+
+#[test]
+#[ignore = "needs vcan0: scripts/hil.sh tests"]
+fn a_device_in_the_world_of_live_is_seen_to_drive_and_to_believe() {
+    use std::io::{BufRead, BufReader};
+    let mut live = Command::new(SIM)
+        .args(["live", "--bus", "vcan0", "--no-browser", "--port", "0", "--device", &device("")])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut line = String::new();
+    BufReader::new(live.stdout.take().unwrap()).read_line(&mut line).unwrap();
+    let _live = Ended(live);
+    let address = line.trim().trim_start_matches("http://").trim_end_matches('/').to_owned();
+    let is_driving = || {
+        let Some(scene) = scene(&address) else { return false };
+        let ego = &scene["vehicles"][2];
+        let error_m = ego["target"]["error_m"].as_f64();
+        scene["at_s"].as_f64() > Some(2.0) && ego["mode"] == "cooperative" && error_m.is_some_and(|m| m.abs() < 1.0)
+    };
+    assert!((0..6).any(|_| soon(is_driving)), "{:?}", scene(&address));
+}
+
 #[test]
 #[ignore = "needs vcan0: scripts/hil.sh tests"]
 fn a_harness_that_is_killed_takes_its_device_with_it() {

@@ -18,7 +18,7 @@ pub struct MemoryBus {
     shared: Rc<RefCell<Shared>>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Shared {
     wire: Option<Wire>,
     /// `None`: a node that only sends.
@@ -62,6 +62,12 @@ impl MemoryBus {
         self.shared.borrow_mut().wire = None;
     }
 
+    /// A bus of its own on which everything is as it is on this one. The nodes stay on this one; [`MemoryNode::on`] tells their places.
+    #[must_use]
+    pub fn copy(&self) -> Self {
+        Self { shared: Rc::new(RefCell::new(self.shared.borrow().clone())) }
+    }
+
     /// Attaches one more node. It receives the frames that are sent from now on.
     #[must_use]
     pub fn node(&self) -> MemoryNode {
@@ -83,6 +89,12 @@ impl MemoryBus {
 }
 
 impl MemoryNode {
+    /// The same node on a [copy](MemoryBus::copy) of its bus.
+    #[must_use]
+    pub fn on(&self, copy: &MemoryBus) -> Self {
+        Self { bus: copy.clone(), index: self.index }
+    }
+
     /// The last frame of this node that has been on the bus, and when: a controller's confirmation of transmission. As far as
     /// any node has received.
     #[must_use]
@@ -206,6 +218,20 @@ mod tests {
         assert_eq!((a.confirmed(), c.confirmed()), (Some((at(ends[1]), frame(9))), None));
         assert_eq!(a.receive(at(10_000)).unwrap(), Some((at(ends[0]), frame(4))));
         assert_eq!(a.receive(at(10_000)).unwrap(), None);
+    }
+
+    #[test]
+    fn a_copy_goes_on_as_the_bus_does_and_neither_hears_the_other() {
+        let bus = MemoryBus::with_wire();
+        let (mut a, mut b) = (bus.node(), bus.node());
+        a.send(at(10), frame(1)).unwrap();
+        let copy = bus.copy();
+        let (mut c, mut d) = (a.on(&copy), b.on(&copy));
+        let first = b.receive(at(5_000)).unwrap();
+        assert!(first.is_some() && d.receive(at(5_000)).unwrap() == first);
+        c.send(at(6_000), frame(2)).unwrap();
+        assert_eq!(b.receive(at(9_000)).unwrap(), None);
+        assert_eq!(d.receive(at(9_000)).unwrap().map(|(_, sent)| sent), Some(frame(2)));
     }
 
     #[test]

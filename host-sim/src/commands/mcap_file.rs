@@ -6,24 +6,15 @@
 //! | `/measured` | `holdover.Measured` | what the CSV of `--trace` has, by the same names |
 //! | `/vehicle/N` | `holdover.Vehicle` | motion, command, mode, and the estimate of the vehicle ahead with its bound |
 //! | `/vehicle/N/fix` | `foxglove.LocationFix` | its place on a map: the lane runs east along the equator from 0° |
-//!
-//! Times are GNSS time of the run, as in a log of its bus. Nothing is compressed, so the file needs no C library.
 
-use std::collections::BTreeMap;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use mcap::records::MessageHeader;
-use mcap::write::NoSeek;
-use mcap::{McapError, WriteOptions, Writer};
 use serde::Serialize;
-use serde_json::{Value, json};
 
-use crate::draft::Draft;
+use super::mcap_writer::{FIX, McapWriter, fix, location_fix, properties};
 use crate::error::Error;
 use crate::input::scenario::Scenario;
 use crate::measure::figures::mode_name;
-use crate::sim::time::gnss;
 use crate::sim::world::{Measured, Tick};
 
 /// Metres of a degree of the equator, WGS 84.
@@ -31,14 +22,10 @@ const DEGREE_M: f64 = 111_319.490_793;
 
 /// The file, as far as it is written.
 pub struct McapFile {
-    file: PathBuf,
-    writer: Writer<NoSeek<Draft>>,
+    writer: McapWriter,
     measured: Measured,
     length_m: f64,
     channels: Channels,
-    sequence: u32,
-    /// The first failure. After it nothing more is written, and the run goes on.
-    written: Result<(), McapError>,
 }
 
 struct Channels {
@@ -93,22 +80,24 @@ impl McapFile {
     /// A file that cannot be created.
     pub fn of(file: &Path, scenario: &Scenario) -> Result<Self, Error> {
         let measured = Measured::of(scenario);
-        let options = WriteOptions::new().compression(None).disable_seeking(true).library("holdover-sim");
-        let draft = NoSeek::new(Draft::of(file)?);
-        let created = options.create(draft).and_then(|mut writer| {
-            let channels = Channels::of(&mut writer, scenario.vehicles.len())?;
-            Ok((writer, channels))
-        });
-        let (writer, channels) = created.map_err(|error| unwritable(file, error))?;
+        let mut writer = McapWriter::of(file)?;
+        let channels = Channels::of(&mut writer, scenario.vehicles.len());
         let length_m = scenario.vehicles[measured.vehicle].length_m;
-        Ok(Self { file: file.to_owned(), writer, measured, length_m, channels, sequence: 0, written: Ok(()) })
+        Ok(Self { writer, measured, length_m, channels })
     }
 
     /// Writes a tick of all vehicles.
     pub fn note(&mut self, at_s: f64, ticks: &[Tick], paper_m: Option<f64>) {
-        if self.written.is_ok() {
-            self.written = self.tick(at_s, ticks, paper_m);
+        let Measured { vehicle, by } = self.measured;
+        let row = row(at_s, &ticks[vehicle], &ticks[by], self.length_m, paper_m);
+        self.writer.write(self.channels.measured, at_s, &row);
+        for (index, tick) in ticks.iter().enumerate() {
+            let (state, place) = self.channels.vehicles[index];
+            let ahead = index.checked_sub(1).map(|ahead| &ticks[ahead]);
+            self.writer.write(state, at_s, &state_of(at_s, tick, ahead));
+            self.writer.write(place, at_s, &fix(at_s, 0.0, tick.position_m / DEGREE_M));
         }
+        self.writer.next();
     }
 
     /// Ends the file.
@@ -116,49 +105,19 @@ impl McapFile {
     /// # Errors
     /// A file that could not be written.
     pub fn finish(self) -> Result<(), Error> {
-        let Self { file, mut writer, written, .. } = self;
-        written.and_then(|()| writer.finish()).map_err(|error| unwritable(&file, error))?;
-        writer.into_inner().into_inner().finish()
-    }
-
-    fn tick(&mut self, at_s: f64, ticks: &[Tick], paper_m: Option<f64>) -> Result<(), McapError> {
-        let Measured { vehicle, by } = self.measured;
-        let row = row(at_s, &ticks[vehicle], &ticks[by], self.length_m, paper_m);
-        self.write(self.channels.measured, at_s, &row)?;
-        for (index, tick) in ticks.iter().enumerate() {
-            let (state, fix) = self.channels.vehicles[index];
-            let ahead = index.checked_sub(1).map(|ahead| &ticks[ahead]);
-            self.write(state, at_s, &state_of(at_s, tick, ahead))?;
-            self.write(fix, at_s, &fix_of(at_s, tick))?;
-        }
-        self.sequence += 1;
-        Ok(())
-    }
-
-    fn write(&mut self, channel_id: u16, at_s: f64, message: &impl Serialize) -> Result<(), McapError> {
-        let at = gnss(at_s).as_micros() * 1_000;
-        let header = MessageHeader { channel_id, sequence: self.sequence, log_time: at, publish_time: at };
-        let data = serde_json::to_vec(message).map_err(io::Error::other)?;
-        self.writer.write_to_known_channel(&header, &data)
+        self.writer.finish()
     }
 }
 
 impl Channels {
-    fn of(writer: &mut Writer<NoSeek<Draft>>, vehicles: usize) -> Result<Self, McapError> {
-        let mut schema = |name: &str, properties: Value| {
-            let text = json!({ "title": name, "type": "object", "properties": properties }).to_string();
-            writer.add_schema(name, "jsonschema", text.as_bytes())
-        };
-        let measured = schema("holdover.Measured", properties(&MEASURED))?;
-        let vehicle = schema("holdover.Vehicle", properties(&VEHICLE))?;
-        let fix = schema("foxglove.LocationFix", location_fix())?;
-        let mut channel = |schema, topic: &str| writer.add_channel(schema, topic, "json", &BTreeMap::new());
-        let measured = channel(measured, "/measured")?;
+    fn of(writer: &mut McapWriter, vehicles: usize) -> Self {
+        let measured = writer.channel("holdover.Measured", &properties(&MEASURED), "/measured");
         let of = |index: usize| {
             let topic = format!("/vehicle/{index}");
-            Ok((channel(vehicle, &topic)?, channel(fix, &format!("{topic}/fix"))?))
+            let state = writer.channel("holdover.Vehicle", &properties(&VEHICLE), &topic);
+            (state, writer.channel(FIX, &location_fix(), &format!("{topic}/fix")))
         };
-        Ok(Self { measured, vehicles: (0..vehicles).map(of).collect::<Result<_, McapError>>()? })
+        Self { measured, vehicles: (0..vehicles).map(of).collect() }
     }
 }
 
@@ -195,31 +154,6 @@ const VEHICLE: [&str; 13] = [
     "lowest_position_m",
     "highest_position_m",
 ];
-
-/// What a schema says of these names; a number that is not known is null.
-fn properties(names: &[&str]) -> Value {
-    let kind = |name: &str| match name {
-        "mode" => json!({ "type": "string" }),
-        "limited" => json!({ "type": "boolean" }),
-        _ => json!({ "type": ["number", "null"] }),
-    };
-    names.iter().map(|name| ((*name).to_owned(), kind(name))).collect()
-}
-
-fn location_fix() -> Value {
-    let number = json!({ "type": "number" });
-    let time =
-        json!({ "type": "object", "properties": { "sec": { "type": "integer" }, "nsec": { "type": "integer" } } });
-    json!({
-        "timestamp": time,
-        "frame_id": { "type": "string" },
-        "latitude": number,
-        "longitude": number,
-        "altitude": number,
-        "position_covariance": { "type": "array", "items": number },
-        "position_covariance_type": { "type": "integer" },
-    })
-}
 
 fn row(at_s: f64, truth: &Tick, seen: &Tick, length_m: f64, paper_position_m: Option<f64>) -> Row {
     let bound = seen.target.and_then(|target| target.bound);
@@ -261,25 +195,4 @@ fn state_of(at_s: f64, tick: &Tick, ahead: Option<&Tick>) -> State {
         lowest_position_m: bound.map(|bound| bound.lowest_position_m),
         highest_position_m: bound.map(|bound| bound.highest_position_m),
     }
-}
-
-fn fix_of(at_s: f64, tick: &Tick) -> Value {
-    let micros = gnss(at_s).as_micros();
-    json!({
-        "timestamp": { "sec": micros / 1_000_000, "nsec": micros % 1_000_000 * 1_000 },
-        "frame_id": "earth",
-        "latitude": 0.0,
-        "longitude": tick.position_m / DEGREE_M,
-        "altitude": 0.0,
-        "position_covariance": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        "position_covariance_type": 0,
-    })
-}
-
-fn unwritable(file: &Path, error: McapError) -> Error {
-    let error = match error {
-        McapError::Io(error) => error,
-        other => io::Error::other(other.to_string()),
-    };
-    Error::unwritable(file, &error)
 }

@@ -18,6 +18,8 @@ pub mod identifiers;
 pub mod interruption;
 pub mod live;
 pub mod mcap_file;
+pub mod mcap_road;
+mod mcap_writer;
 pub mod mistyped;
 pub mod motions;
 pub mod options;

@@ -17,10 +17,11 @@ use crate::sim::modem::PEERS;
 use crate::sim::quantities::metres;
 use crate::sim::station::{index_of, station};
 use crate::sim::time::{EPOCH_US, gnss};
-use crate::sim::vehicle::Alias;
+use crate::sim::vehicle::{Alias, Vehicle};
 use crate::sim::world::{Measured, World};
 
 /// The listener.
+#[derive(Clone)]
 pub struct Observer {
     receiver: Receiver<PEERS>,
     parameters: BTreeMap<u8, HeardParameters>,
@@ -101,6 +102,12 @@ impl Tap {
         let by = &world.vehicles()[measured.by];
         let observer = Observer::new(by.unit.config().identifiers).over(by.unit.config().transport);
         Self { measured, node: by.listen(), observer }
+    }
+
+    /// The same on the bus of a copy of the vehicle.
+    #[must_use]
+    pub fn on(&self, copy: &Vehicle) -> Self {
+        Self { node: copy.adopt(&self.node), observer: self.observer.clone(), ..*self }
     }
 
     /// The vehicle whose position is estimated, and the vehicle that estimates it.

@@ -123,7 +123,7 @@ impl<'a> Beliefs<'a> {
 }
 
 /// The true position of a target, on the axis of the follower's way.
-pub(super) fn on_axis(network: &Network, own: &Sighting, target: &Sighting) -> Option<f64> {
+pub(crate) fn on_axis(network: &Network, own: &Sighting, target: &Sighting) -> Option<f64> {
     if own.road == target.road {
         return Some(target.way_m);
     }

@@ -21,6 +21,15 @@ pub enum WhenLost {
     Alone,
 }
 
+/// Which events of the scenario a run heeds. The others are what it is compared with others in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heeds {
+    /// Delay, loss and outages.
+    pub links: bool,
+    /// Switches of the envelope.
+    pub envelope: bool,
+}
+
 /// The conditions of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
@@ -40,6 +49,8 @@ pub struct Conditions {
     pub without_passes: f64,
     /// Emergency stops and faults.
     pub emergencies: Emergencies,
+    /// The events that it heeds.
+    pub heeds: Heeds,
 }
 
 impl Conditions {
@@ -55,6 +66,7 @@ impl Conditions {
             slots: corridor.slots,
             without_passes: corridor.traffic.without_passes,
             emergencies: Emergencies::NONE,
+            heeds: Heeds { links: true, envelope: true },
         }
     }
 }

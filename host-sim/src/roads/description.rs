@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::input::scenario::{Envelope, Fitted, Span, VehicleBus};
+use crate::input::scenario::{Envelope, Event, Fitted, Span, VehicleBus};
 use crate::sim::ground::Point;
 
 /// A network of roads that cross, and its traffic.
@@ -41,6 +41,8 @@ pub struct Corridor {
     pub emergencies: Emergencies,
     /// Every vehicle's own bus.
     pub bus: VehicleBus,
+    /// What is driven and changed during the run, in the order of time. A vehicle is the index of its trip.
+    pub events: Vec<Event>,
     /// Limits for the verdict.
     pub limits: Limits,
     /// The roads; 1 to 32.
@@ -50,10 +52,11 @@ pub struct Corridor {
 }
 
 impl Corridor {
-    /// The same corridor with this many vehicles a minute in all. Each road keeps its fraction.
+    /// The same corridor with this many vehicles a minute in all. Each road keeps its fraction. They are other vehicles, so nothing
+    /// befalls them.
     #[must_use]
     pub fn demanding(&self, vehicles_per_min: f64) -> Self {
-        let mut other = self.clone();
+        let mut other = Self { events: Vec::new(), ..self.clone() };
         let scale = vehicles_per_min / self.vehicles_per_min();
         other.roads.iter_mut().for_each(|road| road.vehicles_per_min *= scale);
         other

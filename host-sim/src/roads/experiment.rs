@@ -6,7 +6,7 @@ use std::io;
 use holdover::coordination::Itinerary;
 
 use super::beliefs::Beliefs;
-use super::conditions::{Conditions, WhenLost};
+use super::conditions::{Conditions, Heeds, WhenLost};
 use super::description::{Corridor, Wrong};
 use super::figures::{Outcome, Side, StepRow, WrongRow};
 use super::journal::Journal;
@@ -100,10 +100,10 @@ impl Experiment {
     /// # Errors
     /// A scenario that the units refuse.
     pub fn run(&self, seed: u64, conditions: Conditions, journal: Option<&mut Journal>) -> Result<Outcome, Error> {
-        self.run_before(seed, conditions, journal, None)
+        self.run_before(seed, conditions, journal, &mut [])
     }
 
-    /// The same before the eyes of one more observer.
+    /// The same before the eyes of further observers.
     ///
     /// # Errors
     /// As for [`run`](Self::run).
@@ -112,7 +112,7 @@ impl Experiment {
         seed: u64,
         conditions: Conditions,
         journal: Option<&mut Journal>,
-        another: Option<&mut dyn Watch>,
+        others: &mut [&mut dyn Watch],
     ) -> Result<Outcome, Error> {
         let (trips, _) = self.trips(seed);
         let logged = journal.as_ref().and_then(|journal| journal.ego);
@@ -120,8 +120,8 @@ impl Experiment {
         let mut traffic = Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
         traffic.log(logged);
         let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs];
-        if let Some(another) = another {
-            watches.push(another);
+        for other in others {
+            watches.push(&mut **other);
         }
         let mut log = Vec::new();
         let remains = match journal {
@@ -243,12 +243,15 @@ fn with_ego(corridor: &Corridor, network: &Network, seed: u64) -> (Vec<Trip>, Op
 /// The conditions of the sides, in the order of [`Sides`].
 #[must_use]
 pub fn of_sides(corridor: &Corridor) -> [Conditions; Sides::COUNT] {
-    let scenario = Conditions::of(corridor);
+    // A side is without or with the envelope, and its links are perfect or not, whatever is switched on the way.
+    let heeds = Heeds { links: true, envelope: false };
+    let scenario = Conditions { heeds, ..Conditions::of(corridor) };
     let [without, with] =
         [false, true].map(|engaged| Conditions { envelope: Envelope { engaged, ..scenario.envelope }, ..scenario });
-    let perfect_link = Conditions { radio: without.radio.perfect(), ..without };
+    let unheeding = Heeds { links: false, ..heeds };
+    let perfect_link = Conditions { radio: without.radio.perfect(), heeds: unheeding, ..without };
     let alone = Conditions { when_lost: WhenLost::Alone, ..without };
-    let with_perfect_link = Conditions { radio: with.radio.perfect(), ..with };
+    let with_perfect_link = Conditions { radio: with.radio.perfect(), heeds: unheeding, ..with };
     [without, perfect_link, alone, with, with_perfect_link, Conditions { emergencies: corridor.emergencies, ..with }]
 }
 

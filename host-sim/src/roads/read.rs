@@ -5,14 +5,16 @@
 use std::path::Path;
 
 use super::description::{Corridor, Emergencies, IntersectionPlan, Limits, Radio, RoadPlan, Traffic, Wrong};
+use super::experiment::of_seed;
 use super::fit::{self, Part};
 use crate::error::{Error, quoted};
 use crate::input::scenario::keys::{Document, Number, Section};
 use crate::input::scenario::set::Sets;
-use crate::input::scenario::{Overrides, Span, bus, envelope, sensors};
+use crate::input::scenario::{Fleet, Overrides, Span, bus, envelope, event, sensors};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
 use crate::sim::modem::{ECU_PEERS, PEERS};
+use crate::sim::sensors::faults::is_fitted;
 
 const DURATION: Number = Number { key: "duration_s", unit: "seconds", limits: 10.0..=86_400.0, default: 600.0 };
 const PERIOD: Number = Number { key: "period_s", unit: "seconds", limits: 0.001..=0.1, default: 0.01 };
@@ -87,6 +89,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
     let [road_lines, intersection_lines] = [&road_sections, &intersection_sections].map(|sections| lines(sections));
     let roads = roads(&document, road_sections, &traffic)?;
     let intersections = intersections(&document, intersection_sections)?;
+    let event_sections = top.sections("event")?.unwrap_or_default();
     top.finish()?;
 
     if rate.value * period.value > 1.0 {
@@ -107,7 +110,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
             document.error_at(name.line, cause, format!("name one of {}", names.join(", ")))
         })?,
     };
-    let corridor = Corridor {
+    let mut corridor = Corridor {
         seed: overrides.seed.unwrap_or(seed),
         duration_s: duration.value,
         period_s: period.value,
@@ -127,6 +130,7 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         sensors,
         emergencies,
         bus,
+        events: Vec::new(),
         limits,
         roads,
         intersections,
@@ -138,7 +142,17 @@ pub fn corridor(file: &Path, text: &str, overrides: &Overrides) -> Result<Corrid
         };
         document.error_at(line, misfit.cause, misfit.remedy)
     })?;
+    if !event_sections.is_empty() {
+        corridor.events = event::read(&document, event_sections, &fleet(&corridor))?;
+    }
     Ok(corridor)
+}
+
+/// What an event of a corridor is checked against: its trips.
+#[must_use]
+pub fn fleet(corridor: &Corridor) -> Fleet {
+    let (trips, _) = of_seed(corridor, corridor.seed);
+    Fleet::fitted((0..trips.len()).map(|trip| is_fitted(corridor.sensors.share, corridor.seed, trip as u32)).collect())
 }
 
 fn traffic(document: &Document, mut section: Section) -> Result<Traffic, Error> {

@@ -36,15 +36,19 @@ use crate::sim::world::TargetBelief;
 mod arrivals;
 mod departures;
 mod emergencies;
+mod events;
 mod faults;
+mod looks;
 mod numbers;
 mod traveller;
 
 use arrivals::LISTENING_S;
+use events::Happenings;
 use numbers::Numbers;
-use traveller::Traveller;
+pub use traveller::Traveller;
 
-/// The world.
+/// The world. A copy of it goes on in the same way.
+#[derive(Clone)]
 pub struct Traffic<'a> {
     corridor: &'a Corridor,
     network: &'a Network,
@@ -64,6 +68,7 @@ pub struct Traffic<'a> {
     tally: Tally,
     logged: Option<usize>,
     sights: Sights,
+    happenings: Happenings,
 }
 
 /// The counts at the end of a run.
@@ -118,12 +123,13 @@ impl<'a> Traffic<'a> {
             waiting: vec![VecDeque::new(); network.lanes.len()],
             travellers: BTreeMap::new(),
             numbers: Numbers::new(),
-            air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed),
+            air: Air::new(&ChannelModel { impairment, applies_to: AppliesTo::All }, seed).unrecorded(),
             aired: VecDeque::new(),
             remains: Remains::default(),
             tally: Tally::default(),
             logged: None,
             sights: Sights::of(network),
+            happenings: Happenings::of(&corridor.events, conditions.heeds),
         }
     }
 
@@ -168,17 +174,24 @@ impl<'a> Traffic<'a> {
     }
 
     /// The time of the next tick.
-    fn at_s(&self) -> f64 {
+    #[must_use]
+    pub fn at_s(&self) -> f64 {
         self.ticks as f64 * self.corridor.period_s
     }
 
-    fn is_over(&self) -> bool {
+    /// Whether every vehicle has left.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
         self.next == self.trips.len()
             && self.travellers.values().all(|traveller| traveller.has_left())
             && self.waiting.iter().all(VecDeque::is_empty)
     }
 
-    fn step(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
+    /// One tick. What was on the logged bus of a vehicle that vanishes is appended to the log.
+    ///
+    /// # Errors
+    /// As for [`run`](Self::run).
+    pub fn step(&mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<()> {
         let at_s = self.at_s();
         self.ticks += 1;
         self.tick(at_s, |traffic| {
@@ -277,6 +290,7 @@ impl<'a> Traffic<'a> {
 
 impl Stages for Traffic<'_> {
     fn speak(&mut self, at_s: f64) -> io::Result<()> {
+        self.happen(at_s);
         while let Some(Arrived { at_s, to, message }) = self.air.arrived(at_s) {
             if let Some(traveller) = self.travellers.get_mut(&to).filter(|traveller| traveller.hears(at_s)) {
                 self.tally.heard += u64::from(!traveller.has_left());
@@ -292,6 +306,7 @@ impl Stages for Traffic<'_> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone(at_s);
         }
+        self.intervene();
         self.run_out(at_s);
         self.brake_in_emergencies(at_s);
         Ok(())

@@ -15,6 +15,7 @@ use crate::sim::time::micros;
 const MOST_MESSAGES: usize = 18_000;
 
 /// A message on its way.
+#[derive(Clone)]
 struct Flight {
     arrives_us: i64,
     number: u64,
@@ -52,6 +53,7 @@ pub struct Arrived {
 }
 
 /// The channel and all messages that are on their way in it.
+#[derive(Clone)]
 pub struct Air {
     channel: Channel,
     flights: BinaryHeap<Reverse<Flight>>,
@@ -63,6 +65,12 @@ impl Air {
     #[must_use]
     pub fn new(model: &ChannelModel, seed: u64) -> Self {
         Self { channel: Channel::new(model, seed).of_at_most(MOST_MESSAGES), flights: BinaryHeap::new(), sent: 0 }
+    }
+
+    /// The same without the record of what happened on it, which nobody asks for.
+    #[must_use]
+    pub fn unrecorded(self) -> Self {
+        Self { channel: self.channel.of_at_most(0), ..self }
     }
 
     /// Sends a message from the vehicle `from` to the vehicles `to`.

@@ -147,6 +147,7 @@ impl Channel {
 
     /// Forgets all links of a vehicle that has gone.
     pub fn forget(&mut self, vehicle: usize) {
+        self.changes.forget(vehicle);
         self.links.retain(|link, _| link.from != vehicle && link.to != vehicle);
     }
 

@@ -32,6 +32,7 @@ pub mod actuators;
 mod air;
 pub mod alias;
 mod backlog;
+mod copy;
 mod drive;
 mod intervention;
 mod speech;
@@ -164,6 +165,7 @@ impl Vehicle {
     pub fn set_out(&mut self, ground: Ground, itinerary: &'static Itinerary, course: Course) -> Result<(), MapError> {
         self.ground = Some(ground);
         self.relay.set_out(course);
+        self.intervention.set_out(itinerary)?;
         self.unit.set_out(itinerary)
     }
 

@@ -59,7 +59,7 @@ impl Measured {
     }
 }
 
-/// The world.
+/// The world. A copy of it goes on in the same way.
 pub struct World<'a> {
     scenario: &'a Scenario,
     vehicles: Vec<Vehicle>,
@@ -297,6 +297,15 @@ impl<'a> World<'a> {
         leader.plant.speed_mps = state.speed_mps.max(0.0);
         leader.plant.acceleration_mps2 = motion.past_slope(motion.start_s() + at_s);
         leader.command_mps2 = leader.plant.acceleration_mps2;
+    }
+}
+
+impl Clone for World<'_> {
+    fn clone(&self) -> Self {
+        let vehicles = self.vehicles.clone();
+        let log = self.log.as_ref().map(|(index, node)| (*index, vehicles[*index].adopt(node)));
+        let (air, starts_m, events) = (self.air.clone(), self.starts_m.clone(), self.events.clone());
+        Self { vehicles, air, log, starts_m, events, ..*self }
     }
 }
 

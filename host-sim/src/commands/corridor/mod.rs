@@ -16,6 +16,7 @@ use std::time::Instant;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
+use crate::commands::mcap_road::RoadMcap;
 use crate::commands::motions::rows::{self, Row};
 use crate::draft::Draft;
 use crate::error::Error;
@@ -128,7 +129,8 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     }
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
-    let logged = usize::from(options.candump.is_some() || options.trajectories.is_some());
+    let is_watched = options.trajectories.is_some() || options.mcap.is_some();
+    let logged = usize::from(options.candump.is_some() || is_watched);
     let bar = ProgressBar::new(
         (Sides::COUNT * options.seeds.len() + WRONGS + SHARES.len() + drawn + options.vehicles.len() + logged) as u64,
     );
@@ -158,14 +160,20 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         Some(wanted) => Some(Records::of(wanted, &experiment.network)?),
         None => None,
     };
+    let mut mcap = match &options.mcap {
+        Some(file) => Some(RoadMcap::of(file, &experiment.network)?),
+        None => None,
+    };
     if logged > 0 {
         let mut journal = Journal::new(options.candump.as_ref().map(|candump| candump.vehicle));
-        let another = records.as_mut().map(|records| records as &mut dyn Watch);
-        experiment.run_before(first, Conditions::of(&options.corridor), Some(&mut journal), another)?;
+        let mut others: Vec<&mut dyn Watch> = Vec::new();
+        others.extend(records.as_mut().map(|records| records as &mut dyn Watch));
+        others.extend(mcap.as_mut().map(|mcap| mcap as &mut dyn Watch));
+        experiment.run_before(first, Conditions::of(&options.corridor), Some(&mut journal), &mut others)?;
         logged_to = options.candump.as_ref().map_or(Ok(()), |candump| candump.write(&journal.log));
         done();
     }
-    let recorded = records.map_or(Ok(()), Records::finish);
+    let recorded = records.map_or(Ok(()), Records::finish).and(mcap.map_or(Ok(()), RoadMcap::finish));
     let mut loads = Vec::new();
     let timed = if engaged { &sides.envelope } else { &sides.holdover };
     if let Some(travel_s) = timed.mean_travel_time_s {

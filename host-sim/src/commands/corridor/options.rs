@@ -45,6 +45,8 @@ pub struct CorridorOptions {
     pub picture: Option<PathBuf>,
     /// File for the trajectories of all vehicles, of the first seed.
     pub trajectories: Option<Wanted>,
+    /// File of every vehicle's ticks, of the first seed.
+    pub mcap: Option<PathBuf>,
     /// The bus to log, of the first seed; the vehicle is the index of its trip.
     pub candump: Option<Candump>,
 }
@@ -59,7 +61,6 @@ impl CorridorOptions {
             ("--leader-motion", settings.leader_motion.is_some()),
             ("--channel-trace", settings.channel_trace.is_some()),
             ("--trace", settings.trace.is_some()),
-            ("--mcap", settings.mcap.is_some()),
         ];
         if let Some((option, _)) = foreign.iter().find(|(_, is_given)| *is_given) {
             return Err(
@@ -88,9 +89,17 @@ impl CorridorOptions {
         if settings.trajectories.is_some() && settings.demand.is_some() {
             return Err(of_other_traffic("--trajectories"));
         }
+        if settings.mcap.is_some() && settings.demand.is_some() {
+            return Err(of_other_traffic("--mcap"));
+        }
+        if !corridor.events.is_empty() && settings.demand.is_some() {
+            let cause = "what [[event]] says befalls the scenario's own vehicles, and --demand runs other traffic";
+            return Err(Error::new(cause, "leave one of the two out").in_option("--demand"));
+        }
         let destination = settings.output.read()?.with_inputs([named])?;
         let mut taken = vec![named];
-        for (option, file) in [("--picture", &settings.picture), ("--candump", &settings.candump)] {
+        let outputs = [("--picture", &settings.picture), ("--candump", &settings.candump), ("--mcap", &settings.mcap)];
+        for (option, file) in outputs {
             if let Some(file) = file {
                 can_be_file(option, file, &taken)?;
                 taken.push(file);
@@ -141,6 +150,7 @@ impl CorridorOptions {
             slots,
             picture: settings.picture,
             trajectories,
+            mcap: settings.mcap,
             candump,
         })
     }

@@ -86,7 +86,8 @@ fn core_s() -> Option<f64> {
 /// A scenario that the units refuse.
 pub fn measure(experiment: &Experiment, seed: u64, vehicles: usize, travel_s: f64) -> Result<Load, Error> {
     let fill_s = FILL * travel_s;
-    let corridor = Corridor { duration_s: fill_s + SPAN_S, ..experiment.corridor.clone() };
+    // The vehicles of other seeds, some of them left out, are others than those that something befalls.
+    let corridor = Corridor { duration_s: fill_s + SPAN_S, events: Vec::new(), ..experiment.corridor.clone() };
     let lots = lots(experiment, &corridor, seed, vehicles);
     let corridors = lots.len();
     let threads = rayon::current_num_threads().min(corridors);

@@ -325,7 +325,8 @@ fn failed(
 }
 
 /// The reason why a run was cut short, in words.
-fn said(cut: &Cut) -> String {
+#[must_use]
+pub fn said(cut: &Cut) -> String {
     let ended =
         |ended: &Option<String>| ended.as_ref().map_or(String::new(), |how| format!("; its process ended: {how}"));
     match cut {

@@ -170,17 +170,56 @@ impl BusListener {
     }
 }
 
+/// Someone who looks at a run, and may change what happens in its world.
+pub trait Onlooker {
+    /// The world at its start, before anything is sent in it.
+    fn begin(&mut self, _world: &World<'_>) {}
+
+    /// The world at a tick. Returns whether the run goes on.
+    ///
+    /// # Errors
+    /// Errors of the buses.
+    fn see(&mut self, _world: &mut World<'_>, _at_s: f64) -> io::Result<bool> {
+        Ok(true)
+    }
+
+    /// The most ticks that the trace of the run has.
+    fn most_ticks(&self) -> usize {
+        usize::MAX
+    }
+}
+
+/// Nobody looks.
+struct Nobody;
+
+impl Onlooker for Nobody {}
+
 /// Runs the setup. `progress` gets the time of the run from time to time.
 ///
 /// # Errors
 /// Errors of the port. A configuration that the unit refuses counts as one.
-pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: impl FnMut(f64)) -> io::Result<Outcome> {
+pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, progress: impl FnMut(f64)) -> io::Result<Outcome> {
+    run_before(setup, port, rig, &mut Nobody, progress)
+}
+
+/// The same before the eyes of an onlooker.
+///
+/// # Errors
+/// As for [`run`].
+pub fn run_before<P: Port>(
+    setup: &Setup,
+    port: P,
+    rig: &mut dyn Rig,
+    onlooker: &mut dyn Onlooker,
+    mut progress: impl FnMut(f64),
+) -> io::Result<Outcome> {
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let seat = world.give_seat(scenario.ego, setup.alias());
     let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
     let mut talk = Talk::new(port, config.identifiers);
-    let mut trace = world.trace();
+    onlooker.begin(&world);
+    let mut trace = world.trace().of_at_most(onlooker.most_ticks());
     let mut paper = PaperBeside::of(&world, scenario);
     let mut injector = FaultInjector::new(&setup.faults, config.identifiers).over(config.transport);
     rig.power(true)?;
@@ -232,6 +271,9 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             world.act(at_s)?;
             world.note(at_s, &mut trace);
             paper.note(&world, at_s, &mut trace)?;
+            if !onlooker.see(&mut world, at_s)? {
+                break;
+            }
         }
         cut = gone(setup, &talk, &listener, rig, at_s);
         if tick % 100 == 0 {

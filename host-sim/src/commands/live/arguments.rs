@@ -5,13 +5,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::commands::ecu::arguments::UnitArguments;
+
 /// The port, unless another one is given.
 pub const PORT: u16 = 8137;
 
 /// The arguments of `live`.
 #[derive(Clone, Debug, Args)]
 pub struct LiveArguments {
-    /// The scenario of a string of vehicles, a file or a name from `run --list`; by default the paper's
+    /// The scenario, a file or a name from `run --list`; by default the paper's
     #[arg(value_name = "SCENARIO")]
     pub scenario: Option<PathBuf>,
 
@@ -32,6 +34,18 @@ pub struct LiveArguments {
     #[arg(long, value_name = "FILE.mcap")]
     pub mcap: Option<PathBuf>,
 
+    /// Put the device on this CAN interface into the world, in real time: it drives the ego. A string of vehicles only; Linux only
+    #[arg(long, value_name = "INTERFACE")]
+    pub bus: Option<String>,
+
+    /// The device.
+    #[command(flatten)]
+    pub unit: UnitArguments,
+
+    /// Start the device by this command, and end it after the run
+    #[arg(long, value_name = "COMMAND", requires = "bus")]
+    pub device: Option<String>,
+
     /// Seed of everything random, instead of the scenario's
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u64>,
@@ -46,11 +60,15 @@ pub const AFTER_HELP: &str = "\
 Examples:
   holdover-sim live                      the paper's scenario, in your browser
   holdover-sim live motorway             a platoon of ten
+  holdover-sim live corridor             four intersections; vehicles come and go
   holdover-sim live --set vehicle.2.time_gap_s=0.6 my.toml
                                          yours, with another value
   holdover-sim live --no-browser --port 0
                                          prints the address and waits
   holdover-sim run drive.toml            repeats what was saved on the page
+
+  holdover-sim live --bus vcan0 --device 'holdover-sim ecu --bus vcan0'
+                                         with a device that drives the ego
 
 The page shows the vehicles and what each believes of the one ahead. There you
 drive, break the links and switch things off. The address is printed on stdout.

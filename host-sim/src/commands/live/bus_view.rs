@@ -18,9 +18,18 @@ const LOAD_OVER_S: f64 = 1.0;
 /// A listener on the bus of a vehicle.
 pub struct BusView {
     node: MemoryNode,
-    rows: BTreeMap<u32, Row>,
+    rows: BTreeMap<u32, Newest>,
     /// When each frame of the last second was on the bus, and for how long.
     recent: VecDeque<(f64, f64)>,
+}
+
+/// The newest frame of an identifier, as it was on the bus.
+#[derive(Clone, Copy)]
+struct Newest {
+    at_s: f64,
+    cycle_s: Option<f64>,
+    count: u64,
+    frame: Frame,
 }
 
 /// The newest frame of an identifier.
@@ -47,6 +56,12 @@ impl BusView {
         Self { node: vehicle.listen(), rows: BTreeMap::new(), recent: VecDeque::new() }
     }
 
+    /// The same on the bus of a copy of the vehicle.
+    #[must_use]
+    pub fn on(&self, copy: &Vehicle) -> Self {
+        Self { node: copy.adopt(&self.node), rows: self.rows.clone(), recent: self.recent.clone() }
+    }
+
     /// Takes in what was on the bus up to now.
     ///
     /// # Errors
@@ -63,14 +78,10 @@ impl BusView {
 
     fn note(&mut self, at_s: f64, frame: &Frame) {
         self.recent.push_back((at_s, length(frame).as_micros() as f64 * 1e-6));
-        let (id, is_extended) = match frame.id() {
-            Id::Standard(id) => (u32::from(id.as_raw()), false),
-            Id::Extended(id) => (id.as_raw(), true),
-        };
+        let (id, _) = number(frame);
         let before = self.rows.get(&id);
-        let data = frame.data().iter().map(|byte| format!("{byte:02x}")).collect();
         let (cycle_s, count) = (before.map(|row| at_s - row.at_s), before.map_or(0, |row| row.count) + 1);
-        self.rows.insert(id, Row { id, is_extended, at_s, cycle_s, count, data });
+        self.rows.insert(id, Newest { at_s, cycle_s, count, frame: *frame });
     }
 
     /// The share of the last second in which the bus was busy.
@@ -81,7 +92,20 @@ impl BusView {
 
     /// The newest frame of every identifier.
     #[must_use]
-    pub fn rows(&self) -> Vec<&Row> {
-        self.rows.values().collect()
+    pub fn rows(&self) -> Vec<Row> {
+        let row = |Newest { at_s, cycle_s, count, frame }: &Newest| {
+            let (id, is_extended) = number(frame);
+            let data = frame.data().iter().map(|byte| format!("{byte:02x}")).collect();
+            Row { id, is_extended, at_s: *at_s, cycle_s: *cycle_s, count: *count, data }
+        };
+        self.rows.values().map(row).collect()
+    }
+}
+
+/// The identifier, and whether it has 29 bits.
+fn number(frame: &Frame) -> (u32, bool) {
+    match frame.id() {
+        Id::Standard(id) => (u32::from(id.as_raw()), false),
+        Id::Extended(id) => (id.as_raw(), true),
     }
 }

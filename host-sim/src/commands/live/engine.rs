@@ -10,13 +10,15 @@ use serde::Serialize;
 use tokio::sync::{oneshot, watch};
 
 use super::order::Order;
-use super::stage::Stage;
+use super::scene::{Pulse, rounded};
+use super::snapshots::Snapshots;
+use super::stage::{Play, Stage};
 use crate::commands::interruption::Interruption;
 use crate::error::Error;
-use crate::input::scenario::{Change, Event, Fleet, Part, Scenario};
+use crate::input::scenario::{Change, Event, Part};
 
 /// Scenes a second.
-const SCENE_EVERY: Duration = Duration::from_millis(33);
+const SCENE_EVERY: Duration = Duration::from_millis(30);
 /// While time stands still, a scene so often shows that the engine is there.
 const SCENE_EVERY_AT_REST: Duration = Duration::from_millis(500);
 /// The world goes on for no longer than this before the pages are heard again.
@@ -35,11 +37,10 @@ pub enum Ask {
 }
 
 /// The engine.
-pub struct Engine {
-    scenario: Scenario,
-    fleet: Fleet,
-    /// The events of the scenario's file, and those of this run.
-    own: Vec<Event>,
+pub struct Engine<'p, P: Play> {
+    play: &'p P,
+    snapshots: Snapshots<P::Stage<'p>>,
+    /// The events of this run.
     events: Vec<Event>,
     is_playing: bool,
     pace: f64,
@@ -49,18 +50,20 @@ pub struct Engine {
 
 /// Why the play ends.
 enum Cut {
-    /// The world is to be played again, up to so many ticks.
-    Again(u64),
+    /// Time goes back, to so many ticks.
+    Back(u64),
+    /// The world is to be played anew from its beginning, up to so many ticks.
+    Anew(u64),
     /// The program is to end.
     End,
 }
 
-impl Engine {
+impl<'p, P: Play> Engine<'p, P> {
     /// An engine at rest at the start of the scenario.
     #[must_use]
-    pub fn new(scenario: Scenario, asks: Receiver<Ask>, scenes: watch::Sender<Arc<str>>) -> Self {
-        let (fleet, own) = (scenario.fleet(), scenario.events.clone());
-        Self { scenario, fleet, events: own.clone(), own, is_playing: true, pace: 1.0, asks, scenes }
+    pub fn new(play: &'p P, asks: Receiver<Ask>, scenes: watch::Sender<Arc<str>>) -> Self {
+        let (snapshots, events) = (Snapshots::of_period(play.period_s()), play.events().to_vec());
+        Self { play, snapshots, events, is_playing: true, pace: 1.0, asks, scenes }
     }
 
     /// Drives the world until the program is to end. Returns the events, and the number of ticks.
@@ -68,21 +71,39 @@ impl Engine {
     /// # Errors
     /// A configuration that the units refuse, and errors of the buses.
     pub fn run(mut self, end: &Interruption) -> io::Result<(Vec<Event>, u64)> {
-        let mut until = 0;
+        let (mut stage, mut until) = (self.play.begin(&self.events)?, 0);
         loop {
-            let scenario = Scenario { events: self.events.clone(), ..self.scenario.clone() };
-            let mut stage = Stage::new(&scenario)?;
             match self.play(&mut stage, until, end)? {
-                Cut::Again(ticks) => until = ticks,
+                Cut::Back(ticks) => {
+                    until = ticks;
+                    stage = match self.snapshots.before(ticks) {
+                        Some(mut stage) => {
+                            stage.expect(&self.events);
+                            stage
+                        }
+                        None => self.play.begin(&self.events)?,
+                    };
+                }
+                Cut::Anew(ticks) => {
+                    until = ticks;
+                    self.snapshots.clear();
+                    stage = self.play.begin(&self.events)?;
+                }
                 Cut::End => return Ok((self.so_far(&stage), stage.ticks())),
             }
         }
     }
 
-    fn play(&mut self, stage: &mut Stage<'_>, until: u64, end: &Interruption) -> io::Result<Cut> {
+    fn step(&mut self, stage: &mut P::Stage<'p>) -> io::Result<()> {
+        stage.step()?;
+        self.snapshots.note(stage);
+        Ok(())
+    }
+
+    fn play(&mut self, stage: &mut P::Stage<'p>, until: u64, end: &Interruption) -> io::Result<Cut> {
         let mut shown = Instant::now();
         while stage.ticks() < until.max(1) {
-            stage.step()?;
+            self.step(stage)?;
             if shown.elapsed() > 4 * SCENE_EVERY {
                 shown = Instant::now();
                 self.show(stage, 0.0);
@@ -92,7 +113,7 @@ impl Engine {
             }
         }
         self.show(stage, self.pace);
-        let period_s = self.scenario.period_s;
+        let period_s = self.play.period_s();
         let (mut clock, mut due_s, mut rate) = (Instant::now(), 0.0, Rate::new(stage.ticks()));
         while !end.is_asked() {
             let passed_s = clock.elapsed().as_secs_f64();
@@ -100,7 +121,7 @@ impl Engine {
             self.is_playing &= !stage.is_over();
             due_s = if self.is_playing { due_s + passed_s * self.pace } else { 0.0 };
             while due_s >= period_s && clock.elapsed() < HEAR_EVERY && !stage.is_over() {
-                stage.step()?;
+                self.step(stage)?;
                 due_s -= period_s;
             }
             due_s = due_s.min(MOST_BEHIND_S.max(period_s));
@@ -124,7 +145,7 @@ impl Engine {
         Ok(Cut::End)
     }
 
-    fn answer(&mut self, stage: &mut Stage<'_>, ask: Ask) -> io::Result<Option<Cut>> {
+    fn answer(&mut self, stage: &mut P::Stage<'p>, ask: Ask) -> io::Result<Option<Cut>> {
         // A page that has gone does not wait for its answer.
         match ask {
             Ask::Journal(to) => {
@@ -135,7 +156,7 @@ impl Engine {
             }
             Ask::Do(order, to) => match order.event(stage.next_s()) {
                 Some(event) => {
-                    let checked = event.check(&self.fleet);
+                    let checked = self.play.check(&event).and_then(|()| is_there(stage, &event));
                     let is_possible = checked.is_ok();
                     let _ = to.send(checked);
                     return Ok(if is_possible { self.change(stage, event) } else { None });
@@ -152,17 +173,17 @@ impl Engine {
     }
 
     /// An event happens at the next tick; what was to happen later, after a way back, does not.
-    fn change(&mut self, stage: &mut Stage<'_>, event: Event) -> Option<Cut> {
-        let has_twins = stage.has_twins();
+    fn change(&mut self, stage: &mut P::Stage<'p>, event: Event) -> Option<Cut> {
+        let has_twins = stage.has_twins(event.vehicle);
         self.events = self.so_far(stage);
         self.events.push(event);
         stage.add(event);
         let needs_twins = matches!(event.change, Change::Switch(Part::Envelope, _));
         // The run is then the same, with a second unit in every vehicle that was ready from its beginning.
-        (needs_twins && !has_twins).then_some(Cut::Again(stage.ticks()))
+        (needs_twins && !has_twins).then_some(Cut::Anew(stage.ticks()))
     }
 
-    fn steer(&mut self, stage: &mut Stage<'_>, order: Order) -> io::Result<Option<Cut>> {
+    fn steer(&mut self, stage: &mut P::Stage<'p>, order: Order) -> io::Result<Option<Cut>> {
         match order {
             Order::Pause {} => self.is_playing = false,
             Order::Play {} => self.is_playing = true,
@@ -171,17 +192,17 @@ impl Engine {
                 self.is_playing = false;
                 for _ in 0..ticks {
                     if !stage.is_over() {
-                        stage.step()?;
+                        self.step(stage)?;
                     }
                 }
             }
             Order::Back { seconds } => {
-                let ticks = (seconds / self.scenario.period_s).round() as u64;
-                return Ok(Some(Cut::Again(stage.ticks().saturating_sub(ticks))));
+                let ticks = (seconds / self.play.period_s()).round() as u64;
+                return Ok(Some(Cut::Back(stage.ticks().saturating_sub(ticks))));
             }
             Order::Restart {} => {
-                self.events.clone_from(&self.own);
-                return Ok(Some(Cut::Again(0)));
+                self.events = self.play.events().to_vec();
+                return Ok(Some(Cut::Anew(0)));
             }
             _ => {}
         }
@@ -189,7 +210,7 @@ impl Engine {
     }
 
     /// The events that have happened.
-    fn so_far(&self, stage: &Stage<'_>) -> Vec<Event> {
+    fn so_far(&self, stage: &P::Stage<'p>) -> Vec<Event> {
         let next_s = stage.next_s();
         let has_happened = |event: &&Event| event.at_s < next_s - 1e-9 || stage.ticks() == 0;
         // What is due at the next tick has been decided too.
@@ -197,16 +218,25 @@ impl Engine {
         self.events.iter().filter(|event| has_happened(event) || is_due(event)).copied().collect()
     }
 
-    fn show(&self, stage: &Stage<'_>, rate: f64) {
+    fn show(&self, stage: &P::Stage<'p>, rate: f64) {
         let events = [self.so_far(stage).len(), self.events.len()];
-        let scene = stage.scene(self.is_playing, [self.pace, rate], events);
-        if let Some(text) = text(&scene) {
+        let rate = rounded(rate);
+        let pulse = Pulse { ticks: stage.ticks(), is_playing: self.is_playing, pace: self.pace, rate, events };
+        if let Some(text) = text(&stage.scene(&pulse)) {
             self.scenes.send_replace(text);
         }
     }
 }
 
-fn text(value: &impl Serialize) -> Option<Arc<str>> {
+/// Whether the vehicle that an event is of is there now.
+fn is_there(stage: &impl Stage, event: &Event) -> Result<(), Error> {
+    let absent = event.vehicle.filter(|vehicle| !stage.has(*vehicle));
+    let cause = |vehicle: usize| format!("vehicle {vehicle} is not on the road now");
+    absent.map_or(Ok(()), |vehicle| Err(Error::new(cause(vehicle), "choose one that the page shows")))
+}
+
+/// As JSON.
+pub(super) fn text(value: &impl Serialize) -> Option<Arc<str>> {
     serde_json::to_string(value).ok().map(Arc::from)
 }
 

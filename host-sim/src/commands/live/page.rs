@@ -20,5 +20,7 @@ pub const FILES: &[File] = files![
     "/drive.js" "text/javascript; charset=utf-8" "drive.js",
     "/frames.js" "text/javascript; charset=utf-8" "frames.js",
     "/tour.js" "text/javascript; charset=utf-8" "tour.js",
+    "/map.js" "text/javascript; charset=utf-8" "map.js",
+    "/roads.js" "text/javascript; charset=utf-8" "roads.js",
     "/view.js" "text/javascript; charset=utf-8" "view.js",
 ];

@@ -1,5 +1,7 @@
 //! What the page is told: the world as it is at a tick, as JSON. Lengths are in metres, times in seconds, of the run.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use crate::sim::world::TargetBelief;
@@ -9,6 +11,18 @@ use crate::sim::world::TargetBelief;
 pub struct Scene {
     /// Time of the run.
     pub at_s: f64,
+    /// How time goes on.
+    #[serde(flatten)]
+    pub pulse: Pulse,
+    /// The largest errors of the measured vehicle since the link has settled: of the units, and of the literal paper.
+    pub largest_error_m: [Option<f64>; 2],
+    /// The vehicles.
+    pub vehicles: Vec<Seen>,
+}
+
+/// How time goes on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Pulse {
     /// Number of ticks so far.
     pub ticks: u64,
     /// Whether time goes on.
@@ -19,16 +33,14 @@ pub struct Scene {
     pub rate: f64,
     /// Number of things that were driven and changed up to now, and later.
     pub events: [usize; 2],
-    /// The largest errors of the measured vehicle since the link has settled: of the units, and of the literal paper.
-    pub largest_error_m: [Option<f64>; 2],
-    /// The vehicles.
-    pub vehicles: Vec<Seen>,
 }
 
 /// A vehicle at a tick.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Seen {
-    /// Front bumper.
+    /// Its index: its place in the string, or in a corridor the index of its trip.
+    pub id: usize,
+    /// Front bumper, along the lane or along its road.
     pub position_m: f64,
     /// Speed.
     pub speed_mps: f64,
@@ -60,12 +72,36 @@ pub struct Seen {
     pub paper_m: Option<f64>,
     /// Where the newest message puts the vehicle ahead.
     pub newest_m: Option<f64>,
+    /// In a corridor.
+    #[serde(flatten)]
+    pub way: Option<Way>,
+}
+
+/// A vehicle in a corridor.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Way {
+    /// Its road.
+    pub road: usize,
+    /// Its kind, by which the cast tells its length and what it is capable of.
+    pub kind: &'static str,
+    /// Whether it is beyond the end of its way.
+    pub has_left: bool,
+    /// The intersection that its unit takes for the next one.
+    pub next: Option<usize>,
+    /// Its place in the order there, from 1 on, as it tells the others; none before it has arrived.
+    pub place: Option<usize>,
+    /// Distance from its front to the crossing point there.
+    pub to_m: Option<f64>,
+    /// The vehicle that its unit follows, or yields to.
+    pub follows: Option<usize>,
 }
 
 /// A vehicle as its follower believes it to be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ghost {
-    /// Front bumper.
+    /// Which vehicle that is.
+    pub of: usize,
+    /// Front bumper, along that vehicle's own road.
     pub position_m: f64,
     /// Speed.
     pub speed_mps: f64,
@@ -80,8 +116,9 @@ pub struct Ghost {
 impl Ghost {
     /// The belief beside the truth.
     #[must_use]
-    pub fn of(belief: &TargetBelief, true_m: f64) -> Self {
+    pub fn of(belief: &TargetBelief, of: usize, true_m: f64) -> Self {
         Self {
+            of,
             position_m: rounded(belief.position_m),
             speed_mps: rounded(belief.speed_mps),
             age_s: rounded(belief.age_s),
@@ -106,7 +143,7 @@ pub struct Cast {
     pub seed: u64,
     /// Period of the ticks.
     pub period_s: f64,
-    /// Index of the vehicle that the figures are about.
+    /// Index of the vehicle that the figures are about. In a corridor it may be still to come.
     pub ego: usize,
     /// Delay and loss of the links at the start; nothing for a recorded channel.
     pub radio: Option<[f64; 3]>,
@@ -114,8 +151,46 @@ pub struct Cast {
     pub has_envelope: bool,
     /// Whether the leader drives a recording, so that nobody can take it over.
     pub is_recorded: bool,
-    /// The vehicles.
+    /// The vehicles; none in a corridor, where they come and go.
     pub vehicles: Vec<Role>,
+    /// The vehicle that a device drives, in real time.
+    pub device: Option<usize>,
+    /// The corridor, if it is one.
+    #[serde(flatten)]
+    pub map: Option<Map>,
+}
+
+/// The roads of a corridor. Places are in metres to the east and to the north of the beginning of the first road.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Map {
+    /// The roads.
+    pub roads: Vec<Street>,
+    /// The intersections.
+    pub intersections: Vec<Square>,
+    /// The kinds of vehicles, by name.
+    pub kinds: BTreeMap<&'static str, Role>,
+}
+
+/// A road.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Street {
+    /// Its name.
+    pub name: String,
+    /// Its corners: the distance along it, east, north.
+    pub points: Vec<[f64; 3]>,
+    /// Where vehicles appear, and where their way ends, along it.
+    pub ends_m: [f64; 2],
+}
+
+/// An intersection.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Square {
+    /// Its name.
+    pub name: String,
+    /// Half the length of its conflict area, along every road.
+    pub half_m: f64,
+    /// For each leg its road, and the distance along it to the crossing point.
+    pub legs: Vec<(usize, f64)>,
 }
 
 /// A vehicle of the cast.

@@ -159,6 +159,10 @@ async fn scenario(State(desk): State<Desk>) -> Result<Response, Refused> {
 
 /// The log of a bus from the beginning: the run is played once more beside the one that goes on.
 async fn candump(State(desk): State<Desk>, Query(which): Query<Which>) -> Result<Response, Refused> {
+    if desk.archive.is_device(which.vehicle) {
+        let cause = "a device drives this vehicle; log its bus with `holdover-sim record --bus INTERFACE`";
+        return Err((StatusCode::CONFLICT, cause.into()));
+    }
     let (events, ticks) = desk.ask(Ask::Journal).await?;
     let archive = Arc::clone(&desk.archive);
     let played = tokio::task::spawn_blocking(move || archive.candump(events, ticks, which.vehicle)).await;

@@ -96,12 +96,17 @@ impl Fleet {
         let sensors = vehicles.iter().map(|vehicle| vehicle.range_sensor.is_some()).collect();
         Self { sensors, is_recorded: leader.motion.is_some() }
     }
+
+    /// Vehicles that all may be driven. For each, whether it has a range sensor.
+    pub(crate) fn fitted(sensors: Vec<bool>) -> Self {
+        Self { sensors, is_recorded: false }
+    }
 }
 
 /// Reads the sections of a scenario with these vehicles.
-pub(super) fn read(document: &Document, top: &mut Section, fleet: &Fleet) -> Result<Vec<Event>, Error> {
+pub(crate) fn read(document: &Document, sections: Vec<Section>, fleet: &Fleet) -> Result<Vec<Event>, Error> {
     let mut events: Vec<Event> = Vec::new();
-    for section in top.sections("event")?.unwrap_or_default() {
+    for section in sections {
         let line = section.line();
         let event = event(document, section, fleet.sensors.len())?;
         if events.last().is_some_and(|last| last.at_s > event.at_s) {
@@ -142,7 +147,7 @@ fn event(document: &Document, mut section: Section, vehicles: usize) -> Result<E
     let named = vehicle.map(|found| (found.line, usize::try_from(found.value).unwrap_or(usize::MAX)));
     if let Some((line, index)) = named.filter(|(_, index)| *index >= vehicles) {
         let cause = format!("an event is of vehicle {index}, and there is none");
-        return Err(document.error_at(line, cause, format!("give an index from 0 to {}", vehicles - 1)));
+        return Err(document.error_at(line, cause, format!("give an index from 0 to {}", vehicles.saturating_sub(1))));
     }
     Ok(Event { at_s: at.value, vehicle: named.map(|(_, index)| index), change })
 }

@@ -15,6 +15,8 @@ use crate::error::Error;
 
 /// A run is no shorter than this, in seconds.
 const SHORTEST_S: f64 = 2.0;
+/// In a corridor vehicles arrive for no shorter time than this.
+const SHORTEST_CORRIDOR_S: f64 = 10.0;
 
 /// The text. Of the overrides the seed and what is set count. Recordings are named by their whole paths.
 ///
@@ -33,7 +35,9 @@ pub fn text(
     if let Some(seed) = overrides.seed {
         table.insert("seed".into(), Value::Integer(i64::try_from(seed).map_err(|_| too_large(seed))?));
     }
-    table.insert("duration_s".into(), Value::Float(duration_s.max(SHORTEST_S)));
+    let is_corridor = table.get("kind").and_then(Value::as_str) == Some("corridor");
+    let shortest_s = if is_corridor { SHORTEST_CORRIDOR_S } else { SHORTEST_S };
+    table.insert("duration_s".into(), Value::Float(duration_s.max(shortest_s)));
     for (section, key) in [("leader", "motion"), ("channel", "trace")] {
         let named = table.get_mut(section).and_then(|section| section.get_mut(key));
         if let Some(Value::String(path)) = named {

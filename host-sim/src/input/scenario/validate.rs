@@ -64,7 +64,8 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let bus = bus::read(top.section("bus")?)?;
-    let events = event::read(&document, &mut top, &Fleet::of(&vehicles, &leader))?;
+    let events = top.sections("event")?.unwrap_or_default();
+    let events = event::read(&document, events, &Fleet::of(&vehicles, &leader))?;
     top.finish()?;
 
     if rate.value * period.value > 1.0 {

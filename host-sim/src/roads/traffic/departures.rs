@@ -63,6 +63,7 @@ impl Traffic<'_> {
         for (index, traveller) in &mut self.travellers {
             if !traveller.has_left() && beyond_m(traveller) >= 0.0 {
                 traveller.left_s = Some(at_s);
+                traveller.vehicle.let_go(); // nobody drives on beyond the end of the way, where nobody else would pass
                 watches.iter_mut().for_each(|watch| watch.left(at_s + self.corridor.period_s, *index));
             }
         }

@@ -9,6 +9,7 @@ use crate::sim::station::STATIONS as NUMBERS;
 const RESTS_S: f64 = 60.0;
 
 /// The station numbers.
+#[derive(Clone)]
 pub(super) struct Numbers {
     /// For each number, the time from which it is free.
     free_s: [f64; NUMBERS],

@@ -32,6 +32,12 @@ impl Changes {
         }
     }
 
+    /// Forgets what was changed for a vehicle that has gone.
+    pub fn forget(&mut self, vehicle: usize) {
+        self.radios.retain(|(other, _)| *other != Some(vehicle));
+        self.outages.retain(|(other, _)| *other != Some(vehicle));
+    }
+
     /// Delay and loss of a link, if they were changed.
     #[must_use]
     pub fn radio(&self, link: Link) -> Option<Radio> {

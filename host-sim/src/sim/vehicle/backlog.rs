@@ -10,7 +10,7 @@ use crate::bus::Frame;
 use crate::sim::modem::V2xMessage;
 
 /// The messages that wait, by the station's number.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Backlog {
     /// The last frame of the message that was sent last.
     sent: BTreeMap<u8, Frame>,

@@ -3,9 +3,12 @@
 
 use holdover::ConfigError;
 use holdover::config::Envelope;
+use holdover::coordination::{Itinerary, MapError, standstill_behind};
 use holdover::time::Instant;
+use holdover::units::Position;
 use holdover::wire::Predecessor;
 use holdover::wire::command::ModeCode;
+use holdover::wire::motion::WirePosition;
 
 use super::{Unit, Vehicle};
 use crate::bus::Frame;
@@ -15,7 +18,7 @@ use crate::sim::quantities::metres;
 use crate::sim::time::{EPOCH_US, gnss};
 
 /// What is done to a vehicle.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Intervention {
     hands: Hands,
     /// Whether the driver's request is to be sent before its time.
@@ -59,6 +62,18 @@ impl Intervention {
     /// Whether the driver's request has changed since this was asked for the last time.
     pub fn asks_anew(&mut self) -> bool {
         std::mem::take(&mut self.asks)
+    }
+
+    /// The twin gets the map.
+    pub fn set_out(&mut self, itinerary: &'static Itinerary) -> Result<(), MapError> {
+        self.twin.as_mut().map_or(Ok(()), |twin| twin.set_out(itinerary))
+    }
+
+    /// Whose hands it is in when the unit drives.
+    fn hand_back(&mut self, mode: ModeCode) {
+        if matches!(self.hands, Hands::Given(_)) && mode != ModeCode::Standby {
+            self.hands = Hands::Units;
+        }
     }
 
     /// The twin hears a frame.
@@ -144,9 +159,7 @@ impl Vehicle {
     /// After the unit's tick: the hands that have let go are gone when the unit drives, and without the estimate the newest message is
     /// what there is of the vehicle ahead, which is so long.
     pub fn intervene(&mut self, ahead_length_m: f64, period_s: f64) {
-        if matches!(self.intervention.hands, Hands::Given(_)) && self.mode != ModeCode::Standby {
-            self.intervention.hands = Hands::Units;
-        }
+        self.intervention.hand_back(self.mode);
         if !self.intervention.is_plain || !self.engaged {
             return;
         }
@@ -157,6 +170,47 @@ impl Vehicle {
         let wanted_mps2 = limited(config, desired_mps2, last_mps2, period_s);
         self.intervention.demand_mps2 = wanted_mps2;
         self.override_with(wanted_mps2);
+    }
+
+    /// The same on a way through intersections. The vehicle ahead is the one that the unit follows, where its newest message puts it on the
+    /// own way. Behind a vehicle that crosses, the law keeps the length of the conflict area. Without a vehicle ahead the unit drives.
+    pub fn intervene_on_way(&mut self, period_s: f64) {
+        self.intervention.hand_back(self.mode);
+        let last_mps2 = std::mem::replace(&mut self.intervention.demand_mps2, self.command_mps2);
+        let Some((newest, length_m)) = self.newest_ahead().filter(|_| self.intervention.is_plain && self.engaged)
+        else {
+            return;
+        };
+        let mut config = *self.unit.config();
+        let coordination = self.unit.coordination();
+        let target = coordination.choice().target.and_then(|slot| coordination.approach(slot.into()));
+        if let (Some(crossing), Some(target)) = (coordination.crossing(), target) {
+            config.law.standstill = standstill_behind(config.law.standstill, crossing, target.leg);
+        }
+        let desired_mps2 = desired(&config, length_m, (self.plant.position_m, self.plant.speed_mps), Some(newest));
+        let wanted_mps2 = limited(&config, desired_mps2, last_mps2, period_s);
+        self.intervention.demand_mps2 = wanted_mps2;
+        self.override_with(wanted_mps2);
+    }
+
+    /// The newest message of the vehicle that the unit follows, as the unit places it on the own axis, and the length of that vehicle.
+    #[must_use]
+    pub fn newest_ahead(&self) -> Option<(Sample, f64)> {
+        let track = self.unit.peers().get(self.unit.coordination().choice().target?.into())?;
+        let newest = track.newest()?;
+        let sample = Sample {
+            at_s: self.time_of(newest.at),
+            position_m: self.near(newest.position),
+            speed_mps: newest.speed.get().to_num(),
+            demand_mps2: newest.demand.get().to_num(),
+        };
+        Some((sample, track.length().get().to_num()))
+    }
+
+    /// A position of the unit's axis, near the vehicle.
+    #[must_use]
+    pub fn near(&self, position: Position) -> f64 {
+        WirePosition::from_position(position).nearest_to(metres(self.plant.position_m)).get().to_num()
     }
 
     /// Notes the motion in a message, if the vehicle follows its sender.

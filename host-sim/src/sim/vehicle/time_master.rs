@@ -38,6 +38,11 @@ impl TimeMaster {
         Self { bus: bus.clone(), node: bus.sender(), sequence: 0, pending: None, is_awake: false, ahead_s: 0.0 }
     }
 
+    /// The same time master on a copy of its bus.
+    pub fn beside(&self, copy: &MemoryBus) -> Self {
+        Self { bus: copy.clone(), node: self.node.on(copy), ..*self }
+    }
+
     /// Whether it has sent anything on the bus.
     pub fn is_awake(&self) -> bool {
         self.is_awake

@@ -17,6 +17,27 @@ impl World<'_> {
         self.events.push(event);
     }
 
+    /// The same world with other events, before it has begun.
+    ///
+    /// # Errors
+    /// A configuration that the units refuse.
+    pub fn with_events(mut self, events: Vec<Event>) -> Result<Self, ConfigError> {
+        self.events = events;
+        self.fit_twins()?;
+        Ok(self)
+    }
+
+    /// From now on these events happen, the first of which are those that have happened.
+    pub fn expect(&mut self, events: &[Event]) {
+        self.events = events.to_vec();
+    }
+
+    /// The same world without the record of what its channel does.
+    #[must_use]
+    pub fn unrecorded(self) -> Self {
+        Self { air: self.air.unrecorded(), ..self }
+    }
+
     /// Whether every message of the vehicle ahead that is sent now is lost on its way to this one.
     #[must_use]
     pub fn is_in_silence(&self, index: usize, at_s: f64) -> bool {

@@ -24,9 +24,10 @@ export function drive(state) {
     const at = pedal();
     if (driven === null) {
       if (at === 0) return;
+      if (state.chosen === null) return; // the roads are empty
       driven = state.chosen;
     }
-    const role = state.cast.vehicles[driven];
+    const role = state.role(driven);
     const mps2 = Math.round((at >= 0 ? at * role.most_mps2 : at * role.braking_mps2) * 20) / 20;
     if (mps2 === asked) return;
     asked = mps2;
@@ -95,7 +96,7 @@ export function drive(state) {
   return {
     // A vehicle that someone else has taken, or let go, or a way back: the engine is right.
     take(scene) {
-      if (driven !== null && asked !== null && !scene.vehicles[driven].is_driven && performance.now() - (this.since ?? 0) > 500) forget();
+      if (driven !== null && asked !== null && !scene.byId.get(driven)?.is_driven && performance.now() - (this.since ?? 0) > 500) forget();
       if (driven === null) this.since = performance.now();
     },
     rewind() {

@@ -3,6 +3,7 @@
 import { drive } from "./drive.js";
 import { frames } from "./frames.js";
 import { get, listen, order } from "./link.js";
+import { map } from "./map.js";
 import { plots } from "./plots.js";
 import { road } from "./scene.js";
 import { tour } from "./tour.js";
@@ -14,42 +15,92 @@ const cast = await (await get("/cast")).json();
 // What every part of the page looks at.
 const state = {
   cast,
-  chosen: cast.ego,
+  isRoad: Boolean(cast.roads),
+  chosen: cast.roads ? null : cast.ego,
   scene: null, // the newest one
   scenes: [], // the last ones, for smooth motion
   shownS: 0, // the time that is drawn
+  // What stays the same of a vehicle.
+  role(id) {
+    if (!cast.roads) return cast.vehicles[id];
+    const known = kinds.get(id) ?? "car";
+    return { ...cast.kinds[known], name: `${id} (${known})` };
+  },
 };
+const kinds = new Map(); // of the vehicles that are there
 
 byId("title").textContent = `live: ${cast.title}, seed ${cast.seed}`;
+document.body.classList.toggle("is-road", state.isRoad);
+if (state.isRoad) {
+  byId("roster-said").textContent = "The vehicles on the roads. Choose one with its button, with n and p, or on the map.";
+  byId("lane").setAttribute("aria-label", "the virtual lane of an intersection: all legs by the distance to the crossing point");
+  byId("follows").checked = false;
+}
+
+// Beside a device time is the device's.
+const hasDevice = cast.device != null;
+if (hasDevice) {
+  for (const id of ["play", "step", "back", "restart", "pace", "envelope"]) byId(id).disabled = true;
+  byId("title").textContent += `, with a device as vehicle ${cast.vehicles[cast.device].name}`;
+  byId("save").hidden = true;
+}
 
 // Choosing a vehicle.
-const rows = cast.vehicles.map((role, index) => {
+const rows = new Map();
+function rowOf(id) {
+  if (rows.has(id)) return rows.get(id);
   const row = byId("vehicles").insertRow();
   const head = document.createElement("th");
   head.scope = "row";
   const button = document.createElement("button");
-  button.textContent = role.name;
-  button.onclick = () => choose(index);
+  button.textContent = state.role(id).name;
+  button.onclick = () => choose(id);
   head.append(button);
   row.append(head);
-  for (let cell = 0; cell < 7; cell++) row.insertCell();
+  for (let cell = 0; cell < 9; cell++) row.insertCell().classList.toggle("of-road", cell < 2);
+  rows.set(id, row);
   return row;
-});
+}
 const of = byId("of");
 of.add(new Option("all vehicles", ""));
-cast.vehicles.forEach((role, index) => of.add(new Option(`vehicle ${role.name}`, index)));
+if (state.isRoad) of.add(new Option("the chosen vehicle", "chosen"));
+else cast.vehicles.forEach((role, index) => of.add(new Option(`vehicle ${role.name}`, index)));
 
 const listeners = [];
-export function choose(index) {
-  if (index < 0 || index >= rows.length) return;
-  state.chosen = index;
+export function choose(id) {
+  if (id !== null && !rows.has(id)) return;
+  state.chosen = id;
   rows.forEach((row, other) => {
-    row.classList.toggle("is-chosen", other === index);
-    row.querySelector("button").setAttribute("aria-pressed", other === index);
+    row.classList.toggle("is-chosen", other === id);
+    row.querySelector("button").setAttribute("aria-pressed", other === id);
   });
-  document.querySelectorAll(".chosen").forEach((one) => (one.textContent = `vehicle ${cast.vehicles[index].name}`));
-  byId("record").href = `/bus.log?vehicle=${index}`;
+  const name = id === null ? "no vehicle yet" : `vehicle ${state.role(id).name}`;
+  document.querySelectorAll(".chosen").forEach((one) => (one.textContent = name));
+  byId("record").href = `/bus.log?vehicle=${id ?? 0}`;
   listeners.forEach((tell) => tell());
+}
+function chooseNext(by) {
+  const ids = [...rows.keys()];
+  if (ids.length) choose(ids[(ids.indexOf(state.chosen) + by + ids.length) % ids.length]);
+}
+// Vehicles come and go. Who looks on at one that goes looks on at the one behind it, or at any.
+function attend(scene) {
+  scene.byId = new Map(scene.vehicles.map((seen) => [seen.id, seen]));
+  for (const seen of scene.vehicles) {
+    if (state.isRoad) kinds.set(seen.id, seen.kind);
+    else seen.follows = seen.id > 0 ? seen.id - 1 : null;
+    rowOf(seen.id);
+  }
+  for (const [id, row] of rows) {
+    if (scene.byId.has(id)) continue;
+    row.remove();
+    rows.delete(id);
+    kinds.delete(id);
+  }
+  if (scene.byId.has(state.chosen)) return;
+  const behind = scene.vehicles.find((seen) => seen.follows === state.chosen && state.chosen !== null);
+  const next = behind ?? scene.vehicles.find((seen) => !seen.has_left) ?? scene.vehicles[0];
+  if (next || state.chosen !== null) choose(next?.id ?? null);
 }
 
 // Time.
@@ -62,7 +113,7 @@ byId("restart").onclick = () => order({ do: "restart" });
 byId("pace").onchange = (event) => order({ do: "pace", factor: Number(event.target.value) });
 
 // The links.
-const whom = () => (of.value === "" ? null : Number(of.value));
+const whom = () => (of.value === "" ? null : of.value === "chosen" ? state.chosen : Number(of.value));
 const sliders = { delay: "s", spread: "s", loss: "" };
 const radio = cast.radio ?? [0, 0, 0];
 Object.keys(sliders).forEach((id, place) => {
@@ -91,7 +142,7 @@ byId("heal").onclick = () => order({ do: "outage", vehicle: whom(), seconds: 0 }
 // What was switched here a moment ago stands until the engine shows it.
 const switchedAt = {};
 byId("envelope").checked = cast.has_envelope;
-byId("range_sensor").checked = cast.vehicles.some((role) => role.has_sensor);
+byId("range_sensor").checked = (state.isRoad ? Object.values(cast.kinds) : cast.vehicles).some((role) => role.has_sensor);
 byId("range_sensor").disabled = !byId("range_sensor").checked;
 for (const part of ["holdover", "envelope", "range_sensor"]) {
   byId(part).onchange = async (event) => {
@@ -102,7 +153,7 @@ for (const part of ["holdover", "envelope", "range_sensor"]) {
 }
 // Somebody else may have switched, and time may have gone back.
 function tellSwitches(scene) {
-  const some = scene.vehicles.filter((_, index) => index > 0 && (whom() ?? index) === index);
+  const some = scene.vehicles.filter((seen) => (state.isRoad || seen.id > 0) && (whom() ?? seen.id) === seen.id);
   const is = { holdover: (seen) => !seen.is_plain, envelope: (seen) => seen.has_envelope, range_sensor: (seen) => seen.sees };
   if (!some.length) return;
   for (const [part, on] of Object.entries(is)) {
@@ -118,24 +169,29 @@ addEventListener("keydown", (event) => {
   const keys = {
     ".": () => order({ do: "step", ticks: 1 }),
     b: back,
+    n: () => chooseNext(1),
+    p: () => chooseNext(-1),
     r: () => order({ do: "restart" }),
     o: silence,
     "+": () => view.zoom(1.25),
     "-": () => view.zoom(0.8),
     ArrowLeft: () => view.pan(-0.1),
     ArrowRight: () => view.pan(0.1),
+    PageUp: () => view.pan(0, 0.1),
+    PageDown: () => view.pan(0, -0.1),
   };
   if (!onButton) keys[" "] = toggle;
-  if (/^\d$/.test(event.key)) choose(Number(event.key));
+  if (/^\d$/.test(event.key)) choose(state.isRoad ? [...rows.keys()][Number(event.key)] ?? state.chosen : Number(event.key));
   else if (keys[event.key]) keys[event.key]();
   else return;
   event.preventDefault();
 });
 
 const parts = [];
-const view = road(state, choose);
+const view = state.isRoad ? map(state, choose) : road(state, choose);
 parts.push(view, plots(state, (tell) => listeners.push(tell)), drive(state), frames(state), tour(state), ride(state));
-choose(cast.ego);
+if (!state.isRoad) cast.vehicles.forEach((_, index) => rowOf(index));
+choose(state.chosen);
 
 function tell(scene) {
   byId("clock").textContent = `${scene.at_s.toFixed(2)} s`;
@@ -143,24 +199,31 @@ function tell(scene) {
   byId("pace").value = scene.pace;
   tellSwitches(scene);
   const number = (value, digits) => (value == null ? "–" : value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1"));
-  scene.vehicles.forEach((seen, index) => {
+  scene.vehicles.forEach((seen) => {
     const target = seen.target;
     const width = target?.bound_m ? target.bound_m[1] - target.bound_m[0] : null;
     const mode = seen.is_driven ? "driven by you" : seen.is_plain ? "without estimate" : seen.mode;
+    // Behind one that crosses, the gap on the virtual lane may be below 0 where the roads are apart.
+    const hasHit = seen.gap_m < 0 && seen.road === scene.byId.get(seen.follows)?.road;
+    const at = seen.next == null ? "" : ` at ${cast.intersections[seen.next].name}`;
     const cells = [
+      state.isRoad ? cast.roads[seen.road].name : "", seen.has_left ? "left" : (seen.place ?? "–") + at,
       number(seen.speed_mps, 1), number(seen.gap_m, 1), mode + (seen.is_limited ? ", limited" : ""),
-      number(target?.error_m, 2), number(width, 2), number(target?.age_s, 1), index === 0 ? "–" : seen.is_silent ? "silent" : "on",
+      number(target?.error_m, 2), number(width, 2), number(target?.age_s, 1), !state.isRoad && seen.id === 0 ? "–" : seen.is_silent ? "silent" : "on",
     ];
     cells.forEach((text, place) => {
-      const cell = rows[index].cells[place + 1];
+      const cell = rows.get(seen.id).cells[place + 1];
       if (cell.textContent !== text) cell.textContent = text;
-      cell.classList.toggle("is-bad", text === "silent" || (place === 1 && seen.gap_m < 0));
+      cell.classList.toggle("is-bad", text === "silent" || (place === 3 && hasHit));
     });
   });
 }
 
 let told = 0;
+let heard = 0;
 listen((scene) => {
+  heard += 1;
+  attend(scene);
   const before = state.scene;
   if (!before || scene.ticks < before.ticks) {
     state.scenes = [];
@@ -195,5 +258,5 @@ function draw(now) {
 }
 requestAnimationFrame(draw);
 // For those who measure, and for the tour.
-globalThis.holdover = { state, choose, frames: () => drawn };
+globalThis.holdover = { state, choose, frames: () => drawn, heard: () => heard };
 document.documentElement.dataset.ready = "yes";

@@ -4,19 +4,22 @@ import { colours, prepare } from "./scene.js";
 
 const SPAN_S = 20;
 
-const error = (place) => (seen, scene, index) => {
-  const truth = scene.vehicles[index - 1]?.position_m;
+const error = (place) => (seen, scene) => {
+  const truth = scene.byId.get(seen.follows)?.position_m;
   if (truth == null) return null;
   return place === "ours" ? seen.target?.error_m : seen.paper_m == null ? null : seen.paper_m - truth;
 };
-const ahead = (of) => (seen, scene, index) => (index > 0 ? of(scene.vehicles[index - 1]) : null);
+const ahead = (of) => (seen, scene) => {
+  const other = scene.byId.get(seen.follows);
+  return other ? of(other) : null;
+};
 
 // Each line: a colour, and a figure of a vehicle in a scene.
 const PLOTS = [
   { name: "position error of the vehicle ahead", unit: "m", least: 0.2, about: 0,
     lines: [["paper", error("paper")], ["ours", error("ours")]],
-    band: (seen, scene, index) => {
-      const truth = scene.vehicles[index - 1]?.position_m;
+    band: (seen, scene) => {
+      const truth = scene.byId.get(seen.target?.of)?.position_m;
       return seen.target?.bound_m && truth != null ? seen.target.bound_m.map((end) => end - truth) : null;
     } },
   { name: "gap", unit: "m", least: 2, lines: [["ours", (seen) => seen.gap_m]] },
@@ -49,10 +52,14 @@ export function plots(state, onChoice) {
 
   function drawOne(plot, { caption, canvas }) {
     const [paint, width, height] = prepare(canvas);
-    const [untilS, index] = [past.at(-1).at_s, state.chosen];
+    const untilS = past.at(-1).at_s;
+    const figure = (of) => (scene) => {
+      const seen = scene.byId.get(state.chosen);
+      return seen ? of(seen, scene) : null; // it was not there yet
+    };
     const x = (atS) => width - ((untilS - atS) / SPAN_S) * width;
-    const series = plot.lines.map(([colour, of]) => [colour, past.map((scene) => of(scene.vehicles[index], scene, index))]);
-    const bands = plot.band ? past.map((scene) => plot.band(scene.vehicles[index], scene, index)) : [];
+    const series = plot.lines.map(([colour, of]) => [colour, past.map(figure(of))]);
+    const bands = plot.band ? past.map(figure(plot.band)) : [];
     const values = [...series.flatMap(([, line]) => line), ...bands.flat()].filter((value) => value != null);
     let [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 1];
     if (plot.about != null) [low, high] = [Math.min(low, plot.about), Math.max(high, plot.about)];
@@ -102,14 +109,15 @@ export function plots(state, onChoice) {
     past.forEach((scene, place) => {
       if (place === 0) return;
       const [from, to] = [past[place - 1].at_s, scene.at_s].map((atS) => width - ((untilS - atS) / SPAN_S) * width);
-      const mode = MODES.indexOf(scene.vehicles[state.chosen].mode);
+      const mode = MODES.indexOf(scene.byId.get(state.chosen)?.mode);
+      if (mode < 0) return;
       paint.fillStyle = tints[mode];
       paint.fillRect(from, mode * tall + 2, to - from + 0.5, tall - 4);
     });
     paint.fillStyle = hue.ink;
     paint.font = "10px system-ui";
     MODES.forEach((mode, place) => paint.fillText(mode, 3, place * tall + tall / 2 + 3));
-    caption.textContent = `mode of its unit: ${past.at(-1).vehicles[state.chosen].mode}`;
+    caption.textContent = `mode of its unit: ${past.at(-1).byId.get(state.chosen)?.mode ?? "–"}`;
   }
 
   let drawnAt = 0;
@@ -119,6 +127,8 @@ export function plots(state, onChoice) {
     },
     take(scene) {
       if (past.length && past.at(-1).ticks === scene.ticks) past.pop();
+      // A pixel is some 60 ms, and a scene of many vehicles is large.
+      if (past.length > 1 && scene.at_s - past.at(-2).at_s < 0.05) past.pop();
       past.push(scene);
       while (past[0].at_s < scene.at_s - SPAN_S) past.shift();
       stale = true;

@@ -10,10 +10,12 @@ export function now(state) {
   const [a, b] = [scenes[later - 1], scenes[later]];
   const share = (shownS - a.at_s) / (b.at_s - a.at_s || 1);
   const between = (x, y) => (x == null || y == null ? y : x + (y - x) * share);
-  return b.vehicles.map((seen, index) => {
-    const before = a.vehicles[index];
-    const target = seen.target && before.target ? { ...seen.target } : seen.target;
-    if (target && before.target) {
+  return b.vehicles.map((seen) => {
+    const before = a.byId.get(seen.id);
+    if (!before) return seen; // it has just appeared
+    const isSame = seen.target && before.target && seen.target.of === before.target.of;
+    const target = isSame ? { ...seen.target } : seen.target;
+    if (isSame) {
       target.position_m = between(before.target.position_m, target.position_m);
       if (target.bound_m && before.target.bound_m) {
         target.bound_m = target.bound_m.map((end, place) => between(before.target.bound_m[place], end));
@@ -23,8 +25,9 @@ export function now(state) {
       ...seen,
       target,
       position_m: between(before.position_m, seen.position_m),
-      paper_m: between(before.paper_m, seen.paper_m),
-      newest_m: between(before.newest_m, seen.newest_m),
+      to_m: before.next === seen.next ? between(before.to_m, seen.to_m) : seen.to_m,
+      paper_m: seen.follows === before.follows ? between(before.paper_m, seen.paper_m) : seen.paper_m,
+      newest_m: seen.follows === before.follows ? between(before.newest_m, seen.newest_m) : seen.newest_m,
     };
   });
 }

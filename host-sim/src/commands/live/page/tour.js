@@ -62,6 +62,11 @@ const STEPS = [
 ];
 
 export function tour(state) {
+  // It is of the paper's string of vehicles, and goes back in time.
+  if (state.isRoad || state.cast.device != null) {
+    byId("tour").hidden = true;
+    return {};
+  }
   let at = -1; // before the first step
   let figures = STEPS.map(() => null);
   let settledS = Infinity; // figures count from then on

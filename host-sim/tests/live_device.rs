@@ -1,0 +1,102 @@
+//! `live --bus`: a device on a bus in memory drives the ego, and the page shows the world with it in it.
+
+use std::path::Path;
+use std::sync::mpsc;
+
+use holdover::time::Duration;
+use holdover_sim::commands::hil::judge::LATENCY_P99_MS;
+use holdover_sim::commands::hil::session::{self, Setup};
+use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
+use holdover_sim::commands::interruption::Interruption;
+use holdover_sim::commands::live::device::Device;
+use holdover_sim::commands::live::engine::Ask;
+use holdover_sim::commands::live::order::Order;
+use holdover_sim::input::scenario::{Overrides, Part, Scenario};
+use holdover_sim::sim::world;
+use serde_json::Value;
+use tokio::sync::{oneshot, watch};
+
+fn setup(duration_s: f64) -> Setup {
+    let text = format!("duration_s = {duration_s:?}\n[channel]\noutages = []\n");
+    let scenario = Scenario::parse(Path::new("live.toml"), &text, &Overrides::default()).unwrap();
+    let config = world::config(&scenario, scenario.ego);
+    let (wait, latency_p99_ms) = (Duration::from_millis(3000), LATENCY_P99_MS);
+    Setup { scenario, config, wait, latency_p99_ms, faults: Vec::new() }
+}
+
+/// A run before which these orders were given: what became of each, the last scene, and the journal.
+fn run(setup: &Setup, orders: &[Order], change: impl FnOnce(&mut Behaviour)) -> (Vec<Result<(), String>>, Value, bool) {
+    let ((asks, asked), (show, scenes)) = (mpsc::channel(), watch::channel("{}".into()));
+    let answers: Vec<_> = orders
+        .iter()
+        .map(|order| {
+            let (to, from) = oneshot::channel();
+            asks.send(Ask::Do(*order, to)).unwrap();
+            from
+        })
+        .collect();
+    let end = Interruption::default();
+    let mut desk = Device::new(&setup.scenario, asked, show, &end, None);
+    let mut behaviour = Behaviour::good(setup.config, false);
+    change(&mut behaviour);
+    let (port, mut rig) = bench(behaviour);
+    let outcome = session::run_before(setup, port, &mut rig, &mut desk, |_| {}).unwrap();
+    let answered = answers.into_iter().filter_map(|answer| answer.blocking_recv().ok());
+    let answered = answered.map(|answer| answer.map_err(|error| error.to_string())).collect();
+    (answered, serde_json::from_str(&scenes.borrow()).unwrap(), outcome.cut.is_none())
+}
+
+#[test]
+fn the_device_is_seen_to_drive_and_to_believe_and_whoever_is_driven_is_seen_by_it() {
+    let setup = setup(12.0);
+    let ego = setup.scenario.ego;
+    let (_, quiet, is_whole) = run(&setup, &[], |_| {});
+    assert!(is_whole && quiet["ticks"].as_u64().unwrap() >= 1198, "{quiet}");
+    let of = |scene: &Value, key: &str| scene["vehicles"][ego][key].as_f64().unwrap();
+    assert!(of(&quiet, "speed_mps") > 9.0 && of(&quiet, "load") > 0.05);
+    let target = &quiet["vehicles"][ego]["target"];
+    assert!(target["error_m"].as_f64().unwrap().abs() < 0.3 && target["bound_m"].is_array(), "{target}");
+    // Those who look change nothing.
+    assert_eq!(run(&setup, &[], |_| {}).1, quiet);
+    let (answers, scene, _) = run(&setup, &[Order::Drive { vehicle: 0, mps2: -1.5 }], |_| {});
+    assert_eq!((answers, &scene["vehicles"][0]["is_driven"]), (vec![Ok(())], &true.into()));
+    assert!(of(&scene, "speed_mps") < of(&quiet, "speed_mps") - 4.0, "{}", of(&scene, "speed_mps"));
+}
+
+#[test]
+fn what_a_device_does_not_let_itself_do_is_refused_and_the_run_goes_on() {
+    let setup = setup(3.0);
+    let orders = [
+        Order::Back { seconds: 10.0 },
+        Order::Switch { vehicle: None, part: Part::Envelope, on: false },
+        Order::Switch { vehicle: None, part: Part::Holdover, on: false },
+        Order::Switch { vehicle: Some(4), part: Part::Holdover, on: false },
+        Order::Drive { vehicle: 9, mps2: 1.0 },
+        Order::Outage { vehicle: Some(2), seconds: 1.0 },
+    ];
+    let (answers, scene, is_whole) = run(&setup, &orders, |_| {});
+    let wanted = [
+        Err("time is the device's: it neither stops nor goes back; "),
+        Err("the envelopes cannot be switched while a device is in the world; "),
+        Err("vehicle 2 drives by the device's own estimate; "),
+        Ok(()),
+        Err("there is no vehicle 9; "),
+        Ok(()),
+    ];
+    for (answer, wanted) in answers.iter().zip(wanted) {
+        match (answer, wanted) {
+            (Ok(()), Ok(())) => {}
+            (Err(said), Err(wanted)) => assert!(said.starts_with(wanted), "{said}"),
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(answers.len() == orders.len() && is_whole);
+    assert_eq!(scene["events"], serde_json::json!([2, 2]));
+}
+
+#[test]
+fn a_device_that_dies_ends_the_run_and_is_named() {
+    let (_, scene, is_whole) =
+        run(&setup(20.0), &[], |behaviour| behaviour.dies_after = Some(Duration::from_millis(8000)));
+    assert!(!is_whole && scene["at_s"].as_f64().unwrap() < 10.0, "{}", scene["at_s"]);
+}
