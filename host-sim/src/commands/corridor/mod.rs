@@ -3,6 +3,7 @@
 
 pub mod cost;
 pub mod demand;
+mod map;
 pub mod options;
 mod page;
 mod picture;
