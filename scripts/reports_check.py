@@ -32,6 +32,7 @@ MEASURE = """() => {
   const box = (node) => { const range = document.createRange(); range.selectNodeContents(node); return range.getBoundingClientRect(); };
   for (const cell of document.querySelectorAll('th, td, dd, dt')) {
     if (!shown(cell)) continue;
+    if (!cell.textContent.trim()) continue;
     const [text, room] = [box(cell), cell.getBoundingClientRect()];
     if (text.right > room.right + 1 || text.left < room.left - 1) say('text outside its cell', cell);
     if (text.right > root.clientWidth + 1) say('text outside the page', cell);
@@ -132,8 +133,10 @@ def look_at(browser, file):
         fact(name, f"{width} px {scheme}: contrast {contrast:.2f}, of at least 3", contrast >= 3)
         page.screenshot(path=FOLDER / f"{name}-{width}-{scheme}.png", full_page=True)
         if (width, scheme) == (1400, "light"):
-            used = page.evaluate("() => Math.max(...[...document.querySelectorAll('main *')].map((e) => e.getBoundingClientRect().right))"
-                                 " - Math.min(...[...document.querySelectorAll('main *')].map((e) => e.getBoundingClientRect().left))")
+            used = page.evaluate("""() => {
+              const boxes = [...document.querySelectorAll('main *')].map((e) => e.getBoundingClientRect()).filter((box) => box.width > 0);
+              return Math.max(...boxes.map((box) => box.right)) - Math.min(...boxes.map((box) => box.left));
+            }""")
             fact(name, f"{used:.0f} px of {width} are used, of at least 80 %", used >= 0.8 * width)
             plots_work(page, name)
             map_plays(page, name)

@@ -5,7 +5,7 @@ use super::{
     frame::{self, BELOW, TITLE_ROW, Y_SPACING},
     legend::{self, Legend, Swatch},
     scale::{Axis, Extent},
-    svg::{Anchor, Area, Svg},
+    svg::{Anchor, Area, Svg, TEXT_HEIGHT},
 };
 
 /// The most labels at the ends of lines. More cannot be told apart, so a legend replaces them.
@@ -114,11 +114,17 @@ impl Figure for Chart {
             layers.sort_by_key(|layer| layer.entry().tone == Tone::Ego);
             layers.into_iter().for_each(|layer| layer.draw(svg, self.axes(), &x, &y, area));
         });
+        // A label that would lie on another one is left out.
+        let mut labelled: Vec<f64> = Vec::new();
         for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
             let at = y.at(guide.at);
             if (area.top - 0.5..=area.bottom + 0.5).contains(&at) {
                 let baseline = if at - area.top < 14.0 { at + 12.0 } else { at - 4.0 };
-                svg.text("guide-label", Anchor::Start, (area.left + 6.0, baseline), &guide.label);
+                if !guide.label.is_empty() && labelled.iter().all(|other| (other - baseline).abs() > TEXT_HEIGHT + 2.0)
+                {
+                    svg.text("guide-label", Anchor::Start, (area.left + 6.0, baseline), &guide.label);
+                    labelled.push(baseline);
+                }
             }
         }
         let ends = ends.iter().filter(|layer| !layer.entry().name.is_empty());

@@ -113,7 +113,13 @@ impl Axis {
         // A constant also needs a span, and one that its ticks can resolve.
         let widest = low.abs().max(high.abs());
         let least = if self.logarithmic { 0.5 } else { (widest * 1e-6).max(1e-9) };
-        let spare = if high - low < least { least.max(widest * 0.1) } else { (high - low) * margin };
+        let spare = if high - low < least && widest == 0.0 && !self.logarithmic {
+            1.0 // nothing but zeros
+        } else if high - low < least {
+            least.max(widest * 0.1)
+        } else {
+            (high - low) * margin
+        };
         // An end that is the included value itself is a meaningful edge, such as 0. There is no margin beyond it.
         let edge = |end: f64| self.including.is_some_and(|value| self.measure(value) == end) && high - low >= least;
         let low = if edge(low) { low } else { low - spare };

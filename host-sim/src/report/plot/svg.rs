@@ -102,7 +102,7 @@ impl Svg {
     /// A path that a script reads values from, by this name.
     pub fn named_path(&mut self, class: &str, name: &str, data: &str) {
         if !data.is_empty() {
-            let _ = writeln!(self.body, r#"<path class="{class}" data-name="{}" d="{data}"/>"#, escape(name));
+            let _ = writeln!(self.body, r#"<path class="{class}" d="{data}" data-name="{}"/>"#, escape(name));
         }
     }
 
