@@ -36,6 +36,6 @@ report envelope-cost envelope-cost --seeds 2
 report gains gains
 report string string --delays 0,0.2 --losses 0,0.4 --step-only --seeds 3
 report motions motions --silences 5
-report corridor run corridor --set duration_s=15 --vehicles 10
+report corridor run corridor --set duration_s=15 --set ego_after_s=0 --set 'ego_road="Harrison Street, southwest"' --vehicles 10
 
 timeout 300 "$python/bin/python" scripts/reports_check.py "$(command -v chromium)" "$reports"

@@ -197,7 +197,7 @@ fn the_same_run_is_the_same_bytes() {
 fn captions_say_what_the_series_hold() {
     let html = five_vehicles(20).render();
     let error = caption(&html, "Position error of the estimate");
-    assert!(error.contains("by 0.0239\u{a0}m at the most") && error.contains("by 0.997\u{a0}m, 42 times"), "{error}");
+    assert!(error.contains("by 23.9\u{a0}mm at the most") && error.contains("by 0.997\u{a0}m, 42 times"), "{error}");
     assert!(error.contains("The lower panel shows ours alone") && error.contains("silent, 4–8 s"), "{error}");
     let channel = caption(&html, "The ego’s link");
     assert!(channel.contains("Of 200 messages"), "{channel}");

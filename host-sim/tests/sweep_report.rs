@@ -6,7 +6,20 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 fn row(step_s: f64, error_m: f64) -> SweepRow {
     let (ours, paper) = (Some(error_m), Some(100.0 * error_m));
-    SweepRow { step_s, max_ours: ours, p99_ours: ours, max_paper: paper, p99_paper: paper, ns_per_tick: 250.0 / step_s }
+    let (rms, rms_intervals, less_rms) =
+        ([ours, paper], [ours, paper].map(|rms| rms.map(|rms| [rms / 2.0, rms * 2.0])), Some("holdover"));
+    let ns_per_tick = 250.0 / step_s;
+    SweepRow {
+        step_s,
+        max_ours: ours,
+        p99_ours: ours,
+        max_paper: paper,
+        p99_paper: paper,
+        rms,
+        rms_intervals,
+        less_rms,
+        ns_per_tick,
+    }
 }
 
 fn report(rows: Vec<SweepRow>) -> SweepReport {

@@ -41,7 +41,7 @@ pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
         let runs = rows::run(scenario, options.seed, options.seeds, || bar.inc(1))?;
         let timing = timing::measure(scenario, options.seed)?;
         let (step_s, seeds) = (scenario.step_s, options.seeds);
-        rows.push(Row { step_s, seeds, ours: runs.ours, paper: runs.paper, timing });
+        rows.push(Row { step_s, seeds, ours: runs.ours, paper: runs.paper, less_rms: runs.less_rms, timing });
         failures.extend(runs.failures);
     }
     bar.finish_and_clear();

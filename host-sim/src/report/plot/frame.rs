@@ -27,7 +27,7 @@ pub(super) fn left_margin<'a>(names: impl IntoIterator<Item = &'a str>, width: W
 
 /// The margin right of the frame; `needed` for labels that need more than the common margin.
 pub(super) fn right_margin(needed: f64, width: Width) -> f64 {
-    let least = if width == Width::Narrow { 16.0 } else { 108.0 };
+    let least = if width == Width::Narrow { 16.0 } else { 132.0 };
     needed.max(least)
 }
 

@@ -33,7 +33,6 @@ pub use heatmap::{HeatMap, Shade};
 pub use layer::Layer;
 pub use map::{Map, Mover};
 pub use scale::Axis;
-pub(super) use scale::MILLIMETRES_BELOW_M;
 pub use strip::{Category, Strip, StripRow};
 
 /// A named series of `(x, y)` points.

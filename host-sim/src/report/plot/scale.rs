@@ -1,11 +1,10 @@
 //! Axes: a description and the extent of the data enter; a mapping to pixels, with ticks, leaves.
 
+use crate::report::markup::MILLIMETRES_BELOW_M;
+
 /// A value beyond this cannot be drawn, and on a logarithmic axis neither can a value below its reciprocal. So
 /// differences and quotients of two drawn values are finite.
 const DRAWABLE_BELOW: f64 = 1e100;
-
-/// An axis in metres on which everything is below this is shown in millimetres.
-pub(in crate::report) const MILLIMETRES_BELOW_M: f64 = 0.1;
 
 /// The values that some data cover.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,9 +6,9 @@ mod figures;
 mod prose;
 
 use super::{
-    markup::{count, significant},
+    markup::{MILLIMETRES_BELOW_M, count, significant},
     page::{Cell, Page},
-    plot::{Interval, MILLIMETRES_BELOW_M, Series},
+    plot::{Interval, Series},
 };
 
 pub use crash::{Crash, Crashes};
