@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study live reports cross tasks firmware vcan c package)
+steps=(fmt lint doc test dbc study live reports data cross tasks firmware vcan c package)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -27,6 +27,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   live      the page of `live` in a browser without a screen: it drives, breaks links and goes back in time; pictures in target/live
   reports   the reports of every command in that browser at two widths, light and dark, and printed: nothing is cut off, values,
             zoom and map work, and the console is quiet; pictures in target/reports
+  data      the converters of public recordings on small files in the published formats; the notebooks of docs/notebooks run to
+            their ends, with figures in target/notebooks
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   tasks     the unit as a task of RTIC and of Embassy compiles and links, by locked versions
   firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
@@ -105,6 +107,10 @@ step_live() {
 
 step_reports() {
     scripts/reports.sh
+}
+
+step_data() {
+    scripts/data.sh
 }
 
 step_cross() {
