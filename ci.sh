@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study live reports data cross tasks firmware vcan c package)
+steps=(fmt lint doc test dbc study live reports data cross tasks firmware vcan c package release)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -38,6 +38,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   c         the C examples say what the Rust core says, on the host and in the emulator, over the whole way of the corridor's ego
             too; the header is one for C99, C11, C++ and MISRA C, for each capacity
   package   the package that would be published builds by itself and holds what it should
+  release   an archive of the simulator for x86-64, without link-time optimisation, runs in a folder with nothing else in it;
+            scripts/release.sh makes those of a release
 
 exit code: 0 all passed; 1 a step failed; 2 no such step
 TEXT
@@ -196,8 +198,12 @@ step_package() {
         wanted=1
     fi
     [ "$wanted" = 0 ]
-    cargo package --locked -p holdover "${dirty[@]}"
+    cargo publish --dry-run --locked -p holdover "${dirty[@]}"
     wc -l <<<"$contents" | xargs printf '%d files in the package\n'
+}
+
+step_release() {
+    scripts/release.sh --quick x86_64-unknown-linux-musl
 }
 
 # Every source file that is ours.

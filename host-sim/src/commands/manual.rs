@@ -60,14 +60,11 @@ pub fn man(folder: &Path) -> Result<Verdict, Error> {
     fs::create_dir_all(folder).map_err(|error| Error::unwritable(folder, &error))?;
     let mut program = Cli::command().disable_help_subcommand(true);
     program.build();
-    let commands = program.get_subcommands().map(|command| {
-        let name = format!("holdover-sim-{}", command.get_name());
-        command.clone().name(name.clone()).display_name(name)
-    });
-    let commands: Vec<clap::Command> = commands.collect();
-    let pages = std::iter::once(program).chain(commands);
-    for command in pages {
-        let file = folder.join(format!("{}.1", command.get_name()));
+    let commands: Vec<clap::Command> = program.get_subcommands().cloned().collect();
+    for command in std::iter::once(program).chain(commands) {
+        // Built, a command is displayed with the program's name before its own: `holdover-sim-run`.
+        let name = command.get_display_name().unwrap_or(command.get_name()).to_owned();
+        let file = folder.join(format!("{name}.1"));
         let mut page = Vec::new();
         Man::new(command).render(&mut page).map_err(|error| Error::unwritable(&file, &error))?;
         Draft::whole(&file, &String::from_utf8_lossy(&page))?;
