@@ -14,14 +14,13 @@ mod verdict;
 
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::commands::motions::rows::{self, Row};
 use crate::draft::Draft;
 use crate::error::Error;
 use crate::input::scenario::{Envelope, Faults, Fitted};
-use crate::output::{self, LongRuns};
+use crate::output::{self, LongRuns, Progress};
 use crate::roads::conditions::Conditions;
 use crate::roads::description::{Corridor, Emergencies};
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
@@ -130,13 +129,10 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let is_drawn = options.destination.report.is_some() || options.picture.is_some();
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let logged = usize::from(options.candump.is_some() || options.trajectories.is_some());
-    let bar = ProgressBar::new(
+    let progress = Progress::new(
         (Sides::COUNT * options.seeds.len() + WRONGS + SHARES.len() + drawn + options.vehicles.len() + logged) as u64,
     );
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
-        bar.set_style(style);
-    }
-    let done = || bar.inc(1);
+    let done = || progress.inc();
     let start = Instant::now();
     let sides = experiment.sides(&options.seeds, done)?;
     let wall_s = start.elapsed().as_secs_f64();
@@ -175,7 +171,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
             done();
         }
     }
-    bar.finish_and_clear();
+    progress.finish();
     let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
     let mut failures = verdict::failures(&options.corridor.limits, &sides);
