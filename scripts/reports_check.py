@@ -37,6 +37,16 @@ MEASURE = """() => {
     if (text.right > room.right + 1 || text.left < room.left - 1) say('text outside its cell', cell);
     if (text.right > root.clientWidth + 1) say('text outside the page', cell);
   }
+  for (const head of document.querySelectorAll('thead th')) {
+    const text = head.firstChild;
+    if (!shown(head) || !text) continue;
+    for (const word of text.data.matchAll(/[^\s-]+/g)) {
+      const range = document.createRange();
+      range.setStart(text, word.index);
+      range.setEnd(text, word.index + word[0].length);
+      if (new Set([...range.getClientRects()].map((box) => Math.round(box.top))).size > 1) say(`"${word[0]}" is broken`, head);
+    }
+  }
   for (const svg of document.querySelectorAll('svg')) {
     if (!shown(svg)) continue;
     const room = svg.getBoundingClientRect();

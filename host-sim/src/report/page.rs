@@ -170,7 +170,7 @@ impl Page {
                 let (open, close) = if index == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
                 let class = if cell.class.is_empty() { String::new() } else { format!(" class=\"{}\"", cell.class) };
                 // Where a row is a block, each cell says what it is.
-                let label = header.get(index).filter(|_| index > 0 && header.len() >= STACKED_COLUMNS);
+                let label = header.get(index).filter(|label| !label.is_empty() && header.len() >= STACKED_COLUMNS);
                 let label = label.map_or(String::new(), |label| format!(" data-label=\"{}\"", escape(label)));
                 let _ = write!(self.body, "<{open}{class}{label}>{}</{close}>", escape(&cell.text));
             }

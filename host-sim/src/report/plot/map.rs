@@ -78,7 +78,7 @@ impl Figure for Map {
             svg.path("road", &line(road.iter().map(|at| Some(place(at)))));
         }
         for (middle, half_m) in &self.areas {
-            let ((x, y), half) = (place(middle), half_m * scale);
+            let ((x, y), half) = (place(middle), (half_m * scale).max(RADIUS));
             svg.rectangle("area", Area { left: x - half, top: y - half, right: x + half, bottom: y + half });
         }
         // The vehicle under study lies above all others.
