@@ -3,8 +3,8 @@
 # is nothing else: no library, no shell, no folder.
 #
 # Without a TARGET: x86_64-unknown-linux-musl and aarch64-unknown-linux-musl. An archive of another processor is tried by
-# qemu-user; what could not be tried is said at the end, and loudly. --quick leaves out link-time optimisation: for a check of
-# the recipe, not for a release.
+# qemu-user; what could not be tried is said at the end, and loudly. --quick leaves out most of the optimisation: for a check of the
+# recipe, not for a release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/need.sh
@@ -13,7 +13,7 @@ command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 profile=()
 [ "${1:-}" = --quick ] && {
     shift
-    export CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_DEBUG=0
+    export CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_OPT_LEVEL=1
     profile=(--target-dir "${CARGO_TARGET_DIR:-target}/release-quick")
 }
 [ $# -gt 0 ] || set -- x86_64-unknown-linux-musl aarch64-unknown-linux-musl
@@ -49,12 +49,16 @@ for target in "$@"; do
         echo "$target: the program asks for a dynamic linker" && exit 1
     fi
     # How this machine runs the program: by itself, or by an emulator.
-    run=()
+    run=() runs=yes
     case $target in
     "$(uname -m)"-*) ;;
-    *) run=("$(command -v "qemu-${target%%-*}-static" || command -v "qemu-${target%%-*}" || true)") ;;
+    *)
+        (need "qemu-${target%%-*}-static" qemu-user-static >/dev/null 2>&1) || true
+        emulator=$(command -v "qemu-${target%%-*}-static" || command -v "qemu-${target%%-*}" || true)
+        [ -n "$emulator" ] && run=("$emulator") || runs=no
+        ;;
     esac
-    if [ "${run[*]:-self}" = "" ]; then
+    if [ "$runs" = no ]; then
         untried+=("$target: no qemu-${target%%-*}; remedy: apt-get install qemu-user-static")
     else
         "${run[@]}" "$folder/holdover-sim" man "$folder/man1" 2>/dev/null
@@ -67,7 +71,7 @@ for target in "$@"; do
         -C "$out" -czf "$out/$name.tar.gz" "$name"
     (cd "$out" && sha256sum "$name.tar.gz" >"$name.tar.gz.sha256")
 
-    [ "${run[*]:-self}" = "" ] && continue
+    [ "$runs" = no ] && continue
     bare=$(mktemp -d)
     tar -C "$bare" --strip-components=1 -xzf "$out/$name.tar.gz"
     inside=()
