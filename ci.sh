@@ -8,7 +8,7 @@ cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
 image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
-steps=(fmt lint doc test dbc study live cross tasks firmware vcan c package)
+steps=(fmt lint doc test dbc study live reports data cross tasks firmware vcan c package release)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
@@ -25,6 +25,10 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   study     the verdicts of the case study: the four intersections for ten minutes, with the figures that docs/RESULTS.md has, and
             the worst link of the string of ten
   live      the page of `live` in a browser without a screen: it drives, breaks links and goes back in time; pictures in target/live
+  reports   the reports of every command in that browser at two widths, light and dark, and printed: nothing is cut off, values,
+            zoom and map work, and the console is quiet; pictures in target/reports
+  data      the converters of public recordings on small files in the published formats; the notebooks of docs/notebooks run to
+            their ends, with figures in target/notebooks
   cross     the core with `core` alone for Cortex-M0, M4F, M33 and RISC-V; the firmware, and what it takes of its memory
   tasks     the unit as a task of RTIC and of Embassy compiles and links, by locked versions
   firmware  the firmware in every form, without a panic, in the emulator: replayed logs bit for bit, and what it costs
@@ -34,6 +38,8 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   c         the C examples say what the Rust core says, on the host and in the emulator, over the whole way of the corridor's ego
             too; the header is one for C99, C11, C++ and MISRA C, for each capacity
   package   the package that would be published builds by itself and holds what it should
+  release   an archive of the simulator for x86-64, built with little optimisation, runs in a folder with nothing else in it;
+            scripts/release.sh makes those of a release
 
 exit code: 0 all passed; 1 a step failed; 2 no such step
 TEXT
@@ -99,6 +105,14 @@ step_study() {
 
 step_live() {
     scripts/live.sh
+}
+
+step_reports() {
+    scripts/reports.sh
+}
+
+step_data() {
+    scripts/data.sh
 }
 
 step_cross() {
@@ -184,8 +198,12 @@ step_package() {
         wanted=1
     fi
     [ "$wanted" = 0 ]
-    cargo package --locked -p holdover "${dirty[@]}"
+    cargo publish --dry-run --locked -p holdover "${dirty[@]}"
     wc -l <<<"$contents" | xargs printf '%d files in the package\n'
+}
+
+step_release() {
+    scripts/release.sh --quick x86_64-unknown-linux-musl
 }
 
 # Every source file that is ours.

@@ -4,11 +4,9 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/need.sh
 
-need chromium chromium
+need_browser
 target=${CARGO_TARGET_DIR:-target}
-python=$target/live-python
-mkdir -p "$python" "$target/live"
-need_python "$python" scripts/live-requirements.txt
+mkdir -p "$target/live"
 cargo build --locked --release -p holdover-sim
 sim=$target/release/holdover-sim
 for check in live_check live_input_check live_road_check; do

@@ -18,6 +18,14 @@ need() {
         apt-get install -y --no-install-recommends "$2"; } || skip "$1 is not there; remedy: apt-get install $2"
 }
 
+# need_browser: Chromium, and in `python` an environment of Python that drives it.
+need_browser() {
+    need chromium chromium
+    python=${CARGO_TARGET_DIR:-target}/live-python
+    mkdir -p "$python"
+    need_python "$python" scripts/live-requirements.txt
+}
+
 # need_python FOLDER REQUIREMENTS: an environment of Python in that folder with these packages of PyPI.
 need_python() {
     need python3 python3

@@ -34,7 +34,7 @@ fn folder() -> tempfile::TempDir {
     write("link.csv", link("0.02"));
     write("deaf.csv", link(""));
     write("milliseconds.csv", link("20"));
-    write("semicolons.csv", "t_s;position_m;speed_mps\n0;0;10\n1;10;10\n".into());
+    write("semicolons.csv", "t_s;position_m;speed_mps\n0,0;0,0;10,0\n1,0;10,0;10,0\n".into());
     write("city.toml", "duration_s = 3\n[channel]\ntrace = \"milliseconds.csv\"\n".into());
     folder
 }

@@ -31,7 +31,7 @@ fn each_silence_is_a_row_without_and_with_the_envelope() {
     assert_eq!(rows.iter().map(|row| row["silence_s"].as_f64().unwrap()).collect::<Vec<_>>(), [1.0, 8.0]);
     for row in &rows {
         let keys: Vec<&String> = row.as_object().unwrap().keys().collect();
-        assert_eq!(keys, ["distance_m", "off", "on", "seeds", "silence_s"]);
+        assert_eq!(keys, ["cost_interval_s", "distance_m", "off", "on", "seeds", "silence_s"]);
         for side in ["off", "on"] {
             let keys: Vec<&String> = row[side].as_object().unwrap().keys().collect();
             let wanted = [
@@ -41,6 +41,7 @@ fn each_silence_is_a_row_without_and_with_the_envelope() {
                 "hardest_braking_mps2",
                 "limited_share",
                 "min_gap_m",
+                "travel_time_interval_s",
                 "travel_time_s",
             ];
             assert_eq!(keys, wanted);
@@ -160,7 +161,7 @@ fn the_table_and_the_report_stand_side_by_side() {
     assert_eq!(stderr, format!("report: {}/report/index.html\n", folder.path().display()));
     let page = std::fs::read_to_string(folder.path().join("report/index.html")).unwrap();
     assert!(page.contains("holdover-sim envelope-cost --seed 1 --seeds 1 --silences 0.5,2 --distance 200"));
-    assert_eq!((page.matches("<figure ").count(), page.matches("<svg ").count()), (3, 2 * 5));
+    assert_eq!((page.matches("<figure ").count(), page.matches("<svg ").count()), (3, 3 * 5));
     roxmltree::Document::parse_with_options(&page, roxmltree::ParsingOptions { allow_dtd: true, ..Default::default() })
         .unwrap();
 }

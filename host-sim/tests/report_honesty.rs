@@ -39,7 +39,7 @@ fn a_failed_run_says_who_ran_into_whom_when_and_what_its_unit_believed() {
     assert_eq!((crash["vehicle"].as_u64(), crash["into"].as_u64()), (Some(1), Some(0)));
     assert!(crash["at_s"].as_f64().unwrap() > 6.0 && crash["believed_gap_m"].as_f64().unwrap() > 1.0, "{crash}");
     let page = page(folder.path(), "run crash.toml");
-    assert!(page.contains("<h2>Collisions</h2>") && page.contains("vehicle 1 into leader</td>"));
+    assert!(page.contains(">Collisions</h2>") && page.contains("vehicle 1 into leader</td>"));
     assert!(page.contains("The first collision: vehicle 1 runs into leader."));
 }
 
@@ -114,7 +114,7 @@ fn methods_have_one_name_for_people() {
 fn wide_tables_are_set_smaller_and_are_whole_on_paper() {
     let folder = tempfile::tempdir().unwrap();
     let page = page(folder.path(), "gains");
-    assert!(page.contains("<table class=\"many\">"), "a table of nine columns");
+    assert!(page.contains("<table class=\"many stacked\">"), "a table of nine columns");
     let (screen, print) = page.split_once("@media print").unwrap();
     assert!(screen.contains("\nthead .number { white-space: normal; }"));
     assert!(print.split("</style>").next().unwrap().contains(".scroll { overflow: visible; }"));

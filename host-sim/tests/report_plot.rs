@@ -82,7 +82,7 @@ fn every_kind_of_figure_fits_on_one_page() {
     let html = page.finish();
     // Left where a browser can open it: target/tmp/figures.html.
     std::fs::write(concat!(env!("CARGO_TARGET_TMPDIR"), "/figures.html"), &html).unwrap();
-    assert_eq!(html.matches("<svg ").count(), 10);
+    assert_eq!(html.matches("<svg ").count(), 15);
     assert!(!html.contains("not drawn") && !html.contains("NaN") && !html.contains("no data"));
 }
 

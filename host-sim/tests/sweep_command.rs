@@ -35,13 +35,13 @@ fn each_step_is_a_row_with_both_methods_and_the_cost() {
     assert_eq!(steps, [0.5, 0.02]);
     for row in &rows {
         let keys: Vec<&String> = row.as_object().unwrap().keys().collect();
-        assert_eq!(keys, ["ours", "paper", "seeds", "step_s"]);
+        assert_eq!(keys, ["less_rms", "ours", "paper", "seeds", "step_s"]);
         assert_eq!(row["seeds"], 2);
         for method in ["ours", "paper"] {
             let figure = |name: &str| row[method][name].as_f64().unwrap();
             let (max, p99) = (figure("max_position_error_m"), figure("p99_position_error_m"));
             assert!(0.0 < p99 && p99 <= max && max < 20.0, "{row}");
-            assert_eq!(row[method].as_object().unwrap().len(), 2);
+            assert_eq!(row[method].as_object().unwrap().len(), 4);
         }
     }
     for timing in &timing {

@@ -25,5 +25,5 @@ fn the_commands_of_the_tutorial_work() {
         assert!(output.status.success(), "{block}\n{}", String::from_utf8_lossy(&output.stderr));
         ran += 1;
     }
-    assert_eq!(ran, 6);
+    assert_eq!(ran, 7);
 }

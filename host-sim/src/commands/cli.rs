@@ -9,6 +9,7 @@ use crate::commands::evaluate::{self, arguments::EvaluateArguments};
 use crate::commands::gains::{self, arguments::GainsArguments};
 use crate::commands::hil::{self, arguments::HilArguments};
 use crate::commands::live::{self, arguments::LiveArguments};
+use crate::commands::manual::{self, CompletionsArguments, ManArguments};
 use crate::commands::motions::{self, arguments::MotionsArguments};
 use crate::commands::record::{self, arguments::RecordArguments};
 use crate::commands::replay::{self, arguments::ReplayArguments};
@@ -80,4 +81,10 @@ pub enum Command {
     /// Run an onboard unit on a CAN interface through a scenario, and judge it
     #[command(after_help = hil::arguments::AFTER_HELP)]
     Hil(HilArguments),
+    /// Print the completions of this command line for a shell
+    #[command(after_help = manual::COMPLETIONS_AFTER_HELP)]
+    Completions(CompletionsArguments),
+    /// Write the manual pages
+    #[command(after_help = manual::MAN_AFTER_HELP)]
+    Man(ManArguments),
 }

@@ -17,6 +17,7 @@ pub mod hil;
 pub mod identifiers;
 pub mod interruption;
 pub mod live;
+pub mod manual;
 pub mod mcap_file;
 pub mod mcap_road;
 mod mcap_writer;

@@ -1,6 +1,9 @@
 //! The command line as it is meant: typed values enter; checked options leave, with every input file read, or an error.
 //! After this only writing can fail.
 
+use clap_complete::Shell;
+use std::path::PathBuf;
+
 use crate::commands::check::CheckOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
@@ -20,7 +23,8 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, motions, record, replay, run, string, sweep,
+    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, manual, motions, record, replay, run, string,
+    sweep,
 };
 use crate::error::Error;
 use crate::input::library;
@@ -64,6 +68,10 @@ pub enum Options {
     Ecu(EcuOptions),
     /// Judge a unit on a CAN interface.
     Hil(Box<HilOptions>),
+    /// Print the completions of a shell.
+    Completions(Shell),
+    /// Write the manual pages into a folder.
+    Man(PathBuf),
 }
 
 impl Options {
@@ -87,6 +95,8 @@ impl Options {
             Some(Command::Dbc(arguments)) => DbcOptions::read(&arguments).map(Self::Dbc),
             Some(Command::Ecu(arguments)) => EcuOptions::read(&arguments).map(Self::Ecu),
             Some(Command::Hil(arguments)) => HilOptions::read(arguments).map(Box::new).map(Self::Hil),
+            Some(Command::Completions(arguments)) => Ok(Self::Completions(arguments.shell)),
+            Some(Command::Man(arguments)) => Ok(Self::Man(arguments.folder)),
             None => Self::of_run(RunArguments { scenario: None, settings: cli.run }),
         }
     }
@@ -132,6 +142,8 @@ impl Options {
             Self::Dbc(options) => dbc::run(options),
             Self::Ecu(options) => ecu::run(options),
             Self::Hil(options) => hil::run(options),
+            Self::Completions(shell) => manual::completions(*shell),
+            Self::Man(folder) => manual::man(folder),
         }
     }
 }

@@ -23,7 +23,21 @@ macro_rules! entries {
 }
 
 /// All scenarios of the library; the files are in `scenarios/`.
-pub const LIBRARY: &[Entry] = entries!["paper", "corridor", "motorway", "merge", "stop-and-go", "storm"];
+pub const LIBRARY: &[Entry] = entries![
+    "paper",
+    "corridor",
+    "motorway",
+    "merge",
+    "stop-and-go",
+    "storm",
+    "wrong-lag",
+    "wrong-mass",
+    "wrong-grade",
+    "wrong-wind",
+    "wrong",
+    "vans",
+    "buses",
+];
 
 /// The kind of a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

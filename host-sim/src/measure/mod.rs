@@ -1,6 +1,7 @@
 //! Evaluation of a run: a trace enters, figures leave. The other methods and the float64 reference are here too.
 
 pub mod baseline;
+pub mod bootstrap;
 pub mod figures;
 pub mod heard;
 pub mod metrics;

@@ -40,8 +40,14 @@ pub fn significant(value: f64, digits: usize) -> String {
     spelled.replace('-', "\u{2212}")
 }
 
-/// `value` with its unit, to three significant digits.
+/// A length in metres that is below this is shown in millimetres.
+pub const MILLIMETRES_BELOW_M: f64 = 0.1;
+
+/// `value` with its unit, to three significant digits. Short lengths are in millimetres.
 pub fn quantity(value: f64, unit: &str) -> String {
+    if unit == "m" && value != 0.0 && value.abs() < MILLIMETRES_BELOW_M {
+        return quantity(value * 1e3, "mm");
+    }
     format!("{}\u{a0}{unit}", significant(value, 3))
 }
 

@@ -1,6 +1,7 @@
 //! The HTML page: headings, tables, prose and figures enter in order, one self-contained document leaves.
 //!
-//! The document is well-formed XML as well as HTML, so that any parser can check it.
+//! The document is well-formed XML as well as HTML, so that any parser can check it. Its script adds values under the
+//! pointer, zoom and a map that plays; without it everything is there to be read.
 
 use std::fmt::Write;
 
@@ -14,7 +15,15 @@ use super::{
 /// From so many columns on a table is set smaller.
 const MANY_COLUMNS: usize = 7;
 
+/// From so many columns on a row is a block of its own on a phone.
+const STACKED_COLUMNS: usize = 4;
+
+/// From so many sections on a page has a list of contents.
+const LISTED_SECTIONS: usize = 3;
+
 const STYLE: &str = include_str!("style.css");
+
+const SCRIPT: &str = include_str!("script.js");
 
 /// One cell of a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +65,7 @@ pub struct Page {
     head: String,
     warnings: String,
     body: String,
+    sections: Vec<String>,
     figures: usize,
 }
 
@@ -63,7 +73,14 @@ impl Page {
     /// A page with this title. The `kicker` above it names the kind of page.
     pub fn new(kicker: &str, title: &str) -> Self {
         let head = format!("<p class=\"kicker\">{}</p>\n<h1>{}</h1>\n", escape(kicker), escape(title));
-        Self { title: title.into(), head, warnings: String::new(), body: String::new(), figures: 0 }
+        Self {
+            title: title.into(),
+            head,
+            warnings: String::new(),
+            body: String::new(),
+            sections: Vec::new(),
+            figures: 0,
+        }
     }
 
     // Writing to a String cannot fail, so the results of `write!` below are ignored.
@@ -97,7 +114,8 @@ impl Page {
 
     /// A heading.
     pub fn section(&mut self, title: &str) {
-        let _ = writeln!(self.body, "<h2>{}</h2>", escape(title));
+        self.sections.push(title.to_owned());
+        let _ = writeln!(self.body, "<h2 id=\"section-{}\">{}</h2>", self.sections.len(), escape(title));
     }
 
     /// A paragraph.
@@ -133,7 +151,11 @@ impl Page {
     /// A table. The first cell of each row is its heading. A column is aligned like its cell in the first row.
     pub fn table(&mut self, caption: &str, header: &[&str], rows: &[Vec<Cell>]) {
         // A table of many columns is set smaller, so that all of them are seen on a screen and on paper.
-        let class = if header.len() >= MANY_COLUMNS { " class=\"many\"" } else { "" };
+        let class = match header.len() {
+            MANY_COLUMNS.. => " class=\"many stacked\"",
+            STACKED_COLUMNS.. => " class=\"stacked\"",
+            _ => "",
+        };
         let caption = escape(caption);
         let _ = write!(self.body, "<div class=\"scroll\"><table{class}><caption>{caption}</caption><thead><tr>");
         for (index, name) in header.iter().enumerate() {
@@ -147,7 +169,10 @@ impl Page {
             for (index, cell) in row.iter().enumerate() {
                 let (open, close) = if index == 0 { ("th scope=\"row\"", "th") } else { ("td", "td") };
                 let class = if cell.class.is_empty() { String::new() } else { format!(" class=\"{}\"", cell.class) };
-                let _ = write!(self.body, "<{open}{class}>{}</{close}>", escape(&cell.text));
+                // Where a row is a block, each cell says what it is.
+                let label = header.get(index).filter(|label| !label.is_empty() && header.len() >= STACKED_COLUMNS);
+                let label = label.map_or(String::new(), |label| format!(" data-label=\"{}\"", escape(label)));
+                let _ = write!(self.body, "<{open}{class}{label}>{}</{close}>", escape(&cell.text));
             }
             self.body.push_str("</tr>\n");
         }
@@ -158,7 +183,7 @@ impl Page {
     pub fn figure(&mut self, title: &str, caption: &str, panels: &[&dyn Figure]) {
         self.figures += 1;
         let _ = writeln!(self.body, "<figure id=\"figure-{}\">", self.figures);
-        for width in [Width::Wide, Width::Narrow] {
+        for width in [Width::Broad, Width::Wide, Width::Narrow] {
             let _ = writeln!(self.body, "<div class=\"{}\">", width.class());
             for (index, panel) in panels.iter().enumerate() {
                 let id = format!("figure-{}-{}-{}", self.figures, width.class(), index + 1);
@@ -180,8 +205,20 @@ impl Page {
         self.body.push_str("</figcaption>\n</figure>\n");
     }
 
+    fn contents(&self) -> String {
+        if self.sections.len() < LISTED_SECTIONS {
+            return String::new();
+        }
+        let item = |(index, title): (usize, &String)| {
+            format!("<li><a href=\"#section-{}\">{}</a></li>", index + 1, escape(title))
+        };
+        let items: String = self.sections.iter().enumerate().map(item).collect();
+        format!("<nav aria-label=\"Contents\"><ul>{items}</ul></nav>\n")
+    }
+
     /// The finished document.
     pub fn finish(self) -> String {
+        let contents = self.contents();
         let Self { title, head, warnings, body, .. } = self;
         format!(
             concat!(
@@ -189,12 +226,14 @@ impl Page {
                 "<meta charset=\"utf-8\"/>\n",
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n",
                 "<meta name=\"color-scheme\" content=\"light dark\"/>\n",
-                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{head}{warnings}{body}</main>\n",
+                "<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n<main>\n{head}{warnings}{contents}{body}</main>\n",
                 "<footer>Written by holdover-sim {version}. This file is complete in itself; it loads nothing.</footer>\n",
-                "</body>\n</html>\n"
+                "<script>//<![CDATA[\n{script}//]]></script>\n</body>\n</html>\n"
             ),
             title = escape(&title),
             style = STYLE,
+            script = SCRIPT,
+            contents = contents,
             head = head,
             warnings = warnings,
             body = body,

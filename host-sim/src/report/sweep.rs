@@ -8,6 +8,7 @@ use super::{
     plot::{Axis, Chart, Layer, Series, Tone},
     run::Verdict,
 };
+use crate::measure::bootstrap::{Interval, spelled};
 
 /// The largest position errors that the paper reports: `(step in s, error in m)`.
 pub const PUBLISHED: [(f64, f64); 2] = [(0.01, 0.2), (1.0, 5.8)];
@@ -28,6 +29,12 @@ pub struct SweepRow {
     pub max_paper: Option<f64>,
     /// The literal paper's 99th percentile.
     pub p99_paper: Option<f64>,
+    /// The rms of both, the unit's first.
+    pub rms: [Option<f64>; 2],
+    /// Their intervals over the seeds.
+    pub rms_intervals: [Option<Interval>; 2],
+    /// Whose rms is less, where the intervals say so: `holdover` or `paper`.
+    pub less_rms: Option<&'static str>,
     /// Wall time of a tick in nanoseconds.
     pub ns_per_tick: f64,
 }
@@ -60,6 +67,7 @@ impl SweepReport {
         let mut page = Page::new("holdover-sim · report of a sweep", &self.title);
         page.verdict(self.verdict.passed, &self.verdict.reasons);
         errors_table(&mut page, &rows);
+        intervals_table(&mut page, &rows);
         page.section("Scenario");
         page.facts(&self.facts);
         page.command(&self.command);
@@ -95,6 +103,24 @@ fn errors_table(page: &mut Page, rows: &[SweepRow]) {
     let caption = "Position error in metres: the largest of all runs, and the 99th percentile of all runs together, ours \
                    and the literal paper’s, the smaller in bold; and the largest that the paper reports.";
     page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
+}
+
+fn intervals_table(page: &mut Page, rows: &[SweepRow]) {
+    let number = |value: f64| significant(value, 3);
+    let cell = |row: &SweepRow, index: usize, name: &str| {
+        let text = match (row.rms[index], row.rms_intervals[index]) {
+            (Some(rms), None) => number(rms),
+            (Some(rms), some) => format!("{} ({})", number(rms), spelled(some, number)),
+            _ => "–".into(),
+        };
+        if row.less_rms == Some(name) { Cell::strong(text) } else { Cell::number(text) }
+    };
+    let cells = |row: &SweepRow| {
+        vec![Cell::number(format!("{} s", row.step_s)), cell(row, 0, "holdover"), cell(row, 1, "paper")]
+    };
+    let caption = "Rms of the position error of all runs together in metres, with its interval of 95 % confidence over the seeds \
+                   (bootstrap), where there are at least five. Bold is what is less in each of these draws but one in forty.";
+    page.table(caption, &["Step", "Ours", "Literal paper"], &rows.iter().map(cells).collect::<Vec<_>>());
 }
 
 fn errors_figure(page: &mut Page, rows: &[SweepRow]) {

@@ -1,6 +1,7 @@
 //! The figures of a corridor: the results of the referee and of the estimates enter; the figures of all seeds together
 //! leave, and the reasons of a failed verdict.
 
+use crate::measure::bootstrap::{Interval, interval};
 use serde::Serialize;
 
 use super::beliefs::{Beliefs, Class};
@@ -100,6 +101,8 @@ pub struct Side {
     pub faults: u64,
     /// Mean travel time, from the arrival on.
     pub mean_travel_time_s: Option<f64>,
+    /// Its interval of 95 % confidence over the seeds.
+    pub mean_travel_time_interval_s: Option<Interval>,
     /// Longest travel time.
     pub longest_travel_time_s: Option<f64>,
     /// Smallest bumper gap on a road.
@@ -151,6 +154,7 @@ impl Side {
             emergency_stops: all().map(|outcome| outcome.remains.emergencies).sum(),
             faults: all().map(|outcome| outcome.remains.faults).sum(),
             mean_travel_time_s: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
+            mean_travel_time_interval_s: of_seeds(outcomes),
             longest_travel_time_s: times.iter().copied().reduce(f64::max),
             smallest_gap_m: least(|outcome| outcome.smallest_gap_m),
             smallest_clearance_s: least(|outcome| outcome.smallest_clearance_s),
@@ -169,11 +173,32 @@ impl Side {
         }
     }
 
+    /// The mean travel time with the interval over the seeds, if there is one.
+    #[must_use]
+    pub fn spelled_travel_time(&self) -> String {
+        let number = |value: f64| format!("{value:.2}");
+        let mean = self.mean_travel_time_s.filter(|time| time.is_finite()).map_or("-".into(), number);
+        match self.mean_travel_time_interval_s {
+            Some([low, high]) => format!("{mean} ±{:.2}", (high - low) / 2.0),
+            None => mean,
+        }
+    }
+
     /// Collisions on roads and in conflict areas together.
     #[must_use]
     pub fn collisions(&self) -> usize {
         self.collisions_on_roads + self.collisions_at_intersections
     }
+}
+
+/// The interval of the mean travel time; seeds with more vehicles count for more.
+fn of_seeds(outcomes: &[&Outcome]) -> Option<Interval> {
+    let sums: Vec<(f64, usize)> =
+        outcomes.iter().map(|one| (one.travel_times_s.iter().sum::<f64>(), one.travel_times_s.len())).collect();
+    interval(sums.len(), |drawn| {
+        let (sum, count) = drawn.iter().fold((0.0, 0), |all, run| (all.0 + sums[*run].0, all.1 + sums[*run].1));
+        (count > 0).then(|| sum / count as f64)
+    })
 }
 
 /// The figures under one difference.

@@ -8,7 +8,7 @@ use crate::bus::Frame;
 use crate::input::impairment::Window;
 
 /// Time from one entry of a trajectory to the next.
-const EVERY_S: f64 = 0.25;
+pub const EVERY_S: f64 = 0.25;
 
 /// The trajectory of one vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,6 +3,7 @@
 
 pub mod cost;
 pub mod demand;
+mod map;
 pub mod options;
 mod page;
 mod picture;
@@ -13,7 +14,6 @@ mod verdict;
 
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::commands::mcap_road::RoadMcap;
@@ -21,7 +21,7 @@ use crate::commands::motions::rows::{self, Row};
 use crate::draft::Draft;
 use crate::error::Error;
 use crate::input::scenario::{Envelope, Faults, Fitted};
-use crate::output::{self, LongRuns};
+use crate::output::{self, LongRuns, Progress};
 use crate::roads::conditions::Conditions;
 use crate::roads::description::{Corridor, Emergencies};
 use crate::roads::experiment::{Experiment, STEPS_S, Sides};
@@ -131,13 +131,10 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     let drawn = if is_drawn { STEPS_S.len() } else { 0 };
     let is_watched = options.trajectories.is_some() || options.mcap.is_some();
     let logged = usize::from(options.candump.is_some() || is_watched);
-    let bar = ProgressBar::new(
+    let progress = Progress::new(
         (Sides::COUNT * options.seeds.len() + WRONGS + SHARES.len() + drawn + options.vehicles.len() + logged) as u64,
     );
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} runs, {eta} left") {
-        bar.set_style(style);
-    }
-    let done = || bar.inc(1);
+    let done = || progress.inc();
     let start = Instant::now();
     let sides = experiment.sides(&options.seeds, done)?;
     let wall_s = start.elapsed().as_secs_f64();
@@ -182,7 +179,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
             done();
         }
     }
-    bar.finish_and_clear();
+    progress.finish();
     let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
 
     let mut failures = verdict::failures(&options.corridor.limits, &sides);

@@ -1,5 +1,6 @@
 //! The report of a corridor: results and journals enter, an HTML page leaves.
 
+use super::map;
 use super::options::CorridorOptions;
 use super::plots::{plots, scale};
 use super::scale::{Load, SPAN_S};
@@ -22,6 +23,12 @@ pub fn render(
 ) -> Page {
     let mut page = Page::new("holdover-sim · report of a corridor", &options.name);
     page.verdict(results.failures.is_empty(), &reasons(results));
+    let finest = steps.first().map(|(_, journal)| journal);
+    if let Some(map) = finest.and_then(|journal| map::passage(experiment, journal)) {
+        page.section("The passage");
+        page.figure(&map.title, &map.description, &[&map]);
+    }
+    page.section("All sides");
     let header: Vec<&str> = ["Figure"].into_iter().chain(SIDES).collect();
     let row = |(name, of): &super::table::Line| {
         let cells = results.sides.all().into_iter().map(|side| Cell::number(of(side)));

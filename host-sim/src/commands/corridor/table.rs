@@ -23,7 +23,7 @@ pub const LINES: &[Line] = &[
     ("full stops", |side| side.full_stops.to_string()),
     ("  emergency stops", |side| side.emergency_stops.to_string()),
     ("vehicles with a fault", |side| side.faults.to_string()),
-    ("mean travel time, s", |side| number(side.mean_travel_time_s, 2)),
+    ("mean travel time, s", Side::spelled_travel_time),
     ("longest travel time, s", |side| number(side.longest_travel_time_s, 1)),
     ("smallest gap on a road, m", |side| number(side.smallest_gap_m, 2)),
     ("shortest clearance, s", |side| number(side.smallest_clearance_s, 2)),

@@ -14,7 +14,7 @@ pub mod table;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::output;
+use crate::output::Progress;
 use crate::verdict::Verdict;
 use options::EnvelopeCostOptions;
 use rows::Row;
@@ -31,11 +31,11 @@ struct Results<'a> {
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &EnvelopeCostOptions) -> Result<Verdict, Error> {
     options.destination.warn();
-    let bar = output::progress(2 * options.seeds * options.scenarios.len() as u64);
+    let progress = Progress::new(2 * options.seeds * options.scenarios.len() as u64);
     let seeds = (options.seed, options.seeds);
-    let run = |scenario| rows::run(scenario, seeds, options.distance_m, || bar.inc(1));
+    let run = |scenario| rows::run(scenario, seeds, options.distance_m, || progress.inc());
     let rows = options.scenarios.iter().map(run).collect::<Result<Vec<Row>, Error>>()?;
-    bar.finish_and_clear();
+    progress.finish();
     let failures = rows::failures(&rows);
     let verdict = Verdict::of(&failures);
     let said = if verdict == Verdict::Pass { String::new() } else { verdict.line(&failures) };

@@ -3,6 +3,7 @@
 use super::options::EnvelopeCostOptions;
 use super::rows::{Row, Side};
 use super::table::silence;
+use crate::measure::bootstrap::spelled as interval;
 use crate::report::markup::{count, quantity, significant};
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Bars, Tone};
@@ -44,7 +45,10 @@ fn table(page: &mut Page, rows: &[Row]) {
             Cell::text(name),
             Cell::text(envelope),
             Cell::number(significant(100.0 * side.limited_share, 3)),
-            Cell::number(spelled(side.travel_time_s)),
+            Cell::number(match side.travel_time_interval_s {
+                None => spelled(side.travel_time_s),
+                some => format!("{} ({})", spelled(side.travel_time_s), interval(some, |time| significant(time, 4))),
+            }),
             Cell::number(significant(stops_per_run(row, side), 3)),
             Cell::number(spelled(side.min_gap_m)),
             Cell::number(significant(side.hardest_braking_mps2, 3)),
@@ -54,7 +58,7 @@ fn table(page: &mut Page, rows: &[Row]) {
     let name = |row: &Row| row.silence_s.map_or("as recorded".into(), |length| format!("{length} s"));
     let pair = |row: &Row| [cells(row, name(row), "off", &row.off), cells(row, String::new(), "on", &row.on)];
     let caption = "Time limited and travel time are of the vehicles whose link to the one ahead is impaired, gap and \
-                   braking the worst of all runs.";
+                   braking the worst of all runs. In parentheses: the interval of 95 % confidence over the seeds (bootstrap).";
     page.table(caption, &header, &rows.iter().flat_map(pair).collect::<Vec<_>>());
 }
 
@@ -124,6 +128,10 @@ fn say_time(rows: &[Row]) -> String {
     let Some((when, row)) = longest(rows) else { return "There is nothing to show.".into() };
     let limited = quantity(100.0 * row.on.limited_share, "%");
     let time = match (row.off.travel_time_s, row.on.travel_time_s) {
+        (Some(_), Some(_)) if row.cost_interval_s.is_some_and(|[low, high]| low <= 0.0 && high >= 0.0) => {
+            let range = interval(row.cost_interval_s, |time| significant(time, 3));
+            format!("what it adds to the way of {} m cannot be told from nothing ({range} s)", row.distance_m)
+        }
         (Some(off), Some(on)) if on >= off => {
             format!("the way of {} m takes {} longer with it", row.distance_m, quantity(on - off, "s"))
         }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::scenario::Scenario;
+use crate::measure::bootstrap::{Interval, mean, of_mean};
 use crate::measure::figures::impaired_followers;
 use crate::measure::simulate::simulate;
 use crate::parallel;
@@ -22,6 +23,8 @@ pub struct Row {
     pub off: Side,
     /// Figures with the envelope.
     pub on: Side,
+    /// The interval of 95 % confidence, over the seeds, of what the envelope adds to the travel time.
+    pub cost_interval_s: Option<Interval>,
 }
 
 /// The figures of all runs with one setting of the envelope.
@@ -32,6 +35,8 @@ pub struct Side {
     pub limited_share: f64,
     /// Mean travel time of these vehicles; `None`: one of them did not cover the distance.
     pub travel_time_s: Option<f64>,
+    /// Its interval of 95 % confidence over the seeds.
+    pub travel_time_interval_s: Option<Interval>,
     /// Full stops of vehicles that are driven by a unit, in all runs together.
     pub full_stops: usize,
     /// Smallest bumper gap.
@@ -74,7 +79,9 @@ pub fn run(
     };
     let outcomes: Vec<Outcome> = parallel::each(0..2 * seeds, one).into_iter().collect::<Result<_, _>>()?;
     let side = |first: usize| Side::of(&outcomes.iter().skip(first).step_by(2).collect::<Vec<_>>());
-    Ok(Row { silence_s: *silence_s, seeds, distance_m, off: side(0), on: side(1) })
+    let costs = outcomes.chunks(2).map(|pair| Some(pair.get(1)?.mean_time_s()? - pair.first()?.mean_time_s()?));
+    let cost_interval_s = costs.collect::<Option<Vec<f64>>>().and_then(|costs| of_mean(&costs));
+    Ok(Row { silence_s: *silence_s, seeds, distance_m, off: side(0), on: side(1), cost_interval_s })
 }
 
 fn outcome(scenario: &Scenario, seed: u64, distance_m: f64) -> Result<Outcome, Error> {
@@ -84,6 +91,7 @@ fn outcome(scenario: &Scenario, seed: u64, distance_m: f64) -> Result<Outcome, E
         side: Side {
             limited_share: summary.envelope.limited_share,
             travel_time_s: None,
+            travel_time_interval_s: None,
             full_stops: summary.full_stops,
             min_gap_m: summary.min_gap_m,
             hardest_braking_mps2: summary.hardest_braking_mps2,
@@ -104,12 +112,24 @@ fn travel_time(trace: &Trace, vehicle: usize, distance_m: f64) -> Option<f64> {
     Some(trace.times_s[before] + share * (trace.times_s[after] - trace.times_s[before]))
 }
 
+impl Outcome {
+    /// The mean travel time; `None`: a vehicle did not cover the distance.
+    fn mean_time_s(&self) -> Option<f64> {
+        mean(&self.travel_times_s.iter().copied().collect::<Option<Vec<f64>>>()?)
+    }
+}
+
 impl Side {
     fn of(outcomes: &[&Outcome]) -> Self {
         let sides = || outcomes.iter().map(|outcome| outcome.side);
         let times: Option<Vec<f64>> = outcomes.iter().flat_map(|outcome| outcome.travel_times_s.clone()).collect();
         Self {
             limited_share: sides().map(|side| side.limited_share).sum::<f64>() / outcomes.len().max(1) as f64,
+            travel_time_interval_s: outcomes
+                .iter()
+                .map(|outcome| outcome.mean_time_s())
+                .collect::<Option<Vec<f64>>>()
+                .and_then(|means| of_mean(&means)),
             travel_time_s: times.map(|times| times.iter().sum::<f64>() / times.len().max(1) as f64),
             full_stops: sides().map(|side| side.full_stops).sum(),
             min_gap_m: sides().filter_map(|side| side.min_gap_m).reduce(f64::min),

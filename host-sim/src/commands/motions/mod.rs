@@ -20,10 +20,10 @@ pub mod table;
 
 pub use page::{largest, section};
 
-use indicatif::ProgressBar;
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::output::Progress;
 use crate::verdict::Verdict;
 use motion::TargetMotion;
 use options::MotionsOptions;
@@ -40,9 +40,9 @@ struct Results<'a> {
 /// # Errors
 /// A configuration that the units refuse, and output that cannot be written.
 pub fn run(options: &MotionsOptions) -> Result<Verdict, Error> {
-    let bar = ProgressBar::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
-    let rows = rows::run(options.seed, options.silences, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let progress = Progress::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
+    let rows = rows::run(options.seed, options.silences, || progress.inc())?;
+    progress.finish();
     let page = || page::render(options, &rows);
     options.destination.deliver(&Results { rows: &rows }, &table::text(&rows), "", page)?;
     Ok(Verdict::Pass)

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::motion::{PHASES, SILENCE_S, TargetMotion};
 use super::silence::{self, Errors, METHODS, NAMES};
 use crate::error::Error;
+use crate::measure::bootstrap::{Interval, Squares, interval};
 use crate::measure::metrics::{ErrorStatistics, rms};
 use crate::parallel;
 
@@ -32,6 +33,8 @@ pub struct Row {
     pub best_baseline: &'static str,
     /// The unit's rms over that of the best baseline.
     pub ours_over_best: f64,
+    /// Its interval of 95 % confidence over the silences.
+    pub ours_over_best_interval: Option<Interval>,
     /// The unit beside the best baseline.
     pub standing: Outcome,
     /// The figures of the unit, then of the baselines.
@@ -42,11 +45,11 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// More than 5 % smaller.
+    /// More than 5 % smaller, and smaller in the whole interval.
     Wins,
-    /// Within 5 %.
+    /// Neither.
     Draws,
-    /// More than 5 % larger.
+    /// More than 5 % larger, and larger in the whole interval.
     Loses,
 }
 
@@ -86,18 +89,27 @@ pub fn run(seed: u64, silences: u32, done: impl Fn() + Sync) -> Result<Vec<Row>,
     let of_motion = |motion| {
         let errors = parallel::each(0..silences, |number| one(motion, number));
         let errors: Vec<Vec<Errors>> = errors.into_iter().collect::<Result<_, _>>()?;
-        row(motion, silences, &errors.concat())
+        row(motion, silences, &errors)
             .ok_or_else(|| Error::new(format!("{motion}: nobody ever heard the target"), "report this"))
     };
     TargetMotion::ALL.into_iter().map(of_motion).collect()
 }
 
-fn row(motion: TargetMotion, silences: u32, errors: &[Errors]) -> Option<Row> {
+fn row(motion: TargetMotion, silences: u32, of_silences: &[Vec<Errors>]) -> Option<Row> {
+    let errors = &of_silences.concat();
     let methods: Vec<MethodFigures> = (0..METHODS).map(|method| figures(method, errors)).collect::<Option<_>>()?;
     let (ours, baselines) = methods.split_first()?;
     let is_better = |a: &MethodFigures, b: &MethodFigures| a.rms_position_m < b.rms_position_m * (1.0 - SAME);
     let best = baselines.iter().reduce(|best, other| if is_better(other, best) { other } else { best })?;
     let ours_over_best = ours.rms_position_m / best.rms_position_m;
+    let best_method = NAMES.iter().position(|name| *name == best.name)?;
+    let squares = [0, best_method].map(|method| {
+        of_silences.iter().map(|one| Squares::of(one.iter().map(|e| e.position_m[method]))).collect::<Vec<_>>()
+    });
+    let ours_over_best_interval = interval(of_silences.len(), |drawn| {
+        let [ours, best] = squares.each_ref().map(|of| Squares::rms(drawn.iter().map(|silence| &of[*silence])));
+        Some(ours? / best?)
+    });
     Some(Row {
         motion,
         published: motion.is_published(),
@@ -105,19 +117,19 @@ fn row(motion: TargetMotion, silences: u32, errors: &[Errors]) -> Option<Row> {
         comparisons: errors.len(),
         best_baseline: best.name,
         ours_over_best,
-        standing: Outcome::of(ours_over_best),
+        ours_over_best_interval,
+        standing: Outcome::of(ours_over_best, ours_over_best_interval),
         methods,
     })
 }
 
 impl Outcome {
-    fn of(ours_over_best: f64) -> Self {
-        if ours_over_best < 1.0 - LEVEL {
-            Self::Wins
-        } else if ours_over_best <= 1.0 + LEVEL {
-            Self::Draws
-        } else {
-            Self::Loses
+    /// Without an interval nothing is said.
+    fn of(ours_over_best: f64, interval: Option<Interval>) -> Self {
+        match interval {
+            Some([_, high]) if ours_over_best < 1.0 - LEVEL && high < 1.0 => Self::Wins,
+            Some([low, _]) if ours_over_best > 1.0 + LEVEL && low > 1.0 => Self::Loses,
+            _ => Self::Draws,
         }
     }
 
@@ -166,19 +178,33 @@ mod tests {
         for (singers, standing) in [(4.0, Outcome::Wins), (3.1, Outcome::Draws), (2.9, Outcome::Draws)] {
             errors.position_m = [9.0; METHODS];
             (errors.position_m[0], errors.position_m[4]) = (-3.0, singers);
-            let row = row(TargetMotion::Sine, 1, &[errors; 2]).unwrap();
-            assert_eq!((row.best_baseline, row.standing, row.comparisons), ("singer", standing, 2));
+            let row = row(TargetMotion::Sine, 6, &vec![vec![errors]; 6]).unwrap();
+            assert_eq!((row.best_baseline, row.standing, row.comparisons), ("singer", standing, 6));
         }
         errors.position_m[4] = 1.0;
-        let row = row(TargetMotion::Sine, 1, &[errors]).unwrap();
+        let row = row(TargetMotion::Sine, 6, &vec![vec![errors]; 6]).unwrap();
         assert_eq!((row.standing, row.ours_over_best, row.methods[0].max_position_m), (Outcome::Loses, 3.0, 3.0));
+    }
+
+    #[test]
+    fn of_silences_that_contradict_one_another_none_is_won() {
+        let mut silences =
+            vec![vec![Errors { since_s: 0.1, position_m: [9.0; METHODS], speed_mps: [1.0; METHODS] }]; 6];
+        for (number, silence) in silences.iter_mut().enumerate() {
+            silence[0].position_m[0] = if number == 0 { 12.0 } else { 3.0 };
+            silence[0].position_m[4] = 6.0;
+        }
+        let row = row(TargetMotion::Sine, 6, &silences).unwrap();
+        let [low, high] = row.ours_over_best_interval.unwrap();
+        assert!(low < row.ours_over_best && row.ours_over_best < high && high > 1.0, "{low} {high}");
+        assert_eq!((row.ours_over_best < 0.95, row.standing), (true, Outcome::Draws));
     }
 
     #[test]
     fn of_those_that_are_alike_the_simplest_is_the_best() {
         let mut errors = Errors { since_s: 0.1, position_m: [3.0; METHODS], speed_mps: [1.0; METHODS] };
         (errors.position_m[1], errors.position_m[5]) = (9.0, 3.0 - 1e-8);
-        assert_eq!(row(TargetMotion::Braking, 1, &[errors]).unwrap().best_baseline, "constant_speed");
+        assert_eq!(row(TargetMotion::Braking, 1, &[vec![errors]]).unwrap().best_baseline, "constant_speed");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::rows::{Outcome, Row};
 use crate::measure::baseline::spoken;
+use crate::measure::bootstrap::spelled;
 use crate::report::markup::significant;
 
 /// The table.
@@ -39,5 +40,7 @@ pub fn text(rows: &[Row]) -> String {
 pub fn standing(row: &Row) -> String {
     let published = if row.published { "published" } else { "not published" };
     let (word, ratio, best) = (row.standing.word(), significant(row.ours_over_best, 3), spoken(row.best_baseline));
-    format!("{published}; holdover {word}, {ratio} times the rms of {best}")
+    let interval = spelled(row.ours_over_best_interval, |value| significant(value, 3));
+    let interval = if interval.is_empty() { "too few silences for an interval".into() } else { interval };
+    format!("{published}; holdover {word}, {ratio} times the rms of {best} ({interval})")
 }

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::scenario::Switch;
-use crate::output;
+use crate::output::Progress;
 use crate::verdict::Verdict;
 use options::StringOptions;
 use rows::{Row, Smallest};
@@ -50,9 +50,9 @@ struct Results<'a> {
 /// # Errors
 /// A configuration that the units refuse, and output that cannot be written.
 pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
-    let bar = output::progress(rows::count(options));
-    let rows = rows::run(options, || bar.inc(1))?;
-    bar.finish_and_clear();
+    let progress = Progress::new(rows::count(options));
+    let rows = rows::run(options, || progress.inc())?;
+    progress.finish();
     let failures = rows::failures(&rows);
     let results = Results {
         limit: rows::LIMIT,

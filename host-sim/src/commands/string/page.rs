@@ -1,8 +1,9 @@
 //! The report of string stability: rows enter, an HTML page with a table and curves leaves.
 
 use super::options::{StringOptions, shipped_time_gap_s};
-use super::rows::{LIMIT, Row, Smallest, smallest};
+use super::rows::{LIMIT, Mean, Row, Smallest, smallest};
 use super::table::{ratio, runs};
+use crate::measure::bootstrap::spelled;
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
 
@@ -21,6 +22,7 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Pag
     page.paragraph(WHAT);
     page.paragraph(&format!("{}. {CHANCE}", runs(options, rows)));
     table(&mut page, rows);
+    means(&mut page, rows);
     page.command(&options.command());
     if options.time_gaps_s.len() > 1 {
         smallest_gaps(&mut page, rows);
@@ -34,6 +36,38 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Pag
         }
     }
     page
+}
+
+/// The means over the runs, with their intervals. Bold is a method that differs from holdover in the whole interval, and
+/// holdover where it passes on less than all others.
+fn means(page: &mut Page, rows: &[Row]) {
+    let number = |value: f64| format!("{value:.4}");
+    let cells = |row: &Row| {
+        let others = row.means.iter().skip(1);
+        let is_least = |mean: &Mean| match mean.holdover_less_this_interval {
+            Some([low, _]) => low > 0.0,
+            None => {
+                let mut highs = others.clone().map(|other| other.holdover_less_this_interval.map(|[_, high]| high));
+                highs.all(|high| high.is_some_and(|high| high < 0.0))
+            }
+        };
+        let cell = |mean: &Mean| {
+            let text = match (mean.ratio, mean.ratio_interval) {
+                (Some(ratio), None) => number(ratio),
+                (Some(ratio), some) => format!("{} ({})", number(ratio), spelled(some, number)),
+                (None, _) => "–".into(),
+            };
+            if is_least(mean) { Cell::strong(text) } else { Cell::number(text) }
+        };
+        let place = [row.time_gap_s, row.delay_s, row.loss].map(|value| Cell::number(value.to_string()));
+        place.into_iter().chain(row.means.iter().map(cell)).collect::<Vec<_>>()
+    };
+    let header =
+        ["Time gap, s", "Delay, s", "Loss", "Holdover", "As it stands", "Age times speed", "CACC", "Degraded CACC"];
+    let caption = "The largest ratio of a run, in the mean over the runs, with its interval of 95 % confidence (bootstrap) where \
+                   there are at least five runs. Bold: another method that passes on less than holdover in the whole interval of \
+                   their difference; holdover, where it passes on less than each other one in that sense.";
+    page.table(caption, &header, &rows.iter().map(cells).collect::<Vec<_>>());
 }
 
 fn table(page: &mut Page, rows: &[Row]) {

@@ -12,6 +12,7 @@ use super::options::StringOptions;
 use super::others::{self, Other};
 use crate::error::Error;
 use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario, Switch};
+use crate::measure::bootstrap::{Interval, mean, of_mean};
 use crate::measure::simulate::simulate;
 use crate::parallel;
 use crate::sim::world::{Tick, Trace};
@@ -38,6 +39,8 @@ pub struct Row {
     pub cacc: Option<Worst>,
     /// Largest ratio with that controller without messages.
     pub degraded_cacc: Option<Worst>,
+    /// The largest ratio of a run with each method, in the mean over the runs.
+    pub means: Vec<Mean>,
     /// Largest ratio of each disturbance, with holdover.
     pub by_disturbance: Vec<Option<Worst>>,
     /// Runs with holdover, one for each disturbance and seed.
@@ -48,6 +51,51 @@ pub struct Row {
     pub collisions: usize,
     /// Followers whose units did not always drive by their law during the measurement, in all runs.
     pub not_following: usize,
+}
+
+/// The mean over the runs of the largest ratio in each.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Mean {
+    /// The method.
+    pub method: &'static str,
+    /// The mean.
+    pub ratio: Option<f64>,
+    /// Its interval of 95 % confidence over the runs.
+    pub ratio_interval: Option<Interval>,
+    /// The interval of the difference to holdover in the same runs: holdover's ratio less this one.
+    pub holdover_less_this_interval: Option<Interval>,
+}
+
+/// How a method's outcome is found.
+type Method = (&'static str, fn(&Outcome) -> &Option<Worst>);
+
+/// The methods, holdover first.
+const METHODS: [Method; 5] = [
+    ("holdover", |outcome| &outcome.holdover),
+    ("as_it_stands", |outcome| &outcome.as_it_stands),
+    ("age_times_speed", |outcome| &outcome.age_times_speed),
+    ("cacc", |outcome| &outcome.cacc),
+    ("degraded_cacc", |outcome| &outcome.degraded_cacc),
+];
+
+fn means(outcomes: &[&Outcome]) -> Vec<Mean> {
+    let ratios = |of: fn(&Outcome) -> &Option<Worst>| {
+        outcomes.iter().map(|outcome| Some(of(outcome).as_ref()?.ratio)).collect::<Option<Vec<f64>>>()
+    };
+    let ours = ratios(METHODS[0].1);
+    let of_method = |(index, (method, of)): (usize, Method)| {
+        let theirs = ratios(of);
+        let differences = ours.as_ref().zip(theirs.as_ref()).filter(|_| index > 0);
+        let differences =
+            differences.map(|(ours, theirs)| ours.iter().zip(theirs).map(|(a, b)| a - b).collect::<Vec<_>>());
+        Mean {
+            method,
+            ratio: theirs.as_deref().and_then(mean),
+            ratio_interval: theirs.as_deref().and_then(of_mean),
+            holdover_less_this_interval: differences.as_deref().and_then(of_mean),
+        }
+    };
+    METHODS.into_iter().enumerate().map(of_method).collect()
 }
 
 /// The place of a row: time gap, delay and loss.
@@ -126,6 +174,7 @@ fn row((time_gap_s, delay_s, loss): Place, outcomes: &[Vec<Outcome>]) -> Row {
         age_times_speed: worst(|outcome| &outcome.age_times_speed),
         cacc: worst(|outcome| &outcome.cacc),
         degraded_cacc: worst(|outcome| &outcome.degraded_cacc),
+        means: means(&all().collect::<Vec<_>>()),
         by_disturbance: outcomes.iter().map(|of| largest(&mut of.iter(), |outcome| &outcome.holdover)).collect(),
         runs: all().count(),
         runs_above: all().filter(|outcome| is_above(&outcome.holdover)).count(),

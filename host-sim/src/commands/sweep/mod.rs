@@ -14,10 +14,10 @@ pub mod timing;
 
 pub use timing::of_log;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::output::Progress;
 use crate::verdict::Verdict;
 use options::SweepOptions;
 use rows::{Failure, Row};
@@ -34,17 +34,16 @@ struct Results<'a> {
 /// A scenario that the units refuse, and output that cannot be written.
 pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
     options.destination.warn();
-    let bar = progress(options);
+    let progress = Progress::new(options.runs());
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
     for scenario in &options.scenarios {
-        bar.set_message(format!("step {} s", scenario.step_s));
-        let runs = rows::run(scenario, options.seed, options.seeds, || bar.inc(1))?;
+        let runs = rows::run(scenario, options.seed, options.seeds, || progress.inc())?;
         let timing = timing::measure(scenario, options.seed)?;
         let (step_s, seeds) = (scenario.step_s, options.seeds);
-        rows.push(Row { step_s, seeds, ours: runs.ours, paper: runs.paper, timing });
+        rows.push(Row { step_s, seeds, ours: runs.ours, paper: runs.paper, less_rms: runs.less_rms, timing });
         failures.extend(runs.failures);
     }
-    bar.finish_and_clear();
+    progress.finish();
     let said = match &failures[..] {
         [] => String::new(),
         failures => verdict(options.runs(), failures),
@@ -52,15 +51,6 @@ pub fn run(options: &SweepOptions) -> Result<Verdict, Error> {
     let page = || page::report(options, &rows, &failures).page();
     options.destination.deliver(&Results { rows: &rows }, &table::text(options, &rows, &failures), &said, page)?;
     Ok(Verdict::of(&failures))
-}
-
-fn progress(options: &SweepOptions) -> ProgressBar {
-    let bar = ProgressBar::new(options.runs());
-    // The template is a constant. If it were wrong, the default bar would be used.
-    if let Ok(style) = ProgressStyle::with_template("{msg:>12} {wide_bar} {pos}/{len} runs, {eta} to go") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// The line of the verdict.

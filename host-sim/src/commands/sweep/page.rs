@@ -28,6 +28,9 @@ fn sweep_row(row: &Row) -> SweepRow {
         p99_ours: row.ours.p99_position_error_m,
         max_paper: row.paper.max_position_error_m,
         p99_paper: row.paper.p99_position_error_m,
+        rms: [&row.ours, &row.paper].map(|errors| errors.rms_position_error_m),
+        rms_intervals: [&row.ours, &row.paper].map(|errors| errors.rms_interval_m),
+        less_rms: row.less_rms,
         ns_per_tick: row.timing.ns_per_tick,
     }
 }

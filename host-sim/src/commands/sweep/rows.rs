@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::timing::Timing;
 use crate::error::Error;
 use crate::input::scenario::Scenario;
+use crate::measure::bootstrap::{Interval, Squares, interval};
 use crate::measure::figures::{errors, failures, ours, papers};
 use crate::measure::metrics::{max_abs, percentile_abs};
 use crate::measure::simulate::simulate;
@@ -21,6 +22,8 @@ pub struct Row {
     pub ours: Errors,
     /// Errors of the literal paper's method, on the same messages.
     pub paper: Errors,
+    /// Whose rms is less, where the interval of the difference says so.
+    pub less_rms: Option<&'static str>,
     /// Wall-clock figures. All other figures are the same for the same seeds.
     pub timing: Timing,
 }
@@ -32,11 +35,30 @@ pub struct Errors {
     pub max_position_error_m: Option<f64>,
     /// 99th percentile of the magnitudes of all runs together, by nearest rank, in metres.
     pub p99_position_error_m: Option<f64>,
+    /// Root of the mean square of all runs together, in metres.
+    pub rms_position_error_m: Option<f64>,
+    /// Its interval of 95 % confidence over the seeds.
+    pub rms_interval_m: Option<Interval>,
 }
 
 impl Errors {
-    fn of(errors: &[f64]) -> Self {
-        Self { max_position_error_m: max_abs(errors), p99_position_error_m: percentile_abs(errors, 99.0) }
+    fn of(errors: &[f64], largest: &[f64], squares: &[Squares]) -> Self {
+        Self {
+            max_position_error_m: max_abs(largest),
+            p99_position_error_m: percentile_abs(errors, 99.0),
+            rms_position_error_m: Squares::rms(squares),
+            rms_interval_m: interval(squares.len(), |drawn| Squares::rms(drawn.iter().map(|run| &squares[*run]))),
+        }
+    }
+}
+
+/// Whose rms is less, if every difference that the seeds allow for says the same.
+fn less([ours, papers]: [&[Squares]; 2]) -> Option<&'static str> {
+    let rms = |of: &[Squares], drawn: &[usize]| Squares::rms(drawn.iter().map(|run| &of[*run]));
+    match interval(ours.len(), |drawn| Some(rms(ours, drawn)? - rms(papers, drawn)?))? {
+        [_, high] if high < 0.0 => Some("holdover"),
+        [low, _] if low > 0.0 => Some("paper"),
+        _ => None,
     }
 }
 
@@ -58,6 +80,8 @@ pub struct Runs {
     pub ours: Errors,
     /// Errors of the literal paper's method.
     pub paper: Errors,
+    /// Whose rms is less.
+    pub less_rms: Option<&'static str>,
     /// Failed runs, by seed.
     pub failures: Vec<Failure>,
 }
@@ -81,8 +105,11 @@ pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -
         outcome.map(|outcome| (seed, outcome))
     };
     let (mut ours, mut paper, mut largest, mut failures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut squares = [Vec::new(), Vec::new()];
     for outcome in parallel::each(seed..=seed + (seeds - 1), one) {
         let (seed, outcome) = outcome?;
+        squares[0].push(Squares::of(outcome.ours.iter().copied()));
+        squares[1].push(Squares::of(outcome.paper.iter().copied()));
         ours.extend(outcome.ours);
         paper.extend(outcome.paper);
         largest.push(outcome.largest);
@@ -90,11 +117,12 @@ pub fn run(scenario: &Scenario, seed: u64, seeds: u64, done: impl Fn() + Sync) -
             failures.push(Failure { seed, step: scenario.step_s.to_string(), causes: outcome.causes });
         }
     }
-    let of = |errors: &[f64], index: usize| Errors {
-        max_position_error_m: max_abs(&largest.iter().filter_map(|run| run[index]).collect::<Vec<_>>()),
-        ..Errors::of(errors)
+    let of = |errors: &[f64], index: usize| {
+        let largest: Vec<f64> = largest.iter().filter_map(|run| run[index]).collect();
+        Errors::of(errors, &largest, &squares[index])
     };
-    Ok(Runs { ours: of(&ours, 0), paper: of(&paper, 1), failures })
+    let less_rms = less([&squares[0], &squares[1]]);
+    Ok(Runs { ours: of(&ours, 0), paper: of(&paper, 1), less_rms, failures })
 }
 
 fn outcome(scenario: &Scenario, seed: u64) -> Result<Outcome, Error> {

@@ -73,8 +73,24 @@ impl<'a> Table<'a> {
         }
         let header = records.remove(0);
         let table = Self { file, columns, header, records };
+        table.is_of_commas()?;
         table.is_even()?;
         Ok(table)
+    }
+
+    /// Checks that columns are parted by commas, which a header of a single field with another separator in it denies.
+    fn is_of_commas(&self) -> Result<(), Error> {
+        let header = self.header.fields.iter().collect::<Vec<_>>().join(",");
+        let other =
+            [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(separator, _)| header.contains(*separator));
+        match other {
+            Some((_, separators)) if self.header.fields.len() == 1 => {
+                let cause = format!("the header {} has {separators} between its columns", quoted(&header));
+                let remedy = "write commas between columns, and decimal points";
+                Err(Error::new(cause, remedy).in_file(self.file).at_line(self.header.line))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checks that no line has more fields than there are columns.
@@ -106,17 +122,8 @@ impl<'a> Table<'a> {
     /// The error of a file without this column.
     pub fn lacks(&self, column: &str) -> Error {
         let found = self.header.fields.iter().collect::<Vec<_>>().join(",");
-        let other = [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(separator, _)| found.contains(*separator));
-        let (cause, remedy) = match other {
-            Some((_, separators)) if self.header.fields.len() == 1 => (
-                format!("the header {} has {separators} between its columns", quoted(&found)),
-                "write commas between columns, and decimal points".to_owned(),
-            ),
-            _ => (
-                format!("no column `{column}` in the header {}", quoted(&found)),
-                format!("name the columns {}", self.columns),
-            ),
-        };
+        let cause = format!("no column `{column}` in the header {}", quoted(&found));
+        let remedy = format!("name the columns {}", self.columns);
         Error::new(cause, remedy).in_file(self.file).at_line(self.header.line)
     }
 

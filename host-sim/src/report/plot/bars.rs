@@ -7,6 +7,7 @@ use super::{
     scale::{Axis, Extent},
     svg::{Anchor, Area, Svg, text_width},
 };
+use crate::report::markup::quantity;
 
 /// Numbers of several methods in groups: errors by age class, by length of outage.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,7 +61,7 @@ impl Figure for Bars {
         let area = Area { left: frame::left_margin(frame::labels(&ticks), width), top, right: pixels - 6.0, bottom };
 
         legend.draw(&mut svg);
-        frame::draw_y_axis(&mut svg, &axis, &ticks, area, legend.height() + 12.0);
+        frame::draw_y_axis(&mut svg, &axis.label(&y), &ticks, area, legend.height() + 12.0);
         let pitch = area.width() / self.groups.len().max(1) as f64;
         let bar = pitch * 0.8 / self.methods.len().max(1) as f64;
         let ground = if axis.draws(0.0) { y.at(0.0).clamp(top, bottom) } else { bottom };
@@ -68,7 +69,7 @@ impl Figure for Bars {
             let left = area.left + pitch * group as f64;
             let middle = left + pitch / 2.0;
             svg.text("tick", Anchor::Middle, (middle, bottom + 16.0), &shortened(name, pitch.max(text_width("xx"))));
-            for (index, (_, tone, values)) in self.methods.iter().enumerate() {
+            for (index, (method, tone, values)) in self.methods.iter().enumerate() {
                 let Some(value) = values.get(group).copied().flatten().filter(|value| axis.draws(*value)) else {
                     continue;
                 };
@@ -77,7 +78,8 @@ impl Figure for Bars {
                 let (upper, lower) = (at.min(ground), at.max(ground));
                 let area =
                     Area { left, top: upper, right: left + (bar - 1.0).max(1.0), bottom: lower.max(upper + 0.5) };
-                svg.rectangle(&format!("fill {}", tone.class()), area);
+                let told = format!("{method}, {name}: {}", quantity(value, axis.unit()));
+                svg.telling(&format!("fill {}", tone.class()), area, told.trim_end());
             }
         }
         svg.line("axis", (area.left, ground), (area.right, ground));

@@ -5,7 +5,7 @@ use super::{
     frame::{self, BELOW, TITLE_ROW, Y_SPACING},
     legend::{self, Legend, Swatch},
     scale::{Axis, Extent},
-    svg::{Anchor, Area, Svg},
+    svg::{Anchor, Area, Svg, TEXT_HEIGHT},
 };
 
 /// The most labels at the ends of lines. More cannot be told apart, so a legend replaces them.
@@ -76,7 +76,7 @@ impl Chart {
     /// Whether lines are labelled at their ends, which they are if there is room. All other names are in the legend.
     fn labels_ends(&self, width: Width) -> bool {
         let lines = self.layers.iter().filter(|l| l.entry().swatch == Swatch::Line && !l.entry().name.is_empty());
-        !self.listed && width == Width::Wide && lines.count() <= MOST_END_LABELS
+        !self.listed && width != Width::Narrow && lines.count() <= MOST_END_LABELS
     }
 }
 
@@ -103,10 +103,9 @@ impl Figure for Chart {
 
         legend.draw(&mut svg);
         frame::draw_shades(&mut svg, &self.shades, &self.x, &x, area);
-        frame::draw_y_axis(&mut svg, &self.y, &y_ticks, area, legend.height() + 12.0);
+        frame::draw_y_axis(&mut svg, &self.y.label(&y), &y_ticks, area, legend.height() + 12.0);
         frame::draw_x_axis(&mut svg, &self.x, &x, area);
-        // Half a dot wider than the frame, so that marks on its edges are not cut.
-        svg.clipped(Area { left: area.left - 3.0, right: area.right + 3.0, ..area }, |svg| {
+        svg.plot(area, &frame::described((&self.x, &x), Some((&self.y, &y))), |svg| {
             for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
                 svg.line("guide", (area.left, y.at(guide.at)), (area.right, y.at(guide.at)));
             }
@@ -115,11 +114,17 @@ impl Figure for Chart {
             layers.sort_by_key(|layer| layer.entry().tone == Tone::Ego);
             layers.into_iter().for_each(|layer| layer.draw(svg, self.axes(), &x, &y, area));
         });
+        // A label that would lie on another one is left out.
+        let mut labelled: Vec<f64> = Vec::new();
         for guide in self.guides.iter().filter(|guide| self.y.draws(guide.at)) {
             let at = y.at(guide.at);
             if (area.top - 0.5..=area.bottom + 0.5).contains(&at) {
                 let baseline = if at - area.top < 14.0 { at + 12.0 } else { at - 4.0 };
-                svg.text("guide-label", Anchor::Start, (area.left + 6.0, baseline), &guide.label);
+                if !guide.label.is_empty() && labelled.iter().all(|other| (other - baseline).abs() > TEXT_HEIGHT + 2.0)
+                {
+                    svg.text("guide-label", Anchor::Start, (area.left + 6.0, baseline), &guide.label);
+                    labelled.push(baseline);
+                }
             }
         }
         let ends = ends.iter().filter(|layer| !layer.entry().name.is_empty());

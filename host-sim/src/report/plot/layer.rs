@@ -7,6 +7,7 @@ use super::{
     scale::{Axis, Extent, Mapping},
     svg::{Area, Svg},
 };
+use crate::report::markup::significant;
 
 /// One item of a chart. A layer without a name has no entry in the legend.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,8 +117,9 @@ impl Layer {
             |&(across, up): &(f64, f64)| (axes.0.draws(across) && axes.1.draws(up)).then(|| (x.at(across), y.at(up)));
         match self {
             Self::Line { series, tone, marked } => {
-                svg.path(
+                svg.named_path(
                     &format!("line {}", tone.class()),
+                    &series.name,
                     &path::line(series.runs().iter().map(|point| place(point.as_ref()?))),
                 );
                 if *marked {
@@ -128,14 +130,18 @@ impl Layer {
                 }
             }
             Self::Dots { series, tone } => {
-                svg.path(&format!("dots {}", tone.class()), &path::dots(series.points.iter().filter_map(place)));
+                svg.named_path(
+                    &format!("dots {}", tone.class()),
+                    &series.name,
+                    &path::dots(series.points.iter().filter_map(place)),
+                );
             }
-            Self::Band { edges, tone, .. } => {
+            Self::Band { name, edges, tone } => {
                 let edge = |&(across, low, high): &(f64, f64, f64)| {
                     let drawn = axes.0.draws(across) && axes.1.draws(low) && axes.1.draws(high);
                     drawn.then(|| (x.at(across), y.at(low), y.at(high)))
                 };
-                svg.path(&format!("band {}", tone.class()), &path::band(edges.iter().map(edge)));
+                svg.named_path(&format!("band {}", tone.class()), name, &path::band(edges.iter().map(edge)));
             }
             Self::Rug { at, tone, .. } => {
                 let mut pixels: Vec<i64> =
@@ -149,11 +155,17 @@ impl Layer {
                     let top = y.at(bin.count as f64).min(area.bottom);
                     let (left, right) = (x.at(bin.from) + 0.5, x.at(bin.to) - 0.5);
                     let column = Area { left, top, right: right.max(left + 0.5), bottom: area.bottom };
-                    svg.rectangle(&format!("fill {}", tone.class()), column);
+                    let told = format!("{} to {}: {}", short(bin.from), short(bin.to), bin.count);
+                    svg.telling(&format!("fill {}", tone.class()), column, &told);
                 }
             }
         }
     }
+}
+
+/// `value` as a pointer is told.
+fn short(value: f64) -> String {
+    significant(value, 3)
 }
 
 /// `value` in half pixels. Strokes that are nearer to one another than that count as one.

@@ -1,12 +1,13 @@
-//! Figures as inline SVG: named data enter; one `<svg>` element leaves, at one of two widths.
+//! Figures as inline SVG: named data enter; one `<svg>` element leaves, at one of three widths.
 //!
-//! A page shows the wide drawing on a screen or on paper, and the narrow one on a phone, so that the letters keep their
-//! size. Colour, weight and dashes come from classes, which the page's style defines for a light and a dark appearance.
+//! A page shows the broad drawing on a large screen, the wide one on a small one and on paper, and the narrow one on a
+//! phone, so that the letters keep their size. Colour, weight and dashes come from classes, which the page's style defines for a light and a dark appearance.
 //!
 //! | figure | for |
 //! |---|---|
 //! | [`Chart`] | lines, bands, dots, rugs and histogram columns over numeric axes, linear or logarithmic |
 //! | [`Strip`] | categories over time, a row for each subject |
+//! | [`Map`] | vehicles on their roads, which a script plays |
 //! | [`Bars`] | numbers of several methods side by side, in groups |
 //!
 //! A value that is not finite (or not positive, on a logarithmic axis) is never drawn. It interrupts a line, and
@@ -19,6 +20,7 @@ mod frame;
 mod heatmap;
 mod layer;
 mod legend;
+mod map;
 mod path;
 mod scale;
 mod strip;
@@ -29,6 +31,7 @@ pub use chart::{Chart, Guide};
 pub use data::{Bin, cumulative, histogram};
 pub use heatmap::{HeatMap, Shade};
 pub use layer::Layer;
+pub use map::{Map, Mover};
 pub use scale::Axis;
 pub use strip::{Category, Strip, StripRow};
 
@@ -74,7 +77,7 @@ impl Series {
     }
 }
 
-/// A labelled interval of x, drawn as a shade: a silence of the link.
+/// A labelled interval of x, drawn as a shade: a silence of the link. One without a length is a moment: a collision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interval {
     /// Where it begins.
@@ -133,7 +136,9 @@ impl Tone {
 /// The width of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
-    /// A screen or a printed page.
+    /// A large screen.
+    Broad,
+    /// A small screen or a printed page.
     Wide,
     /// A phone held upright.
     Narrow,
@@ -143,6 +148,7 @@ impl Width {
     /// The width in pixels.
     pub fn pixels(self) -> f64 {
         match self {
+            Self::Broad => 1100.0,
             Self::Wide => 820.0,
             Self::Narrow => 380.0,
         }
@@ -151,6 +157,7 @@ impl Width {
     /// The class of the element that shows this drawing.
     pub fn class(self) -> &'static str {
         match self {
+            Self::Broad => "broad",
             Self::Wide => "wide",
             Self::Narrow => "narrow",
         }

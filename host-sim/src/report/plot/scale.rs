@@ -1,5 +1,7 @@
 //! Axes: a description and the extent of the data enter; a mapping to pixels, with ticks, leaves.
 
+use crate::report::markup::MILLIMETRES_BELOW_M;
+
 /// A value beyond this cannot be drawn, and on a logarithmic axis neither can a value below its reciprocal. So
 /// differences and quotients of two drawn values are finite.
 const DRAWABLE_BELOW: f64 = 1e100;
@@ -57,9 +59,27 @@ impl Axis {
         self
     }
 
-    /// Title and unit as shown at the axis: `gap (m)`.
-    pub fn label(&self) -> String {
-        if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) }
+    /// Title and unit as shown at the axis with this mapping: `gap (m)`.
+    pub(super) fn label(&self, mapping: &Mapping) -> String {
+        match self.shown_unit(mapping) {
+            "" => self.title.clone(),
+            unit => format!("{} ({unit})", self.title),
+        }
+    }
+
+    /// The title alone.
+    pub(super) fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The unit of its values.
+    pub(super) fn unit(&self) -> &str {
+        &self.unit
+    }
+
+    /// The unit of the labels of its ticks.
+    pub(super) fn shown_unit(&self, mapping: &Mapping) -> &str {
+        if mapping.milli { "mm" } else { &self.unit }
     }
 
     /// Whether equal distances on this axis are equal factors.
@@ -75,8 +95,10 @@ impl Axis {
     /// The mapping of the axis onto `[from, to]` pixels, with `margin` (a fraction of the span) around the data.
     pub(super) fn fit(&self, data: Extent, (from, to): (f64, f64), margin: f64) -> Mapping {
         let (low, high) = self.range.unwrap_or_else(|| self.spread(data, margin));
+        // In metres such an axis would be all zeros.
+        let milli = self.unit == "m" && low.abs().max(high.abs()) < MILLIMETRES_BELOW_M;
         let (low, high) = (self.measure(low), self.measure(high));
-        Mapping { logarithmic: self.logarithmic, low, high, from, to }
+        Mapping { logarithmic: self.logarithmic, milli, low, high, from, to }
     }
 
     fn spread(&self, mut data: Extent, margin: f64) -> (f64, f64) {
@@ -90,7 +112,13 @@ impl Axis {
         // A constant also needs a span, and one that its ticks can resolve.
         let widest = low.abs().max(high.abs());
         let least = if self.logarithmic { 0.5 } else { (widest * 1e-6).max(1e-9) };
-        let spare = if high - low < least { least.max(widest * 0.1) } else { (high - low) * margin };
+        let spare = if high - low < least && widest == 0.0 && !self.logarithmic {
+            1.0 // nothing but zeros
+        } else if high - low < least {
+            least.max(widest * 0.1)
+        } else {
+            (high - low) * margin
+        };
         // An end that is the included value itself is a meaningful edge, such as 0. There is no margin beyond it.
         let edge = |end: f64| self.including.is_some_and(|value| self.measure(value) == end) && high - low >= least;
         let low = if edge(low) { low } else { low - spare };
@@ -114,6 +142,8 @@ pub(super) struct Tick {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mapping {
     logarithmic: bool,
+    /// Whether metres are shown as millimetres.
+    milli: bool,
     low: f64,
     high: f64,
     from: f64,
@@ -132,6 +162,16 @@ impl Mapping {
         (self.from + (measured - self.low) / (self.high - self.low) * (self.to - self.from)).clamp(-1e4, 1e4)
     }
 
+    /// What a script needs to read a value off a pixel: `low high`, as shown, with `log` if these are decades.
+    pub fn described(&self) -> String {
+        let (low, high) = match (self.logarithmic, self.milli) {
+            (_, false) => (self.low, self.high),
+            (false, true) => (self.low * 1e3, self.high * 1e3),
+            (true, true) => (self.low + 3.0, self.high + 3.0),
+        };
+        format!("{low:.9} {high:.9}{}", if self.logarithmic { " log" } else { "" })
+    }
+
     /// Ticks about `spacing` pixels apart.
     pub fn ticks(&self, spacing: f64) -> Vec<Tick> {
         let most = ((self.to - self.from).abs() / spacing).max(1.0);
@@ -139,15 +179,17 @@ impl Mapping {
     }
 
     fn steps(&self, most: f64) -> Vec<Tick> {
-        let raw = (self.high - self.low) / most;
+        let shown = if self.milli { 1e3 } else { 1.0 };
+        let (low, high) = (self.low * shown, self.high * shown);
+        let raw = (high - low) / most;
         let decade = 10f64.powf(raw.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * decade).find(|&s| s >= raw * 0.999).unwrap_or(raw);
-        let first = (self.low / step - 1e-6).ceil();
-        let count = ((self.high / step + 1e-6).floor() - first).clamp(0.0, 100.0) as usize;
+        let first = (low / step - 1e-6).ceil();
+        let count = ((high / step + 1e-6).floor() - first).clamp(0.0, 100.0) as usize;
         let decimals = (-step.log10()).ceil().clamp(0.0, 9.0) as usize;
         let tick = |index: usize| {
             let value = (first + index as f64) * step;
-            Tick { at: self.at_measured(value), label: Some(number(value, decimals)) }
+            Tick { at: self.at_measured(value / shown), label: Some(number(value, decimals)) }
         };
         (0..=count).map(tick).collect()
     }
@@ -166,7 +208,7 @@ impl Mapping {
                     continue;
                 }
                 let named = (digit == 1 && decade % stride == 0) || (few && (digit == 2 || digit == 5));
-                let label = named.then(|| power(f64::from(digit), decade));
+                let label = named.then(|| power(f64::from(digit), decade + if self.milli { 3 } else { 0 }));
                 ticks.push(Tick { at: self.at_measured(measured), label });
             }
         }
@@ -220,6 +262,18 @@ mod tests {
         assert_eq!(labels(axis.fit(Extent::EMPTY, (0.0, 400.0), 0.0), 60.0), ["0.001", "0.01", "0.1", "1", "10"]);
         let axis = Axis::logarithmic("error", "m").over(0.1, 1.0);
         assert_eq!(labels(axis.fit(Extent::EMPTY, (0.0, 400.0), 0.0), 60.0), ["0.1", "0.2", "0.5", "1"]);
+    }
+
+    #[test]
+    fn metres_that_would_be_all_zeros_are_millimetres() {
+        let axis = Axis::linear("error", "m");
+        let fit = |low, high| axis.fit(Extent { low, high }, (200.0, 0.0), 0.0);
+        assert_eq!(axis.label(&fit(-0.02, 0.04)), "error (mm)");
+        assert_eq!(labels(fit(-0.02, 0.04), 60.0), ["−20", "0", "20", "40"]);
+        assert_eq!(axis.label(&fit(-0.02, 0.4)), "error (m)");
+        let axis = Axis::logarithmic("error", "m").over(1e-4, 1e-2);
+        assert_eq!(labels(axis.fit(Extent::EMPTY, (0.0, 400.0), 0.0), 60.0), ["0.1", "1", "10"]);
+        assert_eq!(axis.fit(Extent::EMPTY, (0.0, 400.0), 0.0).described(), "-1.000000000 1.000000000 log");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::{
     Figure, Interval, Tone, Width,
     frame::{self, BELOW},
     legend::{Entry, Legend, Swatch, shortened},
-    scale::{Axis, Extent},
+    scale::{Axis, Extent, Mapping},
     svg::{Anchor, Area, Svg, pixel},
 };
 
@@ -89,9 +89,28 @@ impl Figure for Strip {
         legend.draw(&mut svg);
         frame::draw_shades(&mut svg, &self.shades, &self.x, &x, area);
         frame::draw_x_axis(&mut svg, &self.x, &x, area);
-        for (index, (row, name)) in self.rows.iter().zip(&names).enumerate() {
+        for (index, name) in names.iter().enumerate() {
             let line = top + ROW * index as f64;
             svg.text("label", Anchor::End, (area.left - 8.0, line + ROW / 2.0 + 4.0), name);
+        }
+        svg.plot(area, &frame::described((&self.x, &x), None), |svg| self.draw_spans(svg, area, &x));
+        if self.rows.iter().all(|row| row.changes.is_empty()) {
+            let middle = ((area.left + area.right) / 2.0, (top + bottom) / 2.0 + 4.0);
+            svg.text("empty", Anchor::Middle, middle, "no data");
+        }
+        svg.finish(pixels, bottom + BELOW, &self.title, &self.description)
+    }
+
+    fn undrawable(&self) -> usize {
+        let changes = self.rows.iter().flat_map(|row| &row.changes);
+        changes.filter(|change| !self.x.draws(change.0) || change.1 >= self.categories.len()).count()
+    }
+}
+
+impl Strip {
+    fn draw_spans(&self, svg: &mut Svg, area: Area, x: &Mapping) {
+        for (index, row) in self.rows.iter().enumerate() {
+            let line = area.top + ROW * index as f64;
             let spans = row.spans(self.end);
             for (number, category) in self.categories.iter().enumerate() {
                 let mut data: Vec<String> = Vec::new();
@@ -103,19 +122,10 @@ impl Figure for Strip {
                         data.push(drawn);
                     }
                 }
-                svg.path(&format!("fill {}", category.tone.class()), &data.concat());
+                let name = format!("{}: {}", row.name, category.name);
+                svg.named_path(&format!("fill {}", category.tone.class()), &name, &data.concat());
             }
         }
-        if self.rows.iter().all(|row| row.changes.is_empty()) {
-            let middle = ((area.left + area.right) / 2.0, (top + bottom) / 2.0 + 4.0);
-            svg.text("empty", Anchor::Middle, middle, "no data");
-        }
-        svg.finish(pixels, bottom + BELOW, &self.title, &self.description)
-    }
-
-    fn undrawable(&self) -> usize {
-        let changes = self.rows.iter().flat_map(|row| &row.changes);
-        changes.filter(|change| !self.x.draws(change.0) || change.1 >= self.categories.len()).count()
     }
 }
 

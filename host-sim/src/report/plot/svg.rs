@@ -79,6 +79,14 @@ impl Svg {
         let _ = writeln!(self.body, r#"<rect class="{class}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
     }
 
+    /// A rectangle that says `told` to a pointer that rests on it.
+    pub fn telling(&mut self, class: &str, area: Area, told: &str) {
+        self.rectangle(class, area);
+        let end = self.body.trim_end().len() - "/>".len();
+        self.body.truncate(end);
+        let _ = writeln!(self.body, "><title>{}</title></rect>", escape(told));
+    }
+
     /// A straight line from `a` to `b`.
     pub fn line(&mut self, class: &str, a: (f64, f64), b: (f64, f64)) {
         self.path(class, &format!("M{},{}L{},{}", pixel(a.0), pixel(a.1), pixel(b.0), pixel(b.1)));
@@ -91,18 +99,48 @@ impl Svg {
         }
     }
 
+    /// A path that a script reads values from, by this name.
+    pub fn named_path(&mut self, class: &str, name: &str, data: &str) {
+        if !data.is_empty() {
+            let _ = writeln!(self.body, r#"<path class="{class}" d="{data}" data-name="{}"/>"#, escape(name));
+        }
+    }
+
+    /// A dot that a script moves along `way`, hidden where it is not `shown`.
+    pub fn mover(&mut self, class: &str, shown: Option<(f64, f64)>, radius: f64, from: f64, way: &str) {
+        let at = match shown {
+            Some((x, y)) => format!(r#"cx="{}" cy="{}""#, pixel(x), pixel(y)),
+            None => r#"style="display:none""#.to_owned(),
+        };
+        let data = format!(r#"r="{radius}" data-from="{from:.2}" data-way="{way}""#);
+        let _ = writeln!(self.body, r#"<circle class="{class}" {at} {data}/>"#);
+    }
+
+    /// A group of this class with what `content` draws.
+    pub fn group(&mut self, class: &str, content: impl FnOnce(&mut Self)) {
+        let _ = writeln!(self.body, r#"<g class="{class}">"#);
+        content(self);
+        self.body.push_str("</g>\n");
+    }
+
     /// `text`, which is escaped here, with its baseline at `y`.
     pub fn text(&mut self, class: &str, anchor: Anchor, (x, y): (f64, f64), text: &str) {
         let (x, y, anchor, text) = (pixel(x), pixel(y), anchor.keyword(), escape(text));
         let _ = writeln!(self.body, r#"<text class="{class}" x="{x}" y="{y}" text-anchor="{anchor}">{text}</text>"#);
     }
 
-    /// Draws `content`, cut off at the edge of `area`.
-    pub fn clipped(&mut self, area: Area, content: impl FnOnce(&mut Self)) {
+    /// Draws the data, `content`, cut off half a dot beyond the edge of `area`, so that marks on its edges are not cut. A
+    /// script finds in `axes` what the axes mean, as attributes.
+    pub fn plot(&mut self, area: Area, axes: &str, content: impl FnOnce(&mut Self)) {
         let id = &self.id;
         let _ = write!(self.body, r#"<clipPath id="{id}-clip">"#);
-        self.rectangle("clip", area);
-        let _ = write!(self.body, r#"</clipPath><g clip-path="url(#{}-clip)">"#, self.id);
+        self.rectangle("clip", Area { left: area.left - 3.0, right: area.right + 3.0, ..area });
+        let [left, top, right, bottom] = [area.left, area.top, area.right, area.bottom].map(pixel);
+        let _ = write!(
+            self.body,
+            r#"</clipPath><g class="plot" data-area="{left} {top} {right} {bottom}"{axes} clip-path="url(#{}-clip)">"#,
+            self.id
+        );
         content(self);
         self.body.push_str("</g>\n");
     }

@@ -36,7 +36,7 @@ impl RunReport {
         let mut enlarged = self.over_time("What is certain of the position, enlarged", axis, &caption);
         enlarged.height = 160.0;
         enlarged.layers = self.bound_layers("", "");
-        enlarged.shades = unlabelled(&self.silences);
+        enlarged.shades = unlabelled(&self.shades());
         page.figure(title, &caption, &[&whole, &enlarged]);
     }
 

@@ -30,8 +30,15 @@ impl RunReport {
 
     /// A chart over time with the silences shaded.
     pub(super) fn over_time(&self, title: &str, y: Axis, caption: &str) -> Chart {
-        let (description, shades) = (caption.into(), self.silences.clone());
+        let (description, shades) = (caption.into(), self.shades());
         Chart { description, shades, ..Chart::new(title, self.time(), y) }
+    }
+
+    /// The silences, and the moment of each collision.
+    pub(super) fn shades(&self) -> Vec<Interval> {
+        let crashes = self.crashes.iter().flat_map(|crashes| &crashes.list);
+        let moments = crashes.map(|crash| Interval::new(crash.at_s, crash.at_s, "collision"));
+        self.silences.iter().cloned().chain(moments).collect()
     }
 
     /// The colour of the vehicle called `name`. The ego has its own.
@@ -84,7 +91,7 @@ impl RunReport {
         let mut zoomed = self.over_time("Our position error, enlarged", Axis::linear("ours, enlarged", "m"), &caption);
         zoomed.height = 150.0;
         zoomed.layers = vec![Layer::line(Series { name: String::new(), ..self.error_ours.clone() }, Tone::Ours)];
-        zoomed.shades = unlabelled(&self.silences);
+        zoomed.shades = unlabelled(&self.shades());
         page.figure(title, &caption, &[&both, &zoomed]);
     }
 
@@ -154,7 +161,7 @@ impl RunReport {
             description: caption.clone(),
             x: self.time(),
             end: self.span().1,
-            shades: self.silences.clone(),
+            shades: self.shades(),
             rows: self.modes.iter().map(row).collect(),
             categories: names.iter().map(|name| Category { name: (*name).into(), tone: severity(name).1 }).collect(),
         };

@@ -6,7 +6,7 @@ mod figures;
 mod prose;
 
 use super::{
-    markup::{count, significant},
+    markup::{MILLIMETRES_BELOW_M, count, significant},
     page::{Cell, Page},
     plot::{Interval, Series},
 };
@@ -54,6 +54,19 @@ pub struct SummaryRow {
     pub unit: String,
     /// The limit on the unit's value.
     pub limit: Option<Limit>,
+}
+
+impl SummaryRow {
+    /// The same in millimetres, where metres would be all zeros.
+    fn readable(&self) -> Self {
+        let values = || [self.ours, self.paper].into_iter().flatten();
+        let is_small = values().any(|value| value != 0.0) && values().all(|value| value.abs() < MILLIMETRES_BELOW_M);
+        if self.unit != "m" || !is_small || self.limit.is_some() {
+            return self.clone();
+        }
+        let milli = |value: Option<f64>| value.map(|value| value * 1e3);
+        Self { ours: milli(self.ours), paper: milli(self.paper), unit: "mm".into(), ..self.clone() }
+    }
 }
 
 /// The modes of one vehicle's unit over time.
@@ -149,6 +162,10 @@ impl RunReport {
     pub fn page(&self) -> Page {
         let mut page = Page::new("holdover-sim · report of a run", &self.title);
         page.verdict(self.verdict.passed, &self.verdict.reasons);
+        // The picture that matters comes first: the error, through the silences.
+        page.section("The error, through silences");
+        self.draw_error(&mut page);
+        page.section("Figures of merit");
         let rows: Vec<Vec<Cell>> = self.summary.iter().map(summary_cells).collect();
         page.table(
             "Figures of merit; bold: the smaller of two errors.",
@@ -165,7 +182,6 @@ impl RunReport {
         self.draw_speeds(&mut page);
         self.draw_drive(&mut page);
         page.section("Estimation");
-        self.draw_error(&mut page);
         self.draw_bound(&mut page);
         self.draw_distribution(&mut page);
         page.section("Channel and modes");
@@ -199,6 +215,7 @@ impl RunReport {
 }
 
 fn summary_cells(row: &SummaryRow) -> Vec<Cell> {
+    let row = &row.readable();
     let spelled = |value: Option<f64>| value.map_or("–".into(), |value| significant_or_count(value, &row.unit));
     let limit = match row.limit {
         None => Cell::text("–"),
