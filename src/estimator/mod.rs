@@ -133,12 +133,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.turns.note(index);
     }
 
-    /// Whether there is news of a peer that is not used yet.
-    #[must_use]
-    pub fn has_news(&self) -> bool {
-        self.turns.has_news()
-    }
-
     /// Notes a peer's state as another sensor corrected it. News of the peer itself in the same tick takes precedence.
     pub fn note_correction(&mut self, index: usize, sample: Sample) {
         self.correction.set((index, sample));

@@ -102,11 +102,6 @@ impl<const PEERS: usize> Turns<PEERS> {
         }
     }
 
-    /// Whether there is news that is not used yet.
-    pub fn has_news(&self) -> bool {
-        self.news.contains(&true)
-    }
-
     /// What becomes of a peer's horizon in this tick.
     pub fn of(&self, index: usize) -> Turn {
         self.turns.get(index).copied().unwrap_or(Turn::None)
@@ -116,7 +111,7 @@ impl<const PEERS: usize> Turns<PEERS> {
     #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
     pub fn take(&mut self, mut room: Room, chain: &Chain<PEERS>, target: Option<usize>, corrected: Option<usize>) {
         self.turns = [Turn::None; PEERS];
-        if self.again == 0 && !self.has_news() {
+        if self.again == 0 && !self.news.contains(&true) {
             return;
         }
         let has_news = target.is_some_and(|index| self.serve(index));
