@@ -71,12 +71,7 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     last_tick: Option<Instant>,
     /// The demand of the tick before the last one.
     demand_before: Acceleration,
-    /// By how many ticks the own messages have been put off.
-    put_off: u8,
 }
-
-/// The own messages are put off by so many ticks at most.
-const PUT_OFF: u8 = 2;
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
     /// A unit that is not started: it refuses to hear anything and says nothing. Every byte of it is zero, so a `static`
@@ -95,7 +90,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             last_tick: None,
             demand_before: Acceleration::ZERO,
-            put_off: 0,
         }
     }
 
@@ -124,7 +118,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.last_tick = None;
         self.demand_before = Acceleration::ZERO;
-        self.put_off = 0;
         Ok(())
     }
 
@@ -195,7 +188,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
-        let is_due = self.is_own_due(now);
+        let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
         let target = self.review(now, last);
         let (before, reading) = self.update(now, target, is_due);
         self.decide(now, target, before, reading);
@@ -211,20 +204,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             self.send(now, own.as_ref().map(Option::as_ref), pass, answer);
         }
         self.demand_before = last.demand;
-    }
-
-    /// Whether the own messages are due. On a way through intersections the own horizon takes as long as all that a tick has room for. So it
-    /// is put off, by [`PUT_OFF`] ticks at most, while there is news, which it would not know in full, or a review.
-    fn is_own_due(&mut self, now: Instant) -> bool {
-        let scene = &self.scene;
-        let is_busy = scene.estimator.has_news() || scene.coordination.is_due(now);
-        if scene.is_decided_by_order() && is_busy && self.put_off < PUT_OFF && self.outbox.would_be_due(now) {
-            self.put_off = self.put_off.saturating_add(1);
-            return false;
-        }
-        let is_due = self.is_started() && self.outbox.is_due(now, scene.config.link.period);
-        self.put_off = if is_due { 0 } else { self.put_off };
-        is_due
     }
 
     /// The time of this tick, and the demand of the last one with its age.

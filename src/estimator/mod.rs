@@ -29,7 +29,7 @@ pub use own::Manner;
 
 use chain::Chain;
 use forecast::{Ahead, Forecast, News, steps};
-use turns::{Room, Turn, Turns, steps_a_tick};
+use turns::{Room, Turn, Turns, steps_a_tick, steps_sent};
 
 use crate::config::Config;
 use crate::held::Held;
@@ -133,12 +133,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.turns.note(index);
     }
 
-    /// Whether there is news of a peer that is not used yet.
-    #[must_use]
-    pub fn has_news(&self) -> bool {
-        self.turns.has_news()
-    }
-
     /// Notes a peer's state by its messages and another sensor together. What the peer itself says of how it will drive takes
     /// precedence in the same tick.
     pub fn note_track(&mut self, index: usize, sample: Sample) {
@@ -205,7 +199,11 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         };
         let corrected = fused.as_ref().map(|(index, _)| *index);
         // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
-        let room = if self.model.endless { Room::of(self.room, self.length, is_own_due) } else { Room::ENDLESS };
+        let room = if self.model.endless {
+            Room::of(self.room, self.length, steps_sent(self.grid.step, STEPS), is_own_due)
+        } else {
+            Room::ENDLESS
+        };
         if self.present.get().is_some_and(|last| present.saturating_sub(last) > self.pause) {
             (0..PEERS).for_each(|index| self.turns.note(index));
         }

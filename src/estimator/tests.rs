@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::config::Config;
+use crate::model::State;
 use crate::peers::plausibility::{Belief, Certainty};
 use crate::time::Stamp;
 use crate::units::{Acceleration, FineSeconds, Fraction, Gain, Jerk, Position, Seconds, Speed};
@@ -100,6 +101,32 @@ fn a_sample_of_any_age_is_brought_to_now_by_the_model() {
         assert_eq!((horizon.first(), horizon.last(), horizon.len()), (0, 19, 20), "{age_us}");
         let now = horizon.read(GRID.origin, &GRID, true).unwrap();
         assert!((metres(now) - 5_000.0 - age_us as f64 * 1e-5).abs() < 1e-5, "{age_us}: {now:?}");
+    }
+}
+
+#[test]
+fn an_old_sample_in_few_steps_comes_to_where_it_comes_in_all_steps() {
+    for (age_us, tolerance) in [(320_000, 0.0), (600_000, 0.001), (2_000_000, 0.01), (9_900_000, 0.15)] {
+        let mut first = sample(age_us, 8_000, 0);
+        first.position = first.position.ahead(Distance::from_mm(25_000));
+        let ahead = anchored(&leader(), &first, STEPS, None);
+        let sample = sample(age_us, 12_000, -1_500);
+        let horizon = anchored(&follower(), &sample, 20, Some(&ahead));
+        let (_, stride) = course(VehicleModel::of_parameters(&follower(), &MODEL), &MODEL);
+        let mut state = State {
+            position: sample.position.ring(),
+            speed: sample.speed,
+            acceleration: sample.acceleration,
+            demand: sample.demand,
+            ..State::default()
+        };
+        for index in 1 - age_us / 10_000..=0 {
+            let reading = ahead.read(GRID.time_of(index), &GRID, true).unwrap();
+            state = stride.take(state, Some((reading.position.ring(), reading.speed)));
+        }
+        let now = horizon.read(GRID.origin, &GRID, true).unwrap();
+        let off = metres(now) - horizon.absolute(state.position).get().to_num::<f64>();
+        assert!(off.abs() <= tolerance, "{age_us}: {off}");
     }
 }
 

@@ -23,8 +23,17 @@ const TICK_MS: usize = 10;
 /// To start a horizon anew takes as long as so many steps in addition: its constants, its sample or its knots, and the steps up to now.
 const BEGINNING: usize = 64;
 
+/// See [`steps_sent`].
+const SENT: Duration = Duration::from_millis(10_700);
+
 /// The ego's own horizon, past its changes of target and with its messages, takes as long as so many others.
 const OWN: usize = 3;
+
+/// How many steps of this length a sent horizon may have that is as long as that of [`crate::Config::car`], where there is room for `most`.
+pub(super) fn steps_sent(step: Duration, most: usize) -> usize {
+    let steps = SENT.as_micros().checked_div(step.as_micros()).unwrap_or(0);
+    usize::try_from(steps).unwrap_or(most).min(most)
+}
 
 /// For how many steps a tick of this period has room. In a longer period there is more time. A shorter one has no less room: then one horizon
 /// would not fit.
@@ -44,10 +53,11 @@ impl Room {
     /// For all.
     pub const ENDLESS: Self = Self { left: usize::MAX, each: 0 };
 
-    /// For so many steps, with horizons of so many steps, and the ego's own beside them if that is due.
-    pub const fn of(room: usize, length: usize, is_own_due: bool) -> Self {
-        let each = length.saturating_add(BEGINNING);
-        let own = if is_own_due { each.saturating_mul(OWN) } else { 0 };
+    /// For so many steps, with horizons of so many steps, of which those that were sent may have `sent` steps; and the ego's own beside them
+    /// if that is due.
+    pub fn of(room: usize, length: usize, sent: usize, is_own_due: bool) -> Self {
+        let each = length.max(sent).saturating_add(BEGINNING);
+        let own = if is_own_due { length.saturating_add(BEGINNING).saturating_mul(OWN) } else { 0 };
         Self { left: room.saturating_sub(own), each }
     }
 
@@ -92,11 +102,6 @@ impl<const PEERS: usize> Turns<PEERS> {
         }
     }
 
-    /// Whether there is news that is not used yet.
-    pub fn has_news(&self) -> bool {
-        self.news.contains(&true)
-    }
-
     /// What becomes of a peer's horizon in this tick.
     pub fn of(&self, index: usize) -> Turn {
         self.turns.get(index).copied().unwrap_or(Turn::None)
@@ -106,7 +111,7 @@ impl<const PEERS: usize> Turns<PEERS> {
     #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
     pub fn take(&mut self, mut room: Room, chain: &Chain<PEERS>, target: Option<usize>, corrected: Option<usize>) {
         self.turns = [Turn::None; PEERS];
-        if self.again == 0 && !self.has_news() {
+        if self.again == 0 && !self.news.contains(&true) {
             return;
         }
         let has_news = target.is_some_and(|index| self.serve(index));
@@ -172,7 +177,7 @@ mod tests {
 
         /// The slots whose horizons start anew, and those which do once more.
         fn tick(&mut self, length: usize, is_own_due: bool) -> (Vec<usize>, Vec<usize>) {
-            self.turns.take(Room::of(STEPS_A_TICK, length, is_own_due), &Chain::new(), self.target, None);
+            self.turns.take(Room::of(STEPS_A_TICK, length, length, is_own_due), &Chain::new(), self.target, None);
             let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
             (of(Turn::News), of(Turn::Again))
         }

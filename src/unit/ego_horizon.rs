@@ -18,12 +18,12 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
 
-/// The order is reviewed in the horizon once in so many reviews: for a second, for three, and after that. Where the ego follows another
+/// The order is reviewed in the horizon once in so many reviews: for a second, for four, and after that. Where the ego follows another
 /// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves. In the first
 /// second that is also done where the ego has to brake harder for the same vehicle.
 const NEAR: Duration = Duration::from_millis(1_000);
 const REVIEWS_NEAR: i64 = 4;
-const FAR: Duration = Duration::from_millis(3_000);
+const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
 const REVIEWS_FAR: i64 = 16;
 /// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three

@@ -113,11 +113,6 @@ impl Outbox {
         true
     }
 
-    /// Whether the own messages would be due now.
-    pub(super) fn would_be_due(&self, now: Instant) -> bool {
-        self.due.is_none_or(|due| now >= due)
-    }
-
     /// Whether the driving parameters are due: because they have changed, or because their turn has come.
     fn are_parameters_due(&mut self, parameters: DrivingParameters) -> bool {
         if self.parameters != Held::Value(parameters) {
