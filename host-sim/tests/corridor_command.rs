@@ -73,13 +73,14 @@ fn the_report_has_the_papers_figures_and_ours_beside_others_and_how_fast_it_is_s
     }
     let page = std::fs::read_to_string(report.join("index.html")).unwrap();
     for title in [
-        "Figure 1. Trajectories at the first intersection",
-        "Figure 2. Error of the ego",
-        "Figure 3. Largest position error over prediction step",
-        "Figure 4. Updates per second on one core over prediction step",
-        "Figure 5. free acceleration",
-        "Figure 9. 5 m/s",
-        "Figure 10. How many times faster than real time",
+        "Figure 1. The ego’s passage",
+        "Figure 2. Trajectories at the first intersection",
+        "Figure 3. Error of the ego",
+        "Figure 4. Largest position error over prediction step",
+        "Figure 5. Updates per second on one core over prediction step",
+        "Figure 6. free acceleration",
+        "Figure 10. 5 m/s",
+        "Figure 11. How many times faster than real time",
         "holdover loses",
         "8 vehicles cost",
     ] {
