@@ -44,7 +44,7 @@
 #define HOLDOVER_EXTENDED 2147483648U
 
 // The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
-#define HOLDOVER_VERSION 256U
+#define HOLDOVER_VERSION 512U
 
 #if !(defined(HOLDOVER_CAPACITY_16_8_1072) || defined(HOLDOVER_CAPACITY_4_4_200))
 // Vehicles that a unit of this library keeps track of.
@@ -430,7 +430,7 @@ typedef struct holdover_body_t {
 
 // The law of eqs 5 and 7.
 typedef struct holdover_law_t {
-  // Desired time gap in ms.
+  // Desired time gap in ms; 1600 by default. With a range sensor 1200 will do (`range_sensor`).
   uint32_t time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;

@@ -88,11 +88,11 @@ impl Reference {
     fn measure(&mut self, at: f64, position: f64, speed: f64, deviations: [f64; 2]) {
         self.predict(at);
         let off = speed - self.x[1];
-        if off * off > 9.0 * (self.p[1][1] + deviations[1].powi(2)) && self.p[2][2] < 100.0 {
-            self.p[1][1] += 100.0 * self.step.powi(2) / 3.0;
-            self.p[1][2] += 100.0 * self.step / 2.0;
-            self.p[2][1] += 100.0 * self.step / 2.0;
-            self.p[2][2] += 100.0;
+        if off * off > 9.0 * (self.p[1][1] + deviations[1].powi(2)) && self.p[2][2] < 25.0 {
+            self.p[1][1] += 25.0 * self.step.powi(2) / 3.0;
+            self.p[1][2] += 25.0 * self.step / 2.0;
+            self.p[2][1] += 25.0 * self.step / 2.0;
+            self.p[2][2] += 25.0;
         }
         self.take_in(0, position, deviations[0]);
         self.take_in(1, speed, deviations[1]);

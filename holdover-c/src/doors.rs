@@ -23,7 +23,7 @@ use crate::status::{self, Status};
 const LAST_STEP: u32 = (memory::HOLDOVER_STEPS - 2) as u32;
 
 /// The version of the header: major in bits 16 and up, minor in bits 8 to 15, patch in bits 0 to 7.
-pub const HOLDOVER_VERSION: u32 = 0x000100;
+pub const HOLDOVER_VERSION: u32 = 0x000200;
 
 /// The version of the library; to be compared with `HOLDOVER_VERSION` once at start, since structs of another version may
 /// be laid out differently.

@@ -133,7 +133,7 @@ fn gnss(at: Instant) -> GnssTime {
     GnssTime::from_micros(u64::from(GNSS_S) * 1_000_000 + at.as_micros())
 }
 
-/// A unit that has heard all of the chain before its first tick, after that tick.
+/// A unit that has heard all of the chain before its first tick, after the tick in which the last horizon started.
 fn unit(chain: &[Vehicle]) -> Unit {
     let mut config = Config::car(StationHash(200));
     config.prediction.step = Duration::from_millis(10);
@@ -159,7 +159,10 @@ fn unit(chain: &[Vehicle]) -> Unit {
             say(&mut unit, START, peer(Said::DrivingParameters(vehicle.parameters)));
         }
     }
-    unit.tick(START);
+    // Horizons start in turns. At the same instant every vehicle's turn comes.
+    for _ in 0..=PEERS {
+        unit.tick(START);
+    }
     unit
 }
 

@@ -59,7 +59,7 @@ fn a_string_drives_as_over_classic_can_but_for_the_first_messages_which_classic_
         };
         // A receiver trusts an identifier from its second frame on. Over classic CAN that takes the first driving parameters and the
         // first horizon; over CAN FD the motion before them has made the identifier known.
-        close("max_position_error_m", 0.001);
+        close("max_position_error_m", 0.002);
         close("rms_position_error_m", 0.001);
         close("min_gap_m", 0.01);
         close("collisions", 0.0);

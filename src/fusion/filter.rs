@@ -11,7 +11,7 @@
 //! differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by [`MANOEUVRE`]
 //! within the last step, and the filter follows within a few views.
 //!
-//! The variances have 22 fraction bits: up to 512 m², by 2.4e-7 m². The measured quantities are taken in one after the other, so that each
+//! The variances have 25 fraction bits: up to 64 m², by 3e-8 m². The measured quantities are taken in one after the other, so that each
 //! needs the quotients of one number only.
 
 use crate::fixed::{quotient, saturate_i32};
@@ -20,15 +20,15 @@ use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 
 /// Fraction bits of variances, gains and innovations.
-const BITS: u32 = 22;
+const BITS: u32 = 25;
 const ONE: i32 = 1 << BITS;
 
 /// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.09 m/s² in a second. More of it makes
 /// a string behind a steady leader less steady; who changes it faster is followed by [`MANOEUVRE`].
 const WANDER: i32 = ONE / 128;
 
-/// Variance of a sudden change of acceleration: a standard deviation of 10 m/s².
-const MANOEUVRE: i32 = 100 * ONE;
+/// Variance of a sudden change of acceleration: a standard deviation of 5 m/s².
+const MANOEUVRE: i32 = 25 * ONE;
 
 /// Squared, how many standard deviations an innovation of the speed is beyond what the errors explain.
 const UNEXPECTED: i64 = 9;
@@ -103,7 +103,7 @@ impl Filter {
         &self.motion
     }
 
-    /// Standard deviations of position and speed, squared, in m² and m²/s² with 22 fraction bits.
+    /// Standard deviations of position and speed, squared, in m² and m²/s² with 25 fraction bits.
     #[must_use]
     pub const fn variances(&self) -> (i32, i32) {
         (self.covariances.rr, self.covariances.vv)
@@ -143,7 +143,7 @@ impl Filter {
     /// Takes in what was measured at the instant of the last prediction: the position, and then the speed.
     pub fn correct(&mut self, measured: &Measured) {
         let noise = variance_of_speed(measured.speed_error);
-        let off = i64::from(measured.speed.minus(self.motion.speed).to_bits() >> 1);
+        let off = i64::from(measured.speed.minus(self.motion.speed).to_bits()).saturating_mul(4);
         let spread = i64::from(self.covariances.vv.saturating_add(noise));
         let is_unexpected = off.saturating_mul(off) >> BITS > spread.saturating_mul(UNEXPECTED);
         if is_unexpected && self.covariances.aa < MANOEUVRE {
@@ -151,17 +151,17 @@ impl Filter {
         }
         let Covariances { rr, rv, ra, .. } = self.covariances;
         let off = measured.position.ahead_of(self.motion.position).to_bits();
-        let off = saturate_i32(i64::from(off).saturating_mul(4)); // from 20 to 22 fraction bits
+        let off = saturate_i32(i64::from(off).saturating_mul(32)); // from 20 to 25 fraction bits
         self.take_in(off, rr, variance_of_position(measured.position_error), [rr, rv, ra]);
         let Covariances { rv, vv, va, .. } = self.covariances;
-        let off = measured.speed.minus(self.motion.speed).to_bits() >> 1; // from 23
+        let off = measured.speed.minus(self.motion.speed).to_bits().saturating_mul(4); // from 23
         self.take_in(off, vv, noise, [rv, vv, va]);
     }
 
     /// Takes in an acceleration, with its standard deviation.
     pub fn correct_acceleration(&mut self, acceleration: Acceleration, deviation: Acceleration) {
         let Covariances { ra, va, aa, .. } = self.covariances;
-        let off = acceleration.minus(self.motion.acceleration).to_bits() >> 3; // from 25
+        let off = acceleration.minus(self.motion.acceleration).to_bits(); // it has 25
         self.take_in(off, aa, variance_of_acceleration(deviation), [ra, va, aa]);
     }
 
@@ -171,26 +171,24 @@ impl Filter {
         let spread = i64::from(variance).saturating_add(i64::from(noise)).max(1);
         // A divisor below 2²⁴ is quick.
         let scale = if spread >= 1 << 23 { 8 } else { 0 };
-        let gain = |covariance: i32| saturate_i32(quotient(i64::from(covariance) << (BITS - scale), spread >> scale));
+        let gain = |covariance: i32| quotient(i64::from(covariance) << (BITS - scale), spread >> scale);
         let [r, v, a] = with;
         let (of_r, of_v, of_a) = (gain(r), gain(v), gain(a));
         let Motion { at, position, speed, acceleration } = self.motion;
-        let wide =
-            |gain: i32, bits: u32| saturate_i32((i64::from(gain).saturating_mul(i64::from(off)) >> BITS) << bits);
         self.motion = Motion {
             at,
-            position: position.ahead(Distance::from_bits(product(of_r, off) >> 2)),
-            speed: speed.plus(Speed::from_bits(wide(of_v, 1))).max(Speed::ZERO),
-            acceleration: acceleration.plus(Acceleration::from_bits(wide(of_a, 3))),
+            position: position.ahead(Distance::from_bits(scaled(of_r, off) >> 5)),
+            speed: speed.plus(Speed::from_bits(scaled(of_v, off) >> 2)).max(Speed::ZERO),
+            acceleration: acceleration.plus(Acceleration::from_bits(scaled(of_a, off))),
         };
         let Covariances { rr, rv, ra, vv, va, aa } = self.covariances;
         self.covariances = Covariances {
-            rr: rr.saturating_sub(product(of_r, r)).max(0),
-            rv: rv.saturating_sub(product(of_r, v)),
-            ra: ra.saturating_sub(product(of_r, a)),
-            vv: vv.saturating_sub(product(of_v, v)).max(0),
-            va: va.saturating_sub(product(of_v, a)),
-            aa: aa.saturating_sub(product(of_a, a)).max(0),
+            rr: rr.saturating_sub(scaled(of_r, r)).max(0),
+            rv: rv.saturating_sub(scaled(of_r, v)),
+            ra: ra.saturating_sub(scaled(of_r, a)),
+            vv: vv.saturating_sub(scaled(of_v, v)).max(0),
+            va: va.saturating_sub(scaled(of_v, a)),
+            aa: aa.saturating_sub(scaled(of_a, a)).max(0),
         };
     }
 }
@@ -249,7 +247,12 @@ impl Covariances {
 
 /// A product, rounded to nearest, saturating.
 fn product(a: i32, b: i32) -> i32 {
-    saturate_i32(i64::from(a).saturating_mul(i64::from(b)).saturating_add(1 << (BITS - 1)) >> BITS)
+    scaled(a.into(), b)
+}
+
+/// The product with a gain, which may be beyond a word: an acceleration follows from a speed within milliseconds.
+fn scaled(gain: i64, word: i32) -> i32 {
+    saturate_i32(gain.saturating_mul(word.into()).saturating_add(1 << (BITS - 1)) >> BITS)
 }
 
 /// The square of a word with so many fraction bits.
