@@ -23,9 +23,9 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 const BITS: u32 = 25;
 const ONE: i32 = 1 << BITS;
 
-/// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.09 m/s² in a second. More of it makes
+/// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.06 m/s² in a second. More of it makes
 /// a string behind a steady leader less steady; who changes it faster is followed by [`MANOEUVRE`].
-const WANDER: i32 = ONE / 128;
+const WANDER: i32 = ONE / 256;
 
 /// Variance of a sudden change of acceleration: a standard deviation of 5 m/s².
 const MANOEUVRE: i32 = 25 * ONE;
