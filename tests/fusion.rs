@@ -76,11 +76,9 @@ impl Reference {
         let gain: [f64; 3] = std::array::from_fn(|i| self.p[i][place] / spread);
         let off = value - self.x[place];
         let row = self.p[place];
-        for i in 0..3 {
-            self.x[i] += gain[i] * off;
-            for j in 0..3 {
-                self.p[i][j] -= gain[i] * row[j];
-            }
+        for ((x, of_x), gain) in self.x.iter_mut().zip(&mut self.p).zip(gain) {
+            *x += gain * off;
+            of_x.iter_mut().zip(row).for_each(|(p, with)| *p -= gain * with);
         }
         self.x[1] = self.x[1].max(0.0);
     }
@@ -236,6 +234,31 @@ fn the_track_is_that_of_a_kalman_filter_in_float64_that_hears_everything_in_time
             let (off, rms) = drive(seed, late_s, loss);
             assert!(off[0] < 0.002 && off[1] < 0.004 && off[2] < 0.05, "late {late_s} s, loss {loss}: {off:?}");
             assert!(rms < 0.06, "late {late_s} s, loss {loss}: {rms} m/s");
+        }
+    }
+}
+
+#[test]
+fn an_unannounced_braking_is_followed_within_0_1_s_though_nothing_is_heard() {
+    for (seed, braking) in [(1, 2.0), (2, 5.0), (3, 8.0), (4, 8.0)] {
+        let profile = [(0.0, 0.0), (4.0, -braking)];
+        let mut draws = Draws(seed);
+        let mut fusion = Fusion::new();
+        let heard = message(0.0, truth(&profile, 0.0));
+        for tick in 1..=220 {
+            let now = f64::from(tick) * 0.02;
+            let [x, v, _] = truth(&profile, now);
+            let view = Measured {
+                at: instant(now),
+                position: position(x + draws.within(VIEW_ERRORS[0])),
+                speed: speed(v + draws.within(VIEW_ERRORS[1])),
+                position_error: distance(0.15),
+                speed_error: speed(0.06),
+            };
+            let off = (f64::from(fusion.see(&view, &heard).speed.to_bits()) / f64::from(1 << 23) - v).abs();
+            // Before, and from 0.1 s after the braking began.
+            let least = if (4.0..4.1).contains(&now) { 1.0 } else { 0.15 };
+            assert!(off < least, "braking by {braking} m/s², {now:.2} s: {off} m/s");
         }
     }
 }

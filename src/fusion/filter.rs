@@ -171,7 +171,7 @@ impl Filter {
         let spread = i64::from(variance).saturating_add(i64::from(noise)).max(1);
         // A divisor below 2²⁴ is quick.
         let scale = if spread >= 1 << 23 { 8 } else { 0 };
-        let gain = |covariance: i32| quotient(i64::from(covariance) << (BITS - scale), spread >> scale);
+        let gain = |covariance: i32| quotient(i64::from(covariance) << BITS.saturating_sub(scale), spread >> scale);
         let [r, v, a] = with;
         let (of_r, of_v, of_a) = (gain(r), gain(v), gain(a));
         let Motion { at, position, speed, acceleration } = self.motion;
