@@ -181,7 +181,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.strides = [Held::Nothing; PEERS];
     }
 
-    /// Brings every peer's horizon up to now. News is used by [`turns`]: that of the target at once, that of others as there is room for
+    /// Brings every peer's horizon up to now. News is used in turns: that of the target at once, that of others as there is room for
     /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. Returns how many sent horizons were not used,
     /// because their senders cannot drive them.
     pub fn update<const SAMPLES: usize>(

@@ -7,8 +7,8 @@
 //! r' = r + v h + a h²/2      v' = v + a h      a' = φ a      P' = F P Fᵀ + q Q(h)
 //! ```
 //!
-//! A vehicle that keeps its acceleration is tracked with little noise ([`WANDER`]). Who brakes changes the acceleration at once. A speed that
-//! differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by [`MANOEUVRE`]
+//! A vehicle that keeps its acceleration is tracked with little noise (`WANDER`). Who brakes changes the acceleration at once. A speed that
+//! differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by `MANOEUVRE`
 //! within the last step, and the filter follows within a few views.
 //!
 //! The variances have 25 fraction bits: up to 64 m², by 3e-8 m². The measured quantities are taken in one after the other, so that each
@@ -24,7 +24,7 @@ const BITS: u32 = 25;
 const ONE: i32 = 1 << BITS;
 
 /// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.06 m/s² in a second. More of it makes
-/// a string behind a steady leader less steady; who changes it faster is followed by [`MANOEUVRE`].
+/// a string behind a steady leader less steady; who changes it faster is followed by `MANOEUVRE`.
 const WANDER: i32 = ONE / 256;
 
 /// Variance of a sudden change of acceleration: a standard deviation of 5 m/s².
