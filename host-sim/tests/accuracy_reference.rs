@@ -291,11 +291,3 @@ fn chains_stamped_off_the_grid_are_within_1_mm_and_1_mm_per_s_of_float64() {
     println!("worst: {worst:.1e} m or m/s, {edges} on the edge");
     assert!(edges <= CASES / 4_000);
 }
-
-/// A sample that is older than 32 steps is brought to now in longer steps.
-#[test]
-fn chains_of_samples_up_to_2_s_old_are_within_1_cm_and_1_cm_per_s_of_float64() {
-    let (edges, worst) = edges_and_worst_of(CASES / 4, 1e-2, chain(3_200..=20_000, 1..=99));
-    println!("worst: {worst:.1e} m or m/s, {edges} on the edge");
-    assert!(edges <= CASES / 4_000);
-}
