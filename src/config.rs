@@ -204,14 +204,6 @@ impl Config {
         passes: false,
     };
 
-    /// The same vehicle with a range sensor, at the time gap that a sensor allows: [`parameters::TIME_GAP_WITH_SENSOR`].
-    #[must_use]
-    pub const fn with_range_sensor(mut self) -> Self {
-        self.range_sensor = true;
-        self.law.time_gap = parameters::TIME_GAP_WITH_SENSOR;
-        self
-    }
-
     /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, passes kept, no range sensor. `δt` is 30 ms, and the
     /// horizon of 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation needs
     /// these are 359 steps.
@@ -266,6 +258,14 @@ impl Config {
             range_sensor: false,
             passes: true,
         }
+    }
+
+    /// The same vehicle with a range sensor, at the time gap that a sensor allows: [`parameters::TIME_GAP_WITH_SENSOR`].
+    #[must_use]
+    pub const fn with_range_sensor(mut self) -> Self {
+        self.range_sensor = true;
+        self.law.time_gap = parameters::TIME_GAP_WITH_SENSOR;
+        self
     }
 
     /// How the ego drives when this is what it is after.

@@ -76,7 +76,7 @@ impl Fusion {
     }
 
     /// Takes in a view. A track begins with the newest message, if that is fresh, or else with the view. A view from before the
-    /// newest message, or of before another view, changes nothing. Returns the motion.
+    /// newest message or the newest view changes nothing. Returns the motion.
     pub fn see(&mut self, view: &Measured, message: &Sample) -> Motion {
         let tracked = self.newest.get().filter(|_| self.is_tracking(view.at));
         let Some(mut filter) = tracked else {

@@ -85,7 +85,8 @@ pub const DAMPING: Seconds = Seconds::from_millis(2000);
 /// whatever is late by up to 0.2 s and lost up to 40 %, in 40 draws each; `holdover-sim string` measures it.
 pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 
-/// The same for a vehicle with a range sensor, which sees the braking ahead before it is heard: `holdover-sim string --range-sensors on`.
+/// The same for a vehicle with a range sensor, which sees the braking ahead before it is heard: `holdover-sim string --range-sensors on`. The
+/// sensor there looks 50 times a second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
 pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(1_200);
 
 const _: () = {

@@ -1,11 +1,11 @@
 //! A corridor in `live`: what is driven and changed while it goes on is, saved and run, the same to the last bit; vehicles come and go, and
 //! what is kept of them goes with them.
 
-use std::path::Path;
-use std::sync::mpsc;
+mod heard;
 
-use holdover_sim::commands::interruption::Interruption;
-use holdover_sim::commands::live::engine::{Ask, Engine};
+use std::path::Path;
+
+use heard::Heard;
 use holdover_sim::commands::live::order::Order;
 use holdover_sim::commands::live::road::RoadPlay;
 use holdover_sim::commands::live::scene::{Pulse, Scene, Seen};
@@ -17,7 +17,6 @@ use holdover_sim::roads::experiment::{Experiment, of_sides};
 use holdover_sim::roads::journal::Journal;
 use holdover_sim::roads::read::corridor;
 use holdover_sim::roads::watch::{Sighting, Watch};
-use tokio::sync::{oneshot, watch};
 
 fn text() -> String {
     std::fs::read_to_string("scenarios/corridor.toml").unwrap()
@@ -247,58 +246,9 @@ fn an_event_of_a_vehicle_that_never_comes_is_refused_in_its_line() {
     assert!(said.contains("what a person drives is of no vehicle"), "{said}");
 }
 
-/// An engine on a thread of its own, which is heard until it is asked to end.
-struct Heard {
-    asks: mpsc::Sender<Ask>,
-    scenes: watch::Receiver<std::sync::Arc<str>>,
-    end: Interruption,
-    thread: std::thread::JoinHandle<(Vec<Event>, u64)>,
-}
-
-impl Heard {
-    fn begin() -> Self {
-        let ((asks, asked), (show, scenes)) = (mpsc::channel(), watch::channel("{}".into()));
-        let end = Interruption::default();
-        let flag = end.clone();
-        let run = move || Engine::new(&play(), asked, show).run(&flag).unwrap();
-        let heard = Self { asks, scenes, end, thread: std::thread::spawn(run) };
-        heard.order(Order::Pause {}).unwrap();
-        heard.order(Order::Restart {}).unwrap();
-        heard
-    }
-
-    fn order(&self, order: Order) -> Result<(), String> {
-        let (to, from) = oneshot::channel();
-        self.asks.send(Ask::Do(order, to)).unwrap();
-        from.blocking_recv().unwrap().map_err(|error| error.to_string())
-    }
-
-    fn ticks(&self) -> u64 {
-        let (to, from) = oneshot::channel();
-        self.asks.send(Ask::Journal(to)).unwrap();
-        from.blocking_recv().unwrap().1
-    }
-
-    fn step_to(&self, tick: u64) {
-        self.order(Order::Step { ticks: u32::try_from(tick - self.ticks()).unwrap() }).unwrap();
-    }
-
-    /// The vehicles at this tick, once they are shown.
-    fn vehicles(&self, tick: u64) -> serde_json::Value {
-        for _ in 0..2000 {
-            let scene: serde_json::Value = serde_json::from_str(&self.scenes.borrow()).unwrap();
-            if scene["ticks"] == tick {
-                return scene["vehicles"].clone();
-            }
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        panic!("tick {tick} is not shown");
-    }
-}
-
 #[test]
 fn time_goes_back_past_arrivals_and_departures_and_the_same_is_seen_again() {
-    let heard = Heard::begin();
+    let heard = Heard::begin(play());
     heard.step_to(1500);
     heard.order(Order::Drive { vehicle: 1, mps2: -3.0 }).unwrap();
     heard.step_to(1600);
@@ -307,14 +257,14 @@ fn time_goes_back_past_arrivals_and_departures_and_the_same_is_seen_again() {
     let first = heard.vehicles(6000);
     for seconds in [10.0, 52.0] {
         heard.order(Order::Back { seconds }).unwrap();
-        assert_eq!(heard.ticks(), 6000 - (100.0 * seconds) as u64);
+        assert_eq!(heard.journal().1, 6000 - (100.0 * seconds) as u64);
         heard.step_to(6000);
         assert_eq!(heard.vehicles(6000), first);
     }
     // The envelope of one vehicle is switched: all is played anew, and up to then nothing differs.
     let id = first[3]["id"].as_u64().unwrap() as usize;
     heard.order(Order::Switch { vehicle: Some(id), part: Part::Envelope, on: false }).unwrap();
-    assert_eq!((heard.ticks(), heard.vehicles(6000)), (6000, first));
+    assert_eq!((heard.journal().1, heard.vehicles(6000)), (6000, first));
     heard.step_to(6001);
     let is_engaged = |seen: &serde_json::Value| seen["has_envelope"].as_bool().unwrap();
     let after = heard.vehicles(6001);
@@ -322,6 +272,5 @@ fn time_goes_back_past_arrivals_and_departures_and_the_same_is_seen_again() {
     assert!(without.len() == 1 && without[0]["id"] == id, "{without:?}");
     let said = heard.order(Order::Drive { vehicle: 0, mps2: 1.0 }).unwrap_err();
     assert_eq!(said, "vehicle 0 is not on the road now; choose one that the page shows");
-    heard.end.ask();
-    assert_eq!(heard.thread.join().unwrap().1, 6001);
+    assert_eq!(heard.end().1, 6001);
 }

@@ -1,17 +1,16 @@
 //! The world of `live`: what is driven and changed while it goes on is, saved and run, the same to the last bit.
 
-use std::path::Path;
-use std::sync::mpsc;
+mod heard;
 
-use holdover_sim::commands::interruption::Interruption;
-use holdover_sim::commands::live::engine::{Ask, Engine};
+use std::path::Path;
+
+use heard::Heard;
 use holdover_sim::commands::live::order::Order;
 use holdover_sim::commands::live::scene::Pulse;
 use holdover_sim::commands::live::stage::{Play, Stage};
-use holdover_sim::input::scenario::{Event, Overrides, Part, Scenario, saved};
+use holdover_sim::input::scenario::{Overrides, Part, Scenario, saved};
 use holdover_sim::measure::simulate::simulate;
 use holdover_sim::sim::world::Tick;
-use tokio::sync::{oneshot, watch};
 
 fn read(text: &str, overrides: &Overrides) -> Scenario {
     Scenario::parse(Path::new("live.toml"), text, overrides).unwrap()
@@ -89,80 +88,25 @@ fn a_drive_that_is_saved_and_run_is_the_same_to_the_last_bit() {
     assert!(speed(300) < speed(120) - 2.0 && speed(399) > speed(370), "what was driven was driven");
 }
 
-/// An engine on a thread of its own, which is heard until it is asked to end.
-struct Heard {
-    asks: mpsc::Sender<Ask>,
-    scenes: watch::Receiver<std::sync::Arc<str>>,
-    end: Interruption,
-    thread: std::thread::JoinHandle<(Vec<Event>, u64)>,
-}
-
-impl Heard {
-    fn begin() -> Self {
-        let ((asks, asked), (show, scenes)) = (mpsc::channel(), watch::channel("{}".into()));
-        let end = Interruption::default();
-        let flag = end.clone();
-        let run = move || Engine::new(&read("", &Overrides::default()), asked, show).run(&flag).unwrap();
-        let heard = Self { asks, scenes, end, thread: std::thread::spawn(run) };
-        heard.order(Order::Pause {});
-        heard.order(Order::Restart {});
-        heard
-    }
-
-    fn order(&self, order: Order) {
-        let (to, from) = oneshot::channel();
-        self.asks.send(Ask::Do(order, to)).unwrap();
-        from.blocking_recv().unwrap().unwrap();
-    }
-
-    fn step_to(&self, tick: u64) {
-        let now = self.journal().1;
-        self.order(Order::Step { ticks: u32::try_from(tick - now).unwrap() });
-    }
-
-    fn journal(&self) -> (Vec<Event>, u64) {
-        let (to, from) = oneshot::channel();
-        self.asks.send(Ask::Journal(to)).unwrap();
-        from.blocking_recv().unwrap()
-    }
-
-    /// The vehicles at this tick, once they are shown.
-    fn vehicles(&self, tick: u64) -> serde_json::Value {
-        for _ in 0..1000 {
-            let scene: serde_json::Value = serde_json::from_str(&self.scenes.borrow()).unwrap();
-            if scene["ticks"] == tick {
-                return scene["vehicles"].clone();
-            }
-            std::thread::sleep(std::time::Duration::from_millis(5));
-        }
-        panic!("tick {tick} is not shown: {}", *self.scenes.borrow());
-    }
-
-    fn end(self) -> (Vec<Event>, u64) {
-        self.end.ask();
-        self.thread.join().unwrap()
-    }
-}
-
 #[test]
 fn ten_seconds_back_and_on_the_same_is_seen_again_until_somebody_intervenes() {
-    let heard = Heard::begin();
+    let heard = Heard::begin(read("", &Overrides::default()));
     for (tick, order) in orders() {
         if heard.journal().1 < tick {
             heard.step_to(tick);
         }
-        heard.order(order);
+        heard.order(order).unwrap();
     }
     heard.step_to(1500);
     let (first, journal) = (heard.vehicles(1500), heard.journal().0);
     assert_eq!(journal.len(), orders().len());
-    heard.order(Order::Back { seconds: 10.0 });
+    heard.order(Order::Back { seconds: 10.0 }).unwrap();
     assert_eq!(heard.journal(), (journal, 500));
     heard.step_to(1500);
     assert_eq!(heard.vehicles(1500), first);
     // After a way back to before the last three orders, another order takes their place.
-    heard.order(Order::Back { seconds: 11.05 });
-    heard.order(Order::Outage { vehicle: None, seconds: 1.0 });
+    heard.order(Order::Back { seconds: 11.05 }).unwrap();
+    heard.order(Order::Outage { vehicle: None, seconds: 1.0 }).unwrap();
     let (events, ticks) = heard.journal();
     assert_eq!((events.len(), ticks), (5, 395));
     heard.step_to(1500);
@@ -172,36 +116,36 @@ fn ten_seconds_back_and_on_the_same_is_seen_again_until_somebody_intervenes() {
 
 #[test]
 fn an_envelope_is_switched_in_the_middle_of_a_run_that_stays_the_same_up_to_then() {
-    let heard = Heard::begin();
+    let heard = Heard::begin(read("", &Overrides::default()));
     heard.step_to(600);
     let before = heard.vehicles(600);
-    heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: false });
+    heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: false }).unwrap();
     assert_eq!(heard.journal().1, 600);
     assert_eq!(heard.vehicles(600), before);
     heard.step_to(700);
     let after = heard.vehicles(700);
     let engaged = |scene: &serde_json::Value| scene.as_array().unwrap().iter().all(|seen| seen["has_envelope"] == true);
     assert!(engaged(&before) && !engaged(&after));
-    heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: true });
+    heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: true }).unwrap();
     heard.step_to(701);
     assert!(engaged(&heard.vehicles(701)));
-    heard.order(Order::Back { seconds: 0.01 });
-    heard.order(Order::Links { vehicle: None, delay_mean_s: 0.1, delay_std_s: 0.0, loss: 0.0 });
+    heard.order(Order::Back { seconds: 0.01 }).unwrap();
+    heard.order(Order::Links { vehicle: None, delay_mean_s: 0.1, delay_std_s: 0.0, loss: 0.0 }).unwrap();
     let (events, ticks) = heard.end();
     assert_eq!((events.len(), ticks), (3, 700));
 }
 
 #[test]
 fn a_new_start_forgets_what_was_driven() {
-    let heard = Heard::begin();
+    let heard = Heard::begin(read("", &Overrides::default()));
     heard.step_to(300);
     let first = heard.vehicles(300);
-    heard.order(Order::Restart {});
+    heard.order(Order::Restart {}).unwrap();
     heard.step_to(100);
-    heard.order(Order::Drive { vehicle: 0, mps2: -3.0 });
+    heard.order(Order::Drive { vehicle: 0, mps2: -3.0 }).unwrap();
     heard.step_to(300);
     assert_ne!(heard.vehicles(300), first);
-    heard.order(Order::Restart {});
+    heard.order(Order::Restart {}).unwrap();
     heard.step_to(300);
     assert_eq!(heard.vehicles(300), first);
     assert_eq!(heard.end().0, []);

@@ -14,7 +14,7 @@ use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
 
 /// A sample that is older than so many steps of the grid is brought up to now in fewer.
-const LATE: i64 = 32;
+const LATE: i64 = 200;
 
 /// Whose horizon is ahead: a follower's horizon is computed from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -213,8 +213,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
             let Some(sample) = track.newest() else { continue };
-            let ahead = self.aheads.get(index).and_then(Held::get);
-            let says_how = track.knots().is_some() || is_known(track, ahead);
+            let says_how = self.is_foreseen(index, peers);
             let source = match (self.turns.of(index), &fused) {
                 (Turn::News, _) if says_how => Source::Heard(sample),
                 (_, Some((fused, sample))) if *fused == index => Source::Fused(sample),

@@ -103,12 +103,6 @@ impl Filter {
         &self.motion
     }
 
-    /// Standard deviations of position and speed, squared, in m² and m²/s² with 25 fraction bits.
-    #[must_use]
-    pub const fn variances(&self) -> (i32, i32) {
-        (self.covariances.rr, self.covariances.vv)
-    }
-
     /// Moves the place, because the axis of the vehicle moved.
     pub const fn shift(&mut self, way: Distance) {
         self.motion.position = self.motion.position.ahead(way);

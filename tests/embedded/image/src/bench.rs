@@ -171,6 +171,7 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             road.synchronise(at, &mut hear);
         }
         road.ego(at, &mut hear);
+        road.view(at, &mut hear);
         for peer in 0..PEERS as u8 {
             let is_alone = traffic.last_alone && usize::from(peer) == PEERS - 1;
             if tick % 10 != if is_alone { 5 } else { traffic.due } {

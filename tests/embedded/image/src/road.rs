@@ -15,6 +15,7 @@ use holdover::wire::driving_parameters::{DrivingParameters, Limits};
 use holdover::wire::fd::State;
 use holdover::wire::horizon::{KNOTS_PER_MILLE, Knot, Knots};
 use holdover::wire::motion::{Motion, WirePosition};
+use holdover::wire::range_sensor::RangeSample;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
 
@@ -25,6 +26,8 @@ const EPOCH: u64 = 1_465_000_123_000_000;
 const SPEED: i32 = 11_000;
 /// Front bumper to front bumper, for a gap that the law is content with.
 const SPACING: i64 = 18_000;
+/// Of every vehicle.
+const LENGTH: Distance = Distance::from_mm(4_800);
 /// Where the ego is along its street at the beginning, and where the street begins on its axis.
 const BEGINS: i64 = 60_000;
 const AXIS: i64 = 40_000;
@@ -35,6 +38,7 @@ const PASSERS_BY: u32 = 200;
 pub struct Road {
     peers: u8,
     has_junctions: bool,
+    has_sensor: bool,
     sender: Sender<8>,
     tag: u8,
     sequence: u8,
@@ -46,12 +50,17 @@ impl Road {
         let sender = Sender::new(Identifiers::DEFAULT);
         #[cfg(feature = "fd")]
         let sender = sender.over(Transport::Fd);
-        Self { peers, has_junctions: false, sender, tag: 0, sequence: 0 }
+        Self { peers, has_junctions: false, has_sensor: false, sender, tag: 0, sequence: 0 }
     }
 
     /// The same with intersections on it.
     pub fn with_junctions(self) -> Self {
         Self { has_junctions: true, ..self }
+    }
+
+    /// The same with a range sensor on the ego.
+    pub fn with_sensor(self) -> Self {
+        Self { has_sensor: true, ..self }
     }
 
     /// Whether there are intersections on it.
@@ -86,6 +95,24 @@ impl Road {
             let geo = self.place(at, self.peers).on_globe(self.tag, motion.stamp);
             self.say(&Message::Ego(Said::Geo(geo)), hear);
         }
+    }
+
+    /// What the ego's range sensor sees every 20 ms, if it has one: the nearest vehicle on its street.
+    pub fn view(&mut self, at: Instant, hear: &mut impl FnMut(&Frame)) {
+        if !self.has_sensor || !at.as_micros().is_multiple_of(20_000) {
+            return;
+        }
+        // On the ego's street every other peer is, where there are intersections, and the last one is on the other.
+        let ahead = if self.has_junctions { 2 } else { 1 };
+        let seen = RangeSample {
+            distance: Distance::from_mm((SPACING * ahead) as i32).minus(LENGTH),
+            speed_difference: Speed::ZERO,
+            distance_accuracy: Distance::from_mm(250),
+            speed_accuracy: Speed::from_mm_per_s(100),
+            age: Duration::ZERO,
+            nobody: false,
+        };
+        self.say(&Message::Range(seen), hear);
     }
 
     /// Where there are intersections: where a peer is on the globe, its route, and its passes. All are of the motion that it sent last,
@@ -196,7 +223,7 @@ fn gnss(at: Instant) -> GnssTime {
 /// How a peer drives; with another time gap if `other`.
 fn parameters(peer: u8, other: bool) -> DrivingParameters {
     DrivingParameters {
-        length: Distance::from_mm(4_800),
+        length: LENGTH,
         standstill: Distance::from_mm(2_000),
         predecessor: peer.checked_sub(1).map_or(Predecessor::None, |ahead| Predecessor::Station(StationHash(ahead))),
         target_speed: Speed::from_mm_per_s(13_400),

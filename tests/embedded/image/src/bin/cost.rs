@@ -69,11 +69,20 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
 /// What the configuration of the manual takes on a drive past an intersection, and without parts of it.
 #[inline(never)]
 fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
-    for (name, has_map, has_envelope) in
-        [("bare", false, false), ("envelope", false, true), ("map", true, false), ("both", true, true)]
-    {
-        let config = Config { envelope: Config::car(EGO).envelope.filter(|_| has_envelope), ..Config::car(EGO) };
-        let road = || if has_map { Road::new(8).with_junctions() } else { Road::new(8) };
+    for (name, has_map, has_envelope, has_sensor) in [
+        ("bare", false, false, false),
+        ("envelope", false, true, false),
+        ("map", true, false, false),
+        ("both", true, true, false),
+        ("sensor", false, true, true),
+        ("all", true, true, true),
+    ] {
+        let car = if has_sensor { Config::car(EGO).with_range_sensor() } else { Config::car(EGO) };
+        let config = Config { envelope: car.envelope.filter(|_| has_envelope), ..car };
+        let road = || {
+            let road = if has_map { Road::new(8).with_junctions() } else { Road::new(8) };
+            if has_sensor { road.with_sensor() } else { road }
+        };
         let begin = |unit: &mut OnboardUnit<8, 8, CAPACITY>| {
             assert!(unit.start(&config).is_ok());
             assert!(!has_map || unit.set_out(&WAY).is_ok());
@@ -110,6 +119,7 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("horizons", horizons.any),
             ("passes", passes.any),
             ("first", after(0, true, Traffic::HORIZONS)),
+            ("late-0.3", after(0, true, Traffic::ALL.aged(300))),
             ("late-3", after(4, true, Traffic::ALL.aged(3_000))),
             ("late-most", after(stale as u64 / 1_000 + 1, true, Traffic::ALL.aged(oldest))),
             ("together", after(stale as u64 / 1_000 + 1, true, Traffic::TOGETHER.aged(oldest))),
