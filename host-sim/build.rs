@@ -1,4 +1,4 @@
-//! The version that the program names: the package's version and, where git knows it, the commit that it was built from.
+//! The version that the program names: the package's version and, where git knows it, the commit that it was built from, with its day.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -18,11 +18,11 @@ fn main() {
     }
 }
 
-/// The commit of this source; `None` without git, and where the source only lies in somebody else's repository.
+/// The commit of this source and its day; `None` without git, and where the source only lies in somebody else's repository.
 fn commit() -> Option<String> {
     let root = PathBuf::from(git(&["rev-parse", "--show-toplevel"])?).canonicalize().ok()?;
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?.canonicalize().ok()?;
-    if root == own { git(&["rev-parse", "--short=12", "HEAD"]) } else { None }
+    if root == own { git(&["log", "-1", "--abbrev=12", "--date=short", "--format=%h of %cd"]) } else { None }
 }
 
 fn is_modified() -> bool {

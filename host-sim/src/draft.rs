@@ -1,7 +1,7 @@
 //! A file that is written whole or not at all: bytes enter, and the file is there when they are complete.
 //!
-//! The bytes go to a draft beside the file, which takes the file's name at the end. A full disk or a kill leaves the file that was there
-//! before. What is no regular file, such as a pipe or `/dev/stdout`, has nothing to keep, and is written straight.
+//! The bytes go to a draft in the same folder, which takes the file's name at the end. A full disk or a kill leaves the file that was there
+//! before. Until then the draft has no name, where the system has such files, so that a kill leaves nothing else either. What is no regular file, such as a pipe or `/dev/stdout`, has nothing to keep, and is written straight.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -23,6 +23,8 @@ pub struct Draft {
 
 #[derive(Debug)]
 enum Out {
+    /// Without a name, in the folder of this path.
+    Nameless(File, PathBuf),
     /// Beside the file of this path.
     Beside(NamedTempFile, PathBuf),
     /// Into the file itself.
@@ -77,16 +79,26 @@ impl Out {
         }
         // The file that a link leads to is written, and the link stays.
         let place = file.canonicalize().unwrap_or_else(|_| file.to_owned());
-        let draft = draft_in(&folder_of(&place))?;
-        if let Ok(old) = fs::metadata(&place) {
-            draft.as_file().set_permissions(old.permissions())?;
+        let rights = fs::metadata(&place).ok().map(|old| old.permissions());
+        let keep = |draft: &File| rights.map_or(Ok(()), |rights| draft.set_permissions(rights));
+        if let Ok(draft) = nameless::in_folder(&folder_of(&place)) {
+            keep(&draft)?;
+            return Ok(Self::Nameless(draft, place));
         }
+        let draft = draft_in(&folder_of(&place))?;
+        keep(draft.as_file())?;
         Ok(Self::Beside(draft, place))
     }
 
     fn finish(self) -> io::Result<()> {
         match self {
             Self::Straight(mut file) => file.flush(),
+            Self::Nameless(draft, place) => {
+                draft.sync_data()?;
+                // A name can be given, but not taken from another file; a draft with a name can take it.
+                let named = builder().make_in(folder_of(&place), |name| nameless::name(&draft, name))?;
+                named.into_temp_path().persist(place).map_err(|error| error.error)
+            }
             Self::Beside(draft, place) => {
                 // Some file systems say only here that they are full.
                 draft.as_file().sync_data()?;
@@ -100,14 +112,14 @@ impl Write for Out {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match self {
             Self::Beside(draft, _) => draft.write(bytes),
-            Self::Straight(file) => file.write(bytes),
+            Self::Nameless(file, _) | Self::Straight(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match self {
             Self::Beside(draft, _) => draft.flush(),
-            Self::Straight(file) => file.flush(),
+            Self::Nameless(file, _) | Self::Straight(file) => file.flush(),
         }
     }
 }
@@ -124,8 +136,8 @@ pub fn is_straight(file: &Path) -> bool {
 /// # Errors
 /// A folder that cannot be written.
 pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(PREFIX);
+    #[cfg_attr(not(unix), expect(unused_mut))]
+    let mut builder = builder();
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -133,6 +145,51 @@ pub fn draft_in(folder: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(folder)
+}
+
+fn builder() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX);
+    builder
+}
+
+/// Files without a name.
+#[cfg(target_os = "linux")]
+mod nameless {
+    use std::fs::{File, OpenOptions};
+    use std::io;
+    use std::os::fd::AsRawFd;
+    use std::os::unix::fs::OpenOptionsExt;
+    use std::path::Path;
+
+    use nix::fcntl::{AT_FDCWD, AtFlags, OFlag};
+
+    /// A file in a folder. Not every file system has such files.
+    pub fn in_folder(folder: &Path) -> io::Result<File> {
+        OpenOptions::new().write(true).custom_flags(OFlag::O_TMPFILE.bits()).open(folder)
+    }
+
+    /// Gives it a name that no other file has.
+    pub fn name(file: &File, name: &Path) -> io::Result<()> {
+        let itself = format!("/proc/self/fd/{}", file.as_raw_fd());
+        nix::unistd::linkat(AT_FDCWD, itself.as_str(), AT_FDCWD, name, AtFlags::AT_SYMLINK_FOLLOW)
+            .map_err(io::Error::from)
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod nameless {
+    use std::fs::File;
+    use std::io;
+    use std::path::Path;
+
+    pub fn in_folder(_: &Path) -> io::Result<File> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    pub fn name(_: &File, _: &Path) -> io::Result<()> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
 }
 
 /// The folder of a file.
@@ -166,6 +223,18 @@ mod tests {
         Draft::whole(&file, "newer").unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), "newer");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn where_files_without_names_can_be_a_draft_has_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let entries = || fs::read_dir(folder.path()).unwrap().count();
+        let named = usize::from(nameless::in_folder(folder.path()).is_err());
+        let draft = Draft::of(&folder.path().join("a.csv")).unwrap();
+        assert_eq!(entries(), named);
+        draft.finish().unwrap();
+        assert_eq!(entries(), 1);
     }
 
     #[cfg(unix)]

@@ -107,6 +107,12 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}{ellipsis}\"", escaped(&shown))
 }
 
+/// A number as it can stand inside a message: beyond what anybody means it is short, with its exponent.
+#[must_use]
+pub fn shown(number: f64) -> String {
+    if number.abs() < 1e15 { number.to_string() } else { format!("{number:e}") }
+}
+
 /// Without control characters, which could break the line or drive the terminal.
 fn escaped(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.to_string() }).collect()

@@ -1,5 +1,5 @@
-//! Where results come from: the version of the program, its command line, and the files that it read, each with its SHA-256. There is no
-//! time of day in it, so the same command on the same files says the same.
+//! Where results come from: the version of the program, its command line, and the files that it read, each with its SHA-256. The only
+//! date in it is that of the commit, so the same command on the same files says the same.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::Error;
 
-/// The version of the package and the commit that it was built from.
+/// The version of the package and the commit that it was built from, with its day.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("HOLDOVER_COMMIT"), ")");
 
 /// An input file.

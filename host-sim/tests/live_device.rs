@@ -68,17 +68,17 @@ fn what_a_device_does_not_let_itself_do_is_refused_and_the_run_goes_on() {
     let setup = setup(3.0);
     let orders = [
         Order::Back { seconds: 10.0 },
-        Order::Switch { vehicle: None, part: Part::Envelope, on: false },
-        Order::Switch { vehicle: None, part: Part::Holdover, on: false },
+        Order::Switch { vehicle: Some(2), part: Part::Envelope, on: false },
+        Order::Switch { vehicle: Some(2), part: Part::Holdover, on: false },
         Order::Switch { vehicle: Some(4), part: Part::Holdover, on: false },
         Order::Drive { vehicle: 9, mps2: 1.0 },
         Order::Outage { vehicle: Some(2), seconds: 1.0 },
     ];
     let (answers, scene, is_whole) = run(&setup, &orders, |_| {});
     let wanted = [
-        Err("time is the device's: it neither stops nor goes back; "),
-        Err("the envelopes cannot be switched while a device is in the world; "),
-        Err("vehicle 2 drives by the device's own estimate; "),
+        Err("time is the device's: it neither stops nor goes back, because nobody can rewind a device; "),
+        Err("vehicle 2 drives by the device's own estimate and envelope; "),
+        Err("vehicle 2 drives by the device's own estimate and envelope; "),
         Ok(()),
         Err("there is no vehicle 9; "),
         Ok(()),
@@ -92,6 +92,20 @@ fn what_a_device_does_not_let_itself_do_is_refused_and_the_run_goes_on() {
     }
     assert!(answers.len() == orders.len() && is_whole);
     assert_eq!(scene["events"], serde_json::json!([2, 2]));
+}
+
+#[test]
+fn what_is_switched_of_all_is_switched_of_all_but_the_device_at_once() {
+    let setup = setup(3.0);
+    let off = |part: Part| Order::Switch { vehicle: None, part, on: false };
+    let (answers, scene, _) = run(&setup, &[off(Part::Envelope), off(Part::Holdover)], |_| {});
+    assert_eq!(answers, [Ok(()), Ok(())]);
+    for (vehicle, seen) in scene["vehicles"].as_array().unwrap().iter().enumerate() {
+        let is_device = vehicle == setup.scenario.ego;
+        assert_eq!(seen["has_envelope"], is_device, "vehicle {vehicle}");
+        // The leader follows nobody, and drives by no estimate.
+        assert_eq!(seen["is_plain"], !is_device && vehicle > 0, "vehicle {vehicle}");
+    }
 }
 
 #[test]

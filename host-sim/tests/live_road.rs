@@ -3,6 +3,7 @@
 
 mod heard;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use heard::Heard;
@@ -16,6 +17,8 @@ use holdover_sim::roads::conditions::Conditions;
 use holdover_sim::roads::experiment::{Experiment, of_sides};
 use holdover_sim::roads::journal::Journal;
 use holdover_sim::roads::read::corridor;
+use holdover_sim::roads::referee::{Collision, Referee};
+use holdover_sim::roads::touching::Place;
 use holdover_sim::roads::watch::{Sighting, Watch};
 
 fn text() -> String {
@@ -60,6 +63,7 @@ fn orders() -> Vec<(u64, Order)> {
         (1700, Order::Release { vehicle: 0 }),
         (1700, Order::Switch { vehicle: Some(2), part: Part::Holdover, on: false }),
         (1750, Order::Switch { vehicle: None, part: Part::RangeSensor, on: false }),
+        (1800, Order::Switch { vehicle: Some(3), part: Part::Envelope, on: false }),
     ]
 }
 
@@ -133,6 +137,30 @@ fn what_is_kept_of_a_vehicle_goes_when_it_goes() {
         assert!(stage.kept() <= there + 1, "{} of {there}", stage.kept());
     }
     assert!(names.len() > 80 && most < 40, "{} and {most}", names.len());
+}
+
+#[test]
+fn collisions_are_told_as_the_referee_finds_them_and_those_at_crossings_too() {
+    let play = play();
+    let mut stage = play.begin(&[]).unwrap();
+    let (mut told, mut events) = (BTreeSet::new(), Vec::new());
+    while stage.ticks() < 4500 {
+        // Persons drive as fast as they can, whoever comes.
+        if stage.ticks().is_multiple_of(500) {
+            for seen in stage.scene(&Pulse::default()).vehicles.iter().filter(|seen| stage.has(seen.id)) {
+                events.push(Order::Drive { vehicle: seen.id, mps2: 2.5 }.event(stage.next_s()).unwrap());
+            }
+            let now_s = stage.next_s();
+            events.iter().filter(|event| event.at_s == now_s).for_each(|event| stage.add(*event));
+        }
+        stage.step().unwrap();
+        told.extend(stage.scene(&Pulse::default()).hits);
+    }
+    let mut referee = Referee::new(&play.experiment.network, &play.trips);
+    play.again(&events, 4500, None, &mut [&mut referee]).unwrap();
+    assert_eq!(told, referee.collisions.iter().map(|collision| collision.trips).collect());
+    let is_crossing = |collision: &Collision| matches!(collision.place, Place::Intersection(_));
+    assert!(referee.collisions.iter().any(is_crossing), "{:?}", referee.collisions);
 }
 
 #[test]

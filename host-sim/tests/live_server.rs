@@ -93,7 +93,15 @@ fn the_page_and_all_that_it_needs_are_served() {
     }
     assert!(live.ask("GET /holdover.dbc", "", "").contains("BO_ "));
     assert!(live.ask("GET /frames?vehicle=1", "", "").contains("\"cycle_s\""));
-    assert!(live.ask("GET /frames?vehicle=99", "", "").starts_with("HTTP/1.1 404"));
+    for which in ["?vehicle=99", "?vehicle=-1", "?vehicle=x", ""] {
+        for path in ["/frames", "/bus.log"] {
+            let answer = live.ask(&format!("GET {path}{which}"), "", "");
+            assert!(
+                answer.starts_with("HTTP/1.1 404") && answer.contains("there is no such vehicle; give ?vehicle="),
+                "{answer}"
+            );
+        }
+    }
     assert!(live.ask("GET /nothing", "", "").contains("the page is at /"));
 }
 
@@ -127,7 +135,8 @@ fn an_order_that_cannot_be_is_refused_with_its_cause_and_the_simulation_goes_on(
         let answer = live.order(order);
         assert!(answer.starts_with("HTTP/1.1 400") && answer.contains(cause), "{order}: {answer}");
     }
-    assert!(live.order(&"x".repeat(5000)).starts_with("HTTP/1.1 413"));
+    let long = live.order(&"x".repeat(5000));
+    assert!(long.starts_with("HTTP/1.1 400") && long.contains("the order is longer than 4096 bytes; "), "{long}");
     live.goes_on();
 }
 

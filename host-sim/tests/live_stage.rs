@@ -3,12 +3,15 @@
 mod heard;
 
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use heard::Heard;
 use holdover_sim::commands::live::order::Order;
 use holdover_sim::commands::live::scene::Pulse;
 use holdover_sim::commands::live::stage::{Play, Stage};
-use holdover_sim::input::scenario::{Overrides, Part, Scenario, saved};
+use holdover_sim::error::Error;
+use holdover_sim::input::scenario::{Event, Overrides, Part, Scenario, saved};
 use holdover_sim::measure::simulate::simulate;
 use holdover_sim::sim::world::Tick;
 
@@ -48,10 +51,35 @@ fn orders() -> Vec<(u64, Order)> {
         (400, Order::Release { vehicle: 0 }),
         (400, Order::Switch { vehicle: Some(3), part: Part::Holdover, on: false }),
         (450, Order::Switch { vehicle: None, part: Part::RangeSensor, on: false }),
+        (480, Order::Switch { vehicle: Some(1), part: Part::Envelope, on: false }),
     ]
 }
 
 const TICKS: u64 = 700;
+
+/// A scenario that counts how often it begins.
+struct Counted(Scenario, Arc<AtomicU32>);
+
+impl Play for Counted {
+    type Stage<'a> = <Scenario as Play>::Stage<'a>;
+
+    fn begin(&self, events: &[Event]) -> std::io::Result<Self::Stage<'_>> {
+        self.1.fetch_add(1, Ordering::Relaxed);
+        self.0.begin(events)
+    }
+
+    fn events(&self) -> &[Event] {
+        self.0.events()
+    }
+
+    fn period_s(&self) -> f64 {
+        Play::period_s(&self.0)
+    }
+
+    fn check(&self, event: &Event) -> Result<(), Error> {
+        self.0.check(event)
+    }
+}
 
 #[test]
 fn a_drive_that_is_saved_and_run_is_the_same_to_the_last_bit() {
@@ -104,7 +132,7 @@ fn ten_seconds_back_and_on_the_same_is_seen_again_until_somebody_intervenes() {
     assert_eq!(heard.journal(), (journal, 500));
     heard.step_to(1500);
     assert_eq!(heard.vehicles(1500), first);
-    // After a way back to before the last three orders, another order takes their place.
+    // After a way back to before the last four orders, another order takes their place.
     heard.order(Order::Back { seconds: 11.05 }).unwrap();
     heard.order(Order::Outage { vehicle: None, seconds: 1.0 }).unwrap();
     let (events, ticks) = heard.journal();
@@ -115,9 +143,11 @@ fn ten_seconds_back_and_on_the_same_is_seen_again_until_somebody_intervenes() {
 }
 
 #[test]
-fn an_envelope_is_switched_in_the_middle_of_a_run_that_stays_the_same_up_to_then() {
-    let heard = Heard::begin(read("", &Overrides::default()));
+fn an_envelope_is_switched_at_once_in_the_middle_of_a_run_that_stays_the_same_up_to_then() {
+    let begun = Arc::default();
+    let heard = Heard::begin(Counted(read("", &Overrides::default()), Arc::clone(&begun)));
     heard.step_to(600);
+    let begun_before = begun.load(Ordering::Relaxed);
     let before = heard.vehicles(600);
     heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: false }).unwrap();
     assert_eq!(heard.journal().1, 600);
@@ -126,6 +156,7 @@ fn an_envelope_is_switched_in_the_middle_of_a_run_that_stays_the_same_up_to_then
     let after = heard.vehicles(700);
     let engaged = |scene: &serde_json::Value| scene.as_array().unwrap().iter().all(|seen| seen["has_envelope"] == true);
     assert!(engaged(&before) && !engaged(&after));
+    assert_eq!(begun.load(Ordering::Relaxed), begun_before, "it is not played again from the beginning");
     heard.order(Order::Switch { vehicle: None, part: Part::Envelope, on: true }).unwrap();
     heard.step_to(701);
     assert!(engaged(&heard.vehicles(701)));

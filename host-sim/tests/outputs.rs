@@ -111,6 +111,25 @@ fn a_file_that_cannot_be_written_keeps_no_other_away() {
 }
 
 #[test]
+fn a_kill_in_the_middle_leaves_the_old_file() {
+    use std::process::Stdio;
+    let folder = folder();
+    let file = folder.path().join("ticks.csv");
+    fs::write(&file, "old").unwrap();
+    let arguments = "run --set duration_s=86400 --no-report --trace ticks.csv";
+    for signal in ["INT", "KILL"] {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_holdover-sim"));
+        program.current_dir(folder.path()).args(arguments.split_whitespace()).stderr(Stdio::null());
+        let mut child = program.stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(500));
+        assert!(child.try_wait().unwrap().is_none(), "it was to be in the middle of a day");
+        let killed = Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status().unwrap();
+        assert!(killed.success() && !child.wait().unwrap().success());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "old", "{signal}");
+    }
+}
+
+#[test]
 fn a_trace_can_be_read_through_a_pipe() {
     let folder = folder();
     let output = run(folder.path(), "run short.toml --no-report --json --trace /dev/stderr");

@@ -126,10 +126,31 @@ fn what_is_set_counts_as_if_it_stood_in_the_file() {
 }
 
 #[test]
+fn a_vehicle_that_the_file_leaves_out_can_be_set() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("base.toml"), "duration_s = 3\nego = 1\n[channel]\noutages = []").unwrap();
+    let ticks = |arguments: &[&str]| {
+        let set = ["--set", "vehicle.2.time_gap_s=1.5", "--no-report", "--trace", "ticks.csv"];
+        let output = run(folder.path(), &[arguments, &set].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(folder.path().join("ticks.csv")).unwrap()
+    };
+    // The paper's scenario has the same five vehicles, and says so.
+    assert_eq!(ticks(&["run"]), ticks(&["run", "paper"]));
+    let short = ["--set", "duration_s=3", "--set", "ego=1", "--set", "channel.outages=[]"];
+    assert_eq!(ticks(&["run", "base.toml"]), ticks(&[&["run", "paper"], &short[..]].concat()));
+    let beyond = refusal(&["run", "--set", "vehicle.5.gap_m=10"]);
+    assert!(beyond.contains("names \"5\" of a list of 5; give an index from 0 to 4"), "{beyond}");
+    let corridor = refusal(&["run", "corridor", "--set", "vehicle.0.gap_m=10"]);
+    assert!(corridor.starts_with("--set: unknown key \"vehicle\""), "{corridor}");
+}
+
+#[test]
 fn what_is_set_is_checked_like_the_file() {
     let cases = [
         ("channel.los=0.3", "--set: unknown key \"los\" in [channel]; write `loss`"),
         ("channel.loss=2", "--set: `loss` is 2; give a share from 0 to 1"),
+        ("channel.loss=1e300", "--set: `loss` is 1e300; give a share from 0 to 1"),
         ("channel.loss=much", "--set: `loss` is \"much\"; give a share from 0 to 1"),
         ("duration_s", "--set: is \"duration_s\"; give KEY=VALUE, such as channel.loss=0.3"),
         ("duration_s=", "--set: is \"duration_s=\"; give KEY=VALUE, such as channel.loss=0.3"),
@@ -152,8 +173,12 @@ fn the_version_names_the_commit_or_says_that_it_is_unknown() {
     let commit =
         version.trim_end().strip_prefix(concat!("holdover-sim ", env!("CARGO_PKG_VERSION"), " (commit ")).unwrap();
     let commit = commit.strip_suffix(')').unwrap();
-    let hash = commit.strip_suffix(", modified").unwrap_or(commit);
-    assert!(hash == "unknown" || (hash.len() == 12 && hash.chars().all(|c| c.is_ascii_hexdigit())), "{version}");
+    let commit = commit.strip_suffix(", modified").unwrap_or(commit);
+    if commit != "unknown" {
+        let (hash, day) = commit.split_once(" of ").unwrap();
+        assert!(hash.len() == 12 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{version}");
+        assert!(day.len() == 10 && day.chars().filter(|c| *c == '-').count() == 2, "{version}");
+    }
 }
 
 #[test]

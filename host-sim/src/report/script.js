@@ -272,4 +272,6 @@ for (const map of document.querySelectorAll("svg.map")) {
   map.after(bar);
   draw();
 }
+// The same command writes the same bytes, so that only the file itself knows when it was written.
+document.querySelector("footer").append(` The file is of ${new Date(document.lastModified).toLocaleString()}.`);
 document.documentElement.dataset.ready = "";

@@ -5,7 +5,8 @@ use crate::measure::bootstrap::{Interval, interval};
 use serde::Serialize;
 
 use super::beliefs::{Beliefs, Class};
-use super::referee::{Place, Referee};
+use super::referee::Referee;
+use super::touching::Place;
 use super::traffic::Remains;
 
 /// One run under one seed.

@@ -25,6 +25,7 @@ pub mod shares;
 pub mod sight;
 pub mod tally;
 pub mod throughput;
+pub mod touching;
 pub mod traffic;
 pub mod trajectories;
 pub mod trips;

@@ -4,18 +4,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::network::Network;
+use super::touching::{self, Gap, Inside, Place};
 use super::trips::Trip;
 use super::watch::{Sighting, Watch};
 use crate::measure::metrics::{FULL_STOP_FROM_S, STANDING_BELOW_MPS};
-
-/// The place of a collision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
-    /// On a road: a bumper gap below 0.
-    Road(usize),
-    /// At an intersection: both vehicles are in its conflict area, on crossing ways.
-    Intersection(usize),
-}
 
 /// A collision of two vehicles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,14 +18,6 @@ pub struct Collision {
     pub place: Place,
     /// The two trips; the smaller one first.
     pub trips: [usize; 2],
-}
-
-/// A vehicle in a conflict area.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Inside {
-    junction: usize,
-    trip: usize,
-    leg: usize,
 }
 
 /// The referee.
@@ -92,29 +76,16 @@ impl<'a> Referee<'a> {
     }
 
     fn on_roads(&mut self, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {
-        let mut order: Vec<&Sighting> = sightings.iter().chain(&self.beyond).collect();
-        order.sort_by(|a, b| a.road.cmp(&b.road).then(b.way_m.total_cmp(&a.way_m)));
-        let has_left = |one: &Sighting| one.way_m >= self.network.lanes[one.road].exit_m;
-        for pair in order.windows(2).filter(|pair| pair[0].road == pair[1].road && !has_left(pair[1])) {
-            let gap_m = pair[0].way_m - pair[0].length_m - pair[1].way_m;
+        for Gap { place, trips, gap_m } in touching::gaps(self.network, sightings, &self.beyond) {
             self.smallest_gap_m = Some(self.smallest_gap_m.map_or(gap_m, |least| least.min(gap_m)));
             if gap_m < 0.0 {
-                together.insert((Place::Road(pair[0].road), sorted(pair[0].trip, pair[1].trip)));
+                together.insert((place, trips));
             }
         }
     }
 
     fn at_intersections(&mut self, at_s: f64, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {
-        let mut inside = BTreeSet::new();
-        for own in sightings {
-            for stop in &self.network.lanes[own.road].stops {
-                let half_m = self.network.junctions[stop.intersection].half_m;
-                let front_m = own.way_m - stop.at_m;
-                if front_m >= -half_m && front_m - own.length_m <= half_m {
-                    inside.insert(Inside { junction: stop.intersection, trip: own.trip, leg: stop.leg });
-                }
-            }
-        }
+        let inside = touching::inside(self.network, sightings);
         for gone in self.inside.difference(&inside) {
             self.cleared.insert((gone.junction, gone.leg), at_s);
         }
@@ -128,13 +99,7 @@ impl<'a> Referee<'a> {
                     Some(self.smallest_clearance_s.map_or(clearance_s, |least| least.min(clearance_s)));
             }
         }
-        for a in &inside {
-            for b in inside.range((std::ops::Bound::Excluded(a), std::ops::Bound::Unbounded)) {
-                if a.junction == b.junction && self.network.junctions[a.junction].conflict(a.leg, b.leg) {
-                    together.insert((Place::Intersection(a.junction), sorted(a.trip, b.trip)));
-                }
-            }
-        }
+        together.extend(touching::crossing(self.network, &inside));
         self.inside = inside;
     }
 
@@ -149,10 +114,6 @@ impl<'a> Referee<'a> {
             self.stops.push((*since_s, own.trip));
         }
     }
-}
-
-fn sorted(a: usize, b: usize) -> [usize; 2] {
-    [a.min(b), a.max(b)]
 }
 
 impl Watch for Referee<'_> {

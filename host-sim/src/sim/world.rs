@@ -111,7 +111,9 @@ impl<'a> World<'a> {
             events: scenario.events.clone(),
             happened: 0,
         };
-        world.fit_twins()?;
+        if world.needs_twins() {
+            world.fit_twins()?;
+        }
         Ok(world)
     }
 

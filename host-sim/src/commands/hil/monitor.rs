@@ -59,6 +59,8 @@ pub struct Monitor {
     asked: Option<Instant>,
     frames: u64,
     restarts: Vec<Instant>,
+    /// How much is kept of what comes again and again.
+    most: usize,
 }
 
 impl Monitor {
@@ -75,7 +77,14 @@ impl Monitor {
             asked: None,
             frames: 0,
             restarts: Vec::new(),
+            most: usize::MAX,
         }
+    }
+
+    /// The same, which forgets all but the latest commands and errors, so many of each or up to twice as many: its memory does not grow.
+    #[must_use]
+    pub fn keeping(self, most: usize) -> Self {
+        Self { most, ..self }
     }
 
     /// The same on a bus with these frames.
@@ -118,6 +127,7 @@ impl Monitor {
             Ok(_) => News::Other,
             Err(cause) => {
                 self.e2e.push((at, cause));
+                forget(&mut self.e2e, self.most);
                 News::Other
             }
         }
@@ -136,9 +146,11 @@ impl Monitor {
         });
         if is_new {
             self.restarts.push(at);
+            forget(&mut self.restarts, self.most);
         }
         let latency = self.asked.take().map(|asked| at.since(asked));
         self.commands.push(CommandRecord { at, mode: command.mode, tick: command.tick, latency });
+        forget(&mut self.commands, self.most);
         News::Command(command, is_new)
     }
 
@@ -196,6 +208,13 @@ impl Monitor {
             (pair[1].at, (late.min(next) + period / 2).div_euclid(period) - 1)
         };
         self.commands.windows(2).enumerate().map(gap).filter(|(_, missed)| *missed > 0).collect()
+    }
+}
+
+/// Of more than twice as many the latest so many.
+fn forget<T>(kept: &mut Vec<T>, most: usize) {
+    if kept.len() / 2 >= most {
+        kept.drain(..kept.len() - most);
     }
 }
 
@@ -278,6 +297,28 @@ mod tests {
         // The first frame is not trusted. From the fourth on: a stall, its backlog, commands on time again, and a lost
         // period.
         assert_eq!(lags, [0, 0, 1, 22, 13, 4, 0, 10]);
+    }
+
+    #[test]
+    fn a_monitor_of_a_run_without_an_end_keeps_the_latest_and_tells_the_same_of_them() {
+        let (mut all, mut latest) = (Device::new(), Device::new());
+        latest.monitor = latest.monitor.keeping(50);
+        // That of MotionCommand, with a wrong checksum.
+        let spoilt = Frame::standard(1154, &[7; 8]).unwrap();
+        for period in 0..5000_u64 {
+            // Every 37th command is late.
+            let millis = 10 * period + if period.is_multiple_of(37) { 4 } else { 0 };
+            for device in [&mut all, &mut latest] {
+                device.command(millis, (period % 64) as u8);
+                device.monitor.hear(Instant::from_micros(millis * 1000), &spoilt);
+            }
+            assert_eq!(all.monitor.lag(), latest.monitor.lag());
+        }
+        let kept = |device: &Device| (device.monitor.commands().len(), device.monitor.e2e.len());
+        assert!(kept(&all).0 > 4000 && kept(&all).1 > 4000, "{:?}", kept(&all));
+        assert!(kept(&latest).0 <= 100 && kept(&latest).1 <= 100, "{:?}", kept(&latest));
+        assert_eq!(all.monitor.commands().last(), latest.monitor.commands().last());
+        assert_eq!(all.monitor.frames(), latest.monitor.frames());
     }
 
     #[test]

@@ -41,6 +41,8 @@ const WARM_UP_S: f64 = 2.0;
 const GONE_S: f64 = 2.0;
 /// Longest wait for the echoes of the last frames.
 const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
+/// What is kept of a run that nobody judges, in commands of the device and in ticks.
+const LATEST: usize = 1000;
 /// Time after a fault in which effects are attributed to it, in seconds.
 pub const AFTERMATH_S: f64 = 5.0;
 
@@ -85,6 +87,8 @@ pub(super) struct BusListener {
     pub deviation: Deviation,
     pub foreign: u64,
     pub bus_errors: u64,
+    /// Whether the device is compared with its twin, from the beginning to the end.
+    is_judged: bool,
     last_beat: Option<Instant>,
     motion: EgoMotion,
 }
@@ -101,9 +105,15 @@ impl BusListener {
             deviation: Deviation::default(),
             foreign: 0,
             bus_errors: 0,
+            is_judged: true,
             last_beat: None,
             motion: EgoMotion::default(),
         })
+    }
+
+    /// The same in a run that nobody judges, and that may last for days.
+    fn unjudged(self) -> Self {
+        Self { monitor: self.monitor.keeping(LATEST), is_judged: false, ..self }
     }
 
     /// The device was powered up anew, and so is its twin.
@@ -150,14 +160,15 @@ impl BusListener {
                     gap.max(Duration::from_micros(self.config.period.as_micros() + self.monitor.lag().as_micros()));
                 self.last_beat = Some(at);
                 self.told = self.twin.tick(at).map(|said| (said, window));
-                if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0) {
+                if let Some((said, window)) = self.told.filter(|_| at_s >= 0.0 && self.is_judged) {
                     self.deviation.command(at_s, &command, &said, window);
                 }
             }
             News::Estimate(device) => {
                 // Over CAN FD there is no tag: an estimate is that of the command before it.
                 let is_of = |tick: u8, tag: u8| self.config.transport == Transport::Fd || tick % 4 == tag;
-                if let Some((Said { command, estimate: Some(twin) }, window)) = self.told.filter(|_| at_s >= 0.0)
+                if let Some((Said { command, estimate: Some(twin) }, window)) =
+                    self.told.filter(|_| at_s >= 0.0 && self.is_judged)
                     && self.monitor.commands().last().is_some_and(|beat| is_of(beat.tick, device.tag))
                     && is_of(command.tick, twin.tag)
                 {
@@ -173,7 +184,12 @@ impl BusListener {
 /// Someone who looks at a run, and may change what happens in its world.
 pub trait Onlooker {
     /// The world at its start, before anything is sent in it.
-    fn begin(&mut self, _world: &World<'_>) {}
+    ///
+    /// # Errors
+    /// What keeps it from looking.
+    fn begin(&mut self, _world: &mut World<'_>) -> io::Result<()> {
+        Ok(())
+    }
 
     /// The world at a tick. Returns whether the run goes on.
     ///
@@ -183,9 +199,9 @@ pub trait Onlooker {
         Ok(true)
     }
 
-    /// The most ticks that the trace of the run has.
-    fn most_ticks(&self) -> usize {
-        usize::MAX
+    /// Whether the run is judged at its end, for which every tick is kept.
+    fn judges(&self) -> bool {
+        true
     }
 }
 
@@ -217,9 +233,12 @@ pub fn run_before<P: Port>(
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
     let seat = world.give_seat(scenario.ego, setup.alias());
     let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
+    if !onlooker.judges() {
+        listener = listener.unjudged();
+    }
     let mut talk = Talk::new(port, config.identifiers);
-    onlooker.begin(&world);
-    let mut trace = world.trace().of_at_most(onlooker.most_ticks());
+    onlooker.begin(&mut world)?;
+    let mut trace = world.trace().of_at_most(if onlooker.judges() { usize::MAX } else { LATEST });
     let mut paper = PaperBeside::of(&world, scenario);
     let mut injector = FaultInjector::new(&setup.faults, config.identifiers).over(config.transport);
     rig.power(true)?;
@@ -240,7 +259,9 @@ pub fn run_before<P: Port>(
             let until = pause.map_or(due, |pause| due.min(talk.now().plus(pause)));
             listen(&mut talk, &mut listener, &world, scenario.ego, until)?;
         }
-        lateness.note(talk.now().since(due));
+        if onlooker.judges() {
+            lateness.note(talk.now().since(due));
+        }
         injector.note_altered(talk.altered());
         if injector.switch(at_s, rig) {
             listener.restart();

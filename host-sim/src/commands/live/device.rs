@@ -17,7 +17,7 @@ use crate::commands::interruption::Interruption;
 use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::input::scenario::{Change, Event, Fleet, Part, Scenario};
-use crate::sim::world::{MOST_TICKS, World};
+use crate::sim::world::World;
 
 /// A scene so often, in ticks of 10 ms.
 const SCENE_EVERY: u64 = 3;
@@ -68,39 +68,47 @@ impl<'a> Device<'a> {
                 let _ = to.send(rows.and_then(|rows| serde_json::to_string(&rows).ok()));
             }
             Ask::Do(order, to) => {
-                let event = self.event(order);
-                if let Ok(event) = &event {
+                let events = self.events_of(order);
+                for event in events.iter().flatten() {
                     world.add(*event);
                     self.events.retain(|other| other.at_s <= event.at_s);
                     self.events.push(*event);
                 }
-                let _ = to.send(event.map(|_| ()));
+                let _ = to.send(events.map(|_| ()));
             }
         }
     }
 
-    /// The event that an order is.
-    fn event(&self, order: Order) -> Result<Event, Error> {
-        let of_its_own = |cause: String| Err(Error::new(cause, "do without it, or start `live` without --bus"));
+    /// The events that an order is. Estimate and envelope of the ego are in the device, so what is switched of all is switched of the
+    /// others.
+    fn events_of(&self, order: Order) -> Result<Vec<Event>, Error> {
+        let ego = self.scenario.ego;
+        let refused = |cause: String, remedy: &str| Err(Error::new(cause, remedy));
         let Some(event) = order.event(self.ticks as f64 * self.scenario.period_s) else {
-            return of_its_own("time is the device's: it neither stops nor goes back".into());
+            let cause =
+                "time is the device's: it neither stops nor goes back, because nobody can rewind a device".into();
+            return refused(cause, "do without it, or start `live` without --bus");
         };
         event.check(&self.fleet)?;
-        match event.change {
-            Change::Switch(Part::Envelope, _) => {
-                of_its_own("the envelopes cannot be switched while a device is in the world".into())
+        match (event.change, event.vehicle) {
+            (Change::Switch(Part::Envelope | Part::Holdover, _), Some(vehicle)) if vehicle == ego => {
+                let cause = format!("vehicle {ego} drives by the device's own estimate and envelope");
+                refused(cause, "choose another vehicle, or configure the device")
             }
-            Change::Switch(Part::Holdover, false) if event.is_of(self.scenario.ego) => {
-                of_its_own(format!("vehicle {} drives by the device's own estimate", self.scenario.ego))
+            (Change::Switch(Part::Envelope | Part::Holdover, _), None) => {
+                let others = (0..self.scenario.vehicles.len()).filter(|vehicle| *vehicle != ego);
+                Ok(others.map(|vehicle| Event { vehicle: Some(vehicle), ..event }).collect())
             }
-            _ => Ok(event),
+            _ => Ok(vec![event]),
         }
     }
 }
 
 impl Onlooker for Device<'_> {
-    fn begin(&mut self, world: &World<'_>) {
+    fn begin(&mut self, world: &mut World<'_>) -> io::Result<()> {
+        world.fit_twins().map_err(io::Error::other)?;
         self.onlookers = Some(Onlookers::of(world, self.scenario));
+        Ok(())
     }
 
     fn see(&mut self, world: &mut World<'_>, at_s: f64) -> io::Result<bool> {
@@ -122,7 +130,7 @@ impl Onlooker for Device<'_> {
         Ok(!self.end.is_asked())
     }
 
-    fn most_ticks(&self) -> usize {
-        MOST_TICKS
+    fn judges(&self) -> bool {
+        false
     }
 }

@@ -15,7 +15,7 @@ use super::snapshots::Snapshots;
 use super::stage::{Play, Stage};
 use crate::commands::interruption::Interruption;
 use crate::error::Error;
-use crate::input::scenario::{Change, Event, Part};
+use crate::input::scenario::Event;
 
 /// Scenes a second.
 const SCENE_EVERY: Duration = Duration::from_millis(30);
@@ -52,8 +52,8 @@ pub struct Engine<'p, P: Play> {
 enum Cut {
     /// Time goes back, to so many ticks.
     Back(u64),
-    /// The world is to be played anew from its beginning, up to so many ticks.
-    Anew(u64),
+    /// The world begins anew.
+    Anew,
     /// The program is to end.
     End,
 }
@@ -84,8 +84,8 @@ impl<'p, P: Play> Engine<'p, P> {
                         None => self.play.begin(&self.events)?,
                     };
                 }
-                Cut::Anew(ticks) => {
-                    until = ticks;
+                Cut::Anew => {
+                    until = 0;
                     self.snapshots.clear();
                     stage = self.play.begin(&self.events)?;
                 }
@@ -159,7 +159,9 @@ impl<'p, P: Play> Engine<'p, P> {
                     let checked = self.play.check(&event).and_then(|()| is_there(stage, &event));
                     let is_possible = checked.is_ok();
                     let _ = to.send(checked);
-                    return Ok(if is_possible { self.change(stage, event) } else { None });
+                    if is_possible {
+                        self.change(stage, event);
+                    }
                 }
                 None => {
                     let cut = self.steer(stage, order)?;
@@ -173,14 +175,10 @@ impl<'p, P: Play> Engine<'p, P> {
     }
 
     /// An event happens at the next tick; what was to happen later, after a way back, does not.
-    fn change(&mut self, stage: &mut P::Stage<'p>, event: Event) -> Option<Cut> {
-        let has_twins = stage.has_twins(event.vehicle);
+    fn change(&mut self, stage: &mut P::Stage<'p>, event: Event) {
         self.events = self.so_far(stage);
         self.events.push(event);
         stage.add(event);
-        let needs_twins = matches!(event.change, Change::Switch(Part::Envelope, _));
-        // The run is then the same, with a second unit in every vehicle that was ready from its beginning.
-        (needs_twins && !has_twins).then_some(Cut::Anew(stage.ticks()))
     }
 
     fn steer(&mut self, stage: &mut P::Stage<'p>, order: Order) -> io::Result<Option<Cut>> {
@@ -202,7 +200,7 @@ impl<'p, P: Play> Engine<'p, P> {
             }
             Order::Restart {} => {
                 self.events = self.play.events().to_vec();
-                return Ok(Some(Cut::Anew(0)));
+                return Ok(Some(Cut::Anew));
             }
             _ => {}
         }

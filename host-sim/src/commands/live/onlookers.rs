@@ -104,11 +104,15 @@ impl Onlookers {
     /// What there is to see of the latest tick.
     #[must_use]
     pub fn scene(&self, world: &World<'_>, scenario: &Scenario, at_s: f64, pulse: &Pulse) -> Scene {
+        let vehicles: Vec<Seen> =
+            (0..self.trace.latest.len()).map(|index| self.seen(world, scenario, index, at_s)).collect();
+        let hits = vehicles.iter().filter(|seen| seen.gap_m.is_some_and(|gap_m| gap_m < 0.0));
         Scene {
             at_s: rounded(at_s),
             pulse: pulse.clone(),
             largest_error_m: self.largest_error_m.map(|error| error.map(rounded)),
-            vehicles: (0..self.trace.latest.len()).map(|index| self.seen(world, scenario, index, at_s)).collect(),
+            hits: hits.map(|seen| [seen.id - 1, seen.id]).collect(),
+            vehicles,
         }
     }
 

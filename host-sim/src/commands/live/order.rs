@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::input::scenario::{Change, Event, Part, Radio};
 
 /// The longest way back, and the most ticks at once.
@@ -92,10 +92,10 @@ impl Order {
                 refused(format!("`ticks` is {ticks}"), "give a number from 1 to 10000")
             }
             Self::Pace { factor } if !PACES.contains(&factor) => {
-                refused(format!("`factor` is {factor}"), "give a number from 0.01 to 20")
+                refused(format!("`factor` is {}", shown(factor)), "give a number from 0.01 to 20")
             }
             Self::Back { seconds } if !(0.0..=LONGEST_BACK_S).contains(&seconds) => {
-                refused(format!("`seconds` is {seconds}"), "give a number from 0 to 86400")
+                refused(format!("`seconds` is {}", shown(seconds)), "give a number from 0 to 86400")
             }
             order => Ok(order),
         }

@@ -3,7 +3,7 @@
 //!
 //! Vehicles arrive for a day. Up to any time they are those of a run of that length: no arrival depends on later ones.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 
 use super::bus_view::{BusView, Row};
@@ -17,7 +17,9 @@ use crate::input::scenario::{Event, Fleet};
 use crate::roads::Corridor;
 use crate::roads::conditions::Conditions;
 use crate::roads::experiment::Experiment;
+use crate::roads::network::Network;
 use crate::roads::read;
+use crate::roads::touching;
 use crate::roads::traffic::Traffic;
 use crate::roads::trips::Trip;
 use crate::roads::watch::{Sighting, Watch};
@@ -91,6 +93,7 @@ impl Play for RoadPlay {
     fn begin(&self, events: &[Event]) -> io::Result<RoadStage<'_>> {
         let mut traffic = self.traffic();
         traffic.expect(events);
+        traffic.fit_twins();
         let seen = Sights::default();
         Ok(RoadStage { play: self, traffic, seen, methods: BTreeMap::new(), buses: BTreeMap::new() })
     }
@@ -115,6 +118,18 @@ pub struct Sights {
     pub on_way: Vec<Sighting>,
     /// Those beyond the end of it.
     pub beyond: Vec<Sighting>,
+}
+
+impl Sights {
+    /// The pairs of vehicles that run into one another.
+    #[must_use]
+    pub fn hits(&self, network: &Network) -> Vec<[usize; 2]> {
+        let gaps = touching::gaps(network, &self.on_way, &self.beyond).into_iter();
+        let on_roads = gaps.filter(|gap| gap.gap_m < 0.0).map(|gap| gap.trips);
+        let crossing = touching::crossing(network, &touching::inside(network, &self.on_way));
+        let hits: BTreeSet<[usize; 2]> = on_roads.chain(crossing.into_iter().map(|(_, trips)| trips)).collect();
+        hits.into_iter().collect()
+    }
 }
 
 impl Watch for Sights {
@@ -187,10 +202,6 @@ impl Stage for RoadStage<'_> {
 
     fn expect(&mut self, events: &[Event]) {
         self.traffic.expect(events);
-    }
-
-    fn has_twins(&self, vehicle: Option<usize>) -> bool {
-        self.traffic.has_twins(vehicle)
     }
 
     fn step(&mut self) -> io::Result<()> {

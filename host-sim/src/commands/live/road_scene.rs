@@ -31,7 +31,13 @@ pub fn of(
         let (places, load) = beside(traveller.trip);
         Some(look.seen(traveller, own, places, load, place(&entries, own.trip)))
     });
-    Scene { at_s: rounded(at_s), pulse: pulse.clone(), largest_error_m: [None; 2], vehicles: vehicles.collect() }
+    Scene {
+        at_s: rounded(at_s),
+        pulse: pulse.clone(),
+        largest_error_m: [None; 2],
+        hits: seen.hits(&play.experiment.network),
+        vehicles: vehicles.collect(),
+    }
 }
 
 /// The vehicles that have arrived at an intersection: the intersection, the trip, and what the vehicle tells.

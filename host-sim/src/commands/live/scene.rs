@@ -16,6 +16,8 @@ pub struct Scene {
     pub pulse: Pulse,
     /// The largest errors of the measured vehicle since the link has settled: of the units, and of the literal paper.
     pub largest_error_m: [Option<f64>; 2],
+    /// The pairs of vehicles that run into one another.
+    pub hits: Vec<[usize; 2]>,
     /// The vehicles.
     pub vehicles: Vec<Seen>,
 }

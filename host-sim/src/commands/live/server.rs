@@ -9,6 +9,7 @@ use std::sync::mpsc::Sender;
 
 use axum::Router;
 use axum::body::Bytes;
+use axum::extract::rejection::{BytesRejection, QueryRejection};
 use axum::extract::{DefaultBodyLimit, Query, Request, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::http::{HeaderValue, StatusCode};
@@ -109,7 +110,12 @@ async fn guarded(State(desk): State<Desk>, request: Request, next: Next) -> Resp
     response
 }
 
-async fn order(State(desk): State<Desk>, body: Bytes) -> Response {
+async fn order(State(desk): State<Desk>, body: Result<Bytes, BytesRejection>) -> Response {
+    let Ok(body) = body else {
+        let refusal =
+            format!("the order is longer than {LONGEST_ORDER} bytes; see docs/LIVE.md for the orders and their values");
+        return (StatusCode::BAD_REQUEST, refusal).into_response();
+    };
     let order = match Order::read(&body) {
         Ok(order) => order,
         Err(error) => return (StatusCode::BAD_REQUEST, error.to_string()).into_response(),
@@ -142,11 +148,15 @@ struct Which {
     vehicle: usize,
 }
 
+/// The vehicle that a request asks about, if it names one.
+type Wanted = Result<Query<Which>, QueryRejection>;
+
 fn no_vehicle() -> Refused {
     (StatusCode::NOT_FOUND, "there is no such vehicle; give ?vehicle= and an index of the scenario".into())
 }
 
-async fn frames(State(desk): State<Desk>, Query(which): Query<Which>) -> Result<Response, Refused> {
+async fn frames(State(desk): State<Desk>, wanted: Wanted) -> Result<Response, Refused> {
+    let Query(which) = wanted.map_err(|_| no_vehicle())?;
     let rows = desk.ask(|to| Ask::Frames(which.vehicle, to)).await?.ok_or_else(no_vehicle)?;
     Ok(([(CONTENT_TYPE, "application/json")], rows).into_response())
 }
@@ -158,7 +168,8 @@ async fn scenario(State(desk): State<Desk>) -> Result<Response, Refused> {
 }
 
 /// The log of a bus from the beginning: the run is played once more beside the one that goes on.
-async fn candump(State(desk): State<Desk>, Query(which): Query<Which>) -> Result<Response, Refused> {
+async fn candump(State(desk): State<Desk>, wanted: Wanted) -> Result<Response, Refused> {
+    let Query(which) = wanted.map_err(|_| no_vehicle())?;
     if desk.archive.is_device(which.vehicle) {
         let cause = "a device drives this vehicle; log its bus with `holdover-sim record --bus INTERFACE`";
         return Err((StatusCode::CONFLICT, cause.into()));

@@ -81,9 +81,6 @@ mod tests {
         }
         fn add(&mut self, _: Event) {}
         fn expect(&mut self, _: &[Event]) {}
-        fn has_twins(&self, _: Option<usize>) -> bool {
-            false
-        }
         fn step(&mut self) -> io::Result<()> {
             self.0 += 1;
             Ok(())
@@ -92,7 +89,13 @@ mod tests {
             None
         }
         fn scene(&self, pulse: &Pulse) -> Scene {
-            Scene { at_s: 0.0, pulse: pulse.clone(), largest_error_m: [None; 2], vehicles: Vec::new() }
+            Scene {
+                at_s: 0.0,
+                pulse: pulse.clone(),
+                largest_error_m: [None; 2],
+                hits: Vec::new(),
+                vehicles: Vec::new(),
+            }
         }
     }
 

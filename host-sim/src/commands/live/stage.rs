@@ -18,7 +18,7 @@ pub trait Play {
     where
         Self: 'a;
 
-    /// The stage at the start, with these events to come.
+    /// The stage at the start, with these events to come. Every unit has a twin with the other envelope, so that a switch shows at once.
     ///
     /// # Errors
     /// A configuration that the units refuse, and errors of the buses.
@@ -57,9 +57,6 @@ pub trait Stage: Clone {
     /// From now on these events happen, the first of which are those that have happened.
     fn expect(&mut self, events: &[Event]);
 
-    /// Whether the envelope of the vehicle, or of all, can be switched without a new start.
-    fn has_twins(&self, vehicle: Option<usize>) -> bool;
-
     /// One tick.
     ///
     /// # Errors
@@ -78,8 +75,9 @@ impl Play for Scenario {
 
     fn begin(&self, events: &[Event]) -> io::Result<StringStage<'_>> {
         let refused = |cause: holdover::ConfigError| io::Error::new(io::ErrorKind::InvalidInput, cause.to_string());
-        let world = World::new(self, self.seed, None).map_err(refused)?.unrecorded();
-        let mut world = world.with_events(events.to_vec()).map_err(refused)?;
+        let mut world = World::new(self, self.seed, None).map_err(refused)?.unrecorded();
+        world.expect(events);
+        world.fit_twins().map_err(refused)?;
         let onlookers = Onlookers::of(&world, self);
         world.warm_up()?;
         Ok(StringStage { scenario: self, world, ticks: 0, onlookers })
@@ -144,10 +142,6 @@ impl Stage for StringStage<'_> {
 
     fn expect(&mut self, events: &[Event]) {
         self.world.expect(events);
-    }
-
-    fn has_twins(&self, _vehicle: Option<usize>) -> bool {
-        self.world.has_twins()
     }
 
     fn step(&mut self) -> io::Result<()> {

@@ -3,7 +3,7 @@
 
 use super::Span;
 use super::set::{SET_LINE, SET_OFFSET, Sets};
-use crate::error::{Error, quoted};
+use crate::error::{Error, quoted, shown};
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -27,7 +27,7 @@ impl Number {
         if self.limits.contains(&number) {
             return Ok(number);
         }
-        Err(Error::new(format!("`{}` is {number}", self.key), format!("give {}", self.wanted())))
+        Err(Error::new(format!("`{}` is {}", self.key, shown(number)), format!("give {}", self.wanted())))
     }
 
     fn wanted(&self) -> String {

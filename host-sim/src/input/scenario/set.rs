@@ -6,7 +6,11 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::validate::PAPER_VEHICLES;
 use crate::error::{Error, quoted};
+
+/// The list of which a file may leave out all.
+const VEHICLES: &str = "vehicle";
 
 /// The place of everything that the command line sets, behind every file.
 const SPAN: Range<usize> = usize::MAX - 1..usize::MAX;
@@ -67,11 +71,24 @@ fn merge<'a>(table: &mut DeTable<'a>, set: DeTable<'a>, line: &str) -> Result<()
         match table.get_mut(key.get_ref().as_ref()) {
             Some(there) => put(there, value, line)?,
             None => {
-                table.insert(Spanned::new(SPAN, key.into_inner()), placed(value));
+                let value = if key.get_ref() == VEHICLES && value.get_ref().is_table() {
+                    let mut list = left_out();
+                    put(&mut list, value, line)?;
+                    list
+                } else {
+                    placed(value)
+                };
+                table.insert(Spanned::new(SPAN, key.into_inner()), value);
             }
         }
     }
     Ok(())
+}
+
+/// The vehicles that a file leaves out: those of the paper, each with every value its default.
+fn left_out<'a>() -> Spanned<DeValue<'a>> {
+    let nothing = |_| Spanned::new(SPAN, DeValue::Table(DeTable::new()));
+    Spanned::new(SPAN, DeValue::Array((0..PAPER_VEHICLES).map(nothing).collect()))
 }
 
 /// Puts a value over another one: a table into a table key by key, and into a list by the index.

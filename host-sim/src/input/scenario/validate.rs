@@ -37,7 +37,7 @@ const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, d
 const DUPLICATE: Number = Number { key: "duplicate", unit: "a share", limits: 0.0..=1.0, default: 0.0 };
 const OUTAGES: Number = Number { key: "outages", unit: "seconds", limits: 0.0..=86_400.0, default: 0.0 };
 
-const PAPER_VEHICLES: usize = 5;
+pub const PAPER_VEHICLES: usize = 5;
 const PAPER_EGO: usize = 2;
 const PAPER_GAP: Span = Span { low: 12.0, high: 16.0 };
 const PAPER_OUTAGES: [Window; 2] = [Window { from_s: 4.0, to_s: 6.0 }, Window { from_s: 6.0, to_s: 8.0 }];

@@ -66,6 +66,17 @@ pub(super) fn pixel(value: f64) -> String {
     }
 }
 
+/// The same to a hundredth, for what is looked at more closely.
+pub(super) fn fine(value: f64) -> String {
+    let hundredths = (value * 100.0).round() as i64;
+    if hundredths % 10 == 0 {
+        return pixel(value);
+    }
+    let (whole, rest) = (hundredths.abs() / 100, hundredths.abs() % 100);
+    let sign = if hundredths < 0 { "-" } else { "" };
+    if whole == 0 { format!("{sign}.{rest:02}") } else { format!("{sign}{whole}.{rest:02}") }
+}
+
 impl Svg {
     pub fn new(id: &str) -> Self {
         Self { id: escape(id), body: String::new() }
@@ -178,6 +189,18 @@ mod tests {
             [(0.0, "0"), (-0.04, "0"), (0.25, ".3"), (-0.25, "-.3"), (12.0, "12"), (-3.12, "-3.1"), (99.96, "100")]
         {
             assert_eq!(pixel(value), expected);
+        }
+        for (value, expected) in [
+            (0.0, "0"),
+            (-0.004, "0"),
+            (0.25, ".25"),
+            (-0.25, "-.25"),
+            (-0.5, "-.5"),
+            (12.0, "12"),
+            (-3.124, "-3.12"),
+            (99.996, "100"),
+        ] {
+            assert_eq!(fine(value), expected);
         }
     }
 }

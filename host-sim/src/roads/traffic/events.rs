@@ -17,6 +17,8 @@ pub(super) struct Happenings {
     events: Vec<Event>,
     happened: usize,
     heeds: Heeds,
+    /// Whether any envelope may be switched at any time.
+    fits_twins: bool,
     /// How the parts of all vehicles were switched last.
     standing: [Option<bool>; Part::ALL.len()],
 }
@@ -24,13 +26,13 @@ pub(super) struct Happenings {
 impl Happenings {
     /// These events, as far as the run heeds them.
     pub fn of(events: &[Event], heeds: Heeds) -> Self {
-        Self { events: heeded(events, heeds), happened: 0, heeds, standing: [None; Part::ALL.len()] }
+        Self { events: heeded(events, heeds), happened: 0, heeds, fits_twins: false, standing: [None; Part::ALL.len()] }
     }
 
-    /// Whether the envelope of the vehicle is switched at some time.
-    fn switches_envelope(&self, trip: usize) -> bool {
+    /// Whether the envelope of the vehicle is switched at some time. For that its unit has a twin since it appears.
+    fn needs_twin(&self, trip: usize) -> bool {
         let is = |event: &&Event| matches!(event.change, Change::Switch(Part::Envelope, _)) && event.is_of(trip);
-        self.events.iter().any(|event| is(&event))
+        self.fits_twins || self.events.iter().any(|event| is(&event))
     }
 }
 
@@ -57,18 +59,14 @@ impl Traffic<'_> {
         self.happenings.events = heeded(events, self.happenings.heeds);
     }
 
-    /// Whether the envelope of the vehicle, or of all, can be switched. For that its unit has a twin since it appeared.
-    #[must_use]
-    pub fn has_twins(&self, vehicle: Option<usize>) -> bool {
-        match vehicle {
-            Some(trip) => self.happenings.switches_envelope(trip),
-            None => self.happenings.switches_envelope(usize::MAX),
-        }
+    /// Gives every unit that appears from now on a twin with the other envelope: envelopes can then be switched at any time.
+    pub fn fit_twins(&mut self) {
+        self.happenings.fits_twins = true;
     }
 
     /// Makes a vehicle that appears ready for what befalls it, and switches its parts as those of all were.
     pub(super) fn prepare(&self, trip: usize, vehicle: &mut Vehicle) -> Result<(), holdover::ConfigError> {
-        if self.happenings.switches_envelope(trip) {
+        if self.happenings.needs_twin(trip) {
             let envelope = self.conditions.envelope;
             let other = Envelope { engaged: !envelope.engaged, ..envelope };
             let capable = vehicle.unit.config().limits.emergency_braking;

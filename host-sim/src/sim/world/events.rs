@@ -17,16 +17,6 @@ impl World<'_> {
         self.events.push(event);
     }
 
-    /// The same world with other events, before it has begun.
-    ///
-    /// # Errors
-    /// A configuration that the units refuse.
-    pub fn with_events(mut self, events: Vec<Event>) -> Result<Self, ConfigError> {
-        self.events = events;
-        self.fit_twins()?;
-        Ok(self)
-    }
-
     /// From now on these events happen, the first of which are those that have happened.
     pub fn expect(&mut self, events: &[Event]) {
         self.events = events.to_vec();
@@ -44,17 +34,16 @@ impl World<'_> {
         index.checked_sub(1).is_some_and(|ahead| self.air.is_silent(Link { from: ahead, to: index }, at_s))
     }
 
-    /// Whether the envelopes can be switched. For that every unit has a twin from the beginning.
-    #[must_use]
-    pub fn has_twins(&self) -> bool {
-        self.events.iter().any(switches_envelope)
+    /// Whether an event switches an envelope. For that every unit has to have a twin from the beginning.
+    pub(super) fn needs_twins(&self) -> bool {
+        self.events.iter().any(|event| matches!(event.change, Change::Switch(Part::Envelope, _)))
     }
 
-    /// Gives every unit a twin with the other envelope, if an event needs one.
-    pub(super) fn fit_twins(&mut self) -> Result<(), ConfigError> {
-        if !self.has_twins() {
-            return Ok(());
-        }
+    /// Gives every unit a twin with the other envelope, before the world has begun: envelopes can then be switched at any time.
+    ///
+    /// # Errors
+    /// A configuration that the units refuse.
+    pub fn fit_twins(&mut self) -> Result<(), ConfigError> {
         let other = Envelope { engaged: !self.scenario.envelope.engaged, ..self.scenario.envelope };
         self.vehicles.iter_mut().try_for_each(|vehicle| {
             let capable = vehicle.unit.config().limits.emergency_braking;
@@ -90,9 +79,4 @@ impl World<'_> {
             }
         }
     }
-}
-
-/// Whether an event needs twins.
-fn switches_envelope(event: &Event) -> bool {
-    matches!(event.change, Change::Switch(Part::Envelope, _))
 }

@@ -2,7 +2,7 @@
 
 import { drive } from "./drive.js";
 import { frames } from "./frames.js";
-import { get, listen, order } from "./link.js";
+import { get, listen, order, say } from "./link.js";
 import { map } from "./map.js";
 import { plots } from "./plots.js";
 import { road } from "./scene.js";
@@ -20,6 +20,12 @@ const state = {
   scene: null, // the newest one
   scenes: [], // the last ones, for smooth motion
   shownS: 0, // the time that is drawn
+  hits: new Map(), // of a vehicle: with whom it collided last, and when
+  // The collision of a vehicle, as long as it is shown.
+  hit(id) {
+    const hit = this.hits.get(id);
+    return hit && this.scene.at_s - hit.atS < 5 ? hit : null;
+  },
   // What stays the same of a vehicle.
   role(id) {
     if (!cast.roads) return cast.vehicles[id];
@@ -40,7 +46,7 @@ if (state.isRoad) {
 // Beside a device time is the device's.
 const hasDevice = cast.device != null;
 if (hasDevice) {
-  for (const id of ["play", "step", "back", "restart", "pace", "envelope"]) byId(id).disabled = true;
+  for (const id of ["play", "step", "back", "restart", "pace"]) byId(id).disabled = true;
   byId("title").textContent += `, with a device as vehicle ${cast.vehicles[cast.device].name}`;
   byId("save").hidden = true;
 }
@@ -103,6 +109,16 @@ function attend(scene) {
   if (next || state.chosen !== null) choose(next?.id ?? null);
 }
 
+// Collisions are said once, and shown for a while.
+function note(scene) {
+  for (const [id, hit] of state.hits) if (hit.atS > scene.at_s) state.hits.delete(id); // time has gone back
+  for (const [a, b] of scene.hits) {
+    if (state.hits.get(a)?.other !== b) say(`Vehicles ${state.role(a).name} and ${state.role(b).name} collided at ${scene.at_s.toFixed(1)} s.`);
+    state.hits.set(a, { other: b, atS: scene.at_s });
+    state.hits.set(b, { other: a, atS: scene.at_s });
+  }
+}
+
 // Time.
 const toggle = () => order({ do: state.scene?.is_playing ? "pause" : "play" });
 const back = () => order({ do: "back", seconds: 10 });
@@ -153,7 +169,8 @@ for (const part of ["holdover", "envelope", "range_sensor"]) {
 }
 // Somebody else may have switched, and time may have gone back.
 function tellSwitches(scene) {
-  const some = scene.vehicles.filter((seen) => (state.isRoad || seen.id > 0) && (whom() ?? seen.id) === seen.id);
+  const isOf = (seen) => (whom() == null ? seen.id !== cast.device : seen.id === whom());
+  const some = scene.vehicles.filter((seen) => (state.isRoad || seen.id > 0) && isOf(seen));
   const is = { holdover: (seen) => !seen.is_plain, envelope: (seen) => seen.has_envelope, range_sensor: (seen) => seen.sees };
   if (!some.length) return;
   for (const [part, on] of Object.entries(is)) {
@@ -202,9 +219,8 @@ function tell(scene) {
   scene.vehicles.forEach((seen) => {
     const target = seen.target;
     const width = target?.bound_m ? target.bound_m[1] - target.bound_m[0] : null;
-    const mode = seen.is_driven ? "driven by you" : seen.is_plain ? "without estimate" : seen.mode;
-    // Behind one that crosses, the gap on the virtual lane may be below 0 where the roads are apart.
-    const hasHit = seen.gap_m < 0 && seen.road === scene.byId.get(seen.follows)?.road;
+    const hit = state.hit(seen.id);
+    const mode = hit ? `collided with ${hit.other}` : seen.is_driven ? "driven by you" : seen.is_plain ? "without estimate" : seen.mode;
     const at = seen.next == null ? "" : ` at ${cast.intersections[seen.next].name}`;
     const cells = [
       state.isRoad ? cast.roads[seen.road].name : "", seen.has_left ? "left" : (seen.place ?? "–") + at,
@@ -214,7 +230,7 @@ function tell(scene) {
     cells.forEach((text, place) => {
       const cell = rows.get(seen.id).cells[place + 1];
       if (cell.textContent !== text) cell.textContent = text;
-      cell.classList.toggle("is-bad", text === "silent" || (place === 3 && hasHit));
+      cell.classList.toggle("is-bad", text === "silent" || (place === 4 && hit != null));
     });
   });
 }
@@ -224,6 +240,7 @@ let heard = 0;
 listen((scene) => {
   heard += 1;
   attend(scene);
+  note(scene);
   const before = state.scene;
   if (!before || scene.ticks < before.ticks) {
     state.scenes = [];

@@ -2,7 +2,7 @@
 // virtual lane of an intersection: all of its legs on one axis, by the distance to the crossing point.
 
 import { roads } from "./roads.js";
-import { colours, now, prepare } from "./scene.js";
+import { colours, cross, now, prepare } from "./scene.js";
 
 const byId = (id) => document.getElementById(id);
 const LANE_M = 3.5;
@@ -131,6 +131,7 @@ export function map(state, choose) {
       box(one, one.position_m, 0, (...rectangle) => {
         paint.fillStyle = one.is_driven ? hue.paper : one.id === state.chosen ? hue.chosen : hue.vehicle;
         paint.fillRect(...rectangle);
+        if (state.hit(one.id)) cross(paint, hue.warn, ...rectangle);
         if (!one.is_silent) return;
         paint.strokeStyle = hue.warn;
         paint.lineWidth = 1.5;

@@ -53,6 +53,20 @@ export function prepare(canvas) {
   return [paint, width, height];
 }
 
+// Over a vehicle that has collided.
+export function cross(paint, colour, left, up, wide, tall) {
+  paint.strokeStyle = colour;
+  paint.lineWidth = 4;
+  paint.strokeRect(left, up, wide, tall);
+  paint.beginPath();
+  paint.moveTo(left, up);
+  paint.lineTo(left + wide, up + tall);
+  paint.moveTo(left, up + tall);
+  paint.lineTo(left + wide, up);
+  paint.stroke();
+  paint.lineWidth = 1;
+}
+
 export function road(state, choose) {
   const canvas = byId("scene");
   const camera = { middleM: 0, perM: 8 };
@@ -133,6 +147,7 @@ export function road(state, choose) {
       paint.fillText(`${index + 1}. ${role.name}`, left + long / 2, top - 22);
       paint.fillStyle = hue.faint;
       paint.fillText(`${one.speed_mps.toFixed(1)} m/s`, left + long / 2, top - 8);
+      if (state.hit(index)) cross(paint, hue.warn, left, up, long, tall);
     });
     // Each vehicle as its follower believes it to be.
     seen.forEach((one, index) => {
