@@ -3,12 +3,15 @@
 #
 #   kernel   vcan.sh gives a command a vcan0, and keeps what it says of exit code, output and time
 #   tests    the simulator's tests that need a SocketCAN interface
-#   ecu      the paper's scenario against the unit as a process of Linux, in lock step and in real time, over classic CAN, over CAN FD, and
-#            with identifiers of 29 bits
+#   ecu      the paper's scenario against the unit as a process of Linux, in real time over CAN FD and with identifiers of 29 bits, with these
+#            in lock step too; the tests have the other ways
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
 #   r5       the same against the firmware on an emulated Cortex-R5F, whose CAN controller is on vcan0
 #   node     the first node, a Python program that knows the DBC alone, against the process, over classic CAN and CAN FD, and the
 #            emulated Cortex-M4F. The emulated boards' controllers have classic CAN alone
+#
+# Where a command gets a kernel of its own, two run at once, each with its own vcan0, and the images are built meanwhile: a bus leaves
+# the processor idle for most of the time.
 #
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
@@ -43,18 +46,60 @@ check_kernel() {
     echo "  a frame on vcan0, exit codes, output apart, 588,895 bytes without loss, time limit"
 }
 
+# both COMMAND COMMAND...: all of them at once, where each has a kernel of its own; what each says comes in order, after its end.
+both() {
+    local command job=0 jobs=() code=0
+    for command; do
+        if [ "$own_kernel" = yes ]; then
+            $command >"$work/both.$job" 2>&1 &
+            jobs+=($!)
+        else
+            $command || code=$?
+        fi
+        job=$((job + 1))
+    done
+    for job in "${!jobs[@]}"; do
+        wait "${jobs[$job]}" || code=$?
+        cat "$work/both.$job"
+    done
+    return $code
+}
+
+# shard NUMBER: every second one of the tests, from that one on.
+shard() {
+    # A test's own folder is its package's. One at a time, because they share the bus.
+    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim
+        number=$1 names=() && shift
+        for binary; do
+            mapfile -t names < <("$binary" --ignored --list --format terse | sed -n "s/: test$//p" | awk "NR % 2 == $number")
+            "$binary" --ignored --exact --test-threads 1 "${names[@]}" || exit
+        done' tests "$1" "${binaries[@]}"
+}
+
+test_binaries() {
+    cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
+        grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p'
+}
+
 check_tests() {
     local binaries
     # Built outside: user-mode Linux has one processor.
-    mapfile -t binaries < <(cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
-        grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p')
+    mapfile -t binaries < <(test_binaries)
     [ ${#binaries[@]} -gt 0 ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
-    # A test's own folder is its package's. One at a time, because they share the bus.
-    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim; for binary; do "$binary" --ignored --test-threads 1 || exit; done' tests "${binaries[@]}"
+    both "shard 0" "shard 1"
 }
 
-# images TARGET: builds the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step.
+# images TARGET: the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step, as far as it is not built yet.
 images() {
+    if [ -n "${building:-}" ]; then
+        wait "$building" || true
+        cat "$work/images"
+        building=
+    fi
+    [ -e "$work/$1-lock-step" ] || build_images "$1"
+}
+
+build_images() {
     local bin form
     bin=$(scripts/install-target.sh "$1") || skip "no standard library for $1 can be had on this machine"
     for form in real-time lock-step; do
@@ -86,11 +131,11 @@ look='use Time::HiRes "time"; my ($caller, $end, $largest) = (getppid, 0, 0); $S
 look_out() {
     local part cpu
     lookers=()
-    rm -f "$work"/withheld.*
+    mkdir -p "$work/withheld.$BASHPID" && rm -f "$work/withheld.$BASHPID"/*
     chrt --rr 3 perl -MTime::HiRes -e 1 2>/dev/null || return 0
     for part in $(taskset -cp $$ | sed 's/.*: //; s/,/ /g'); do
         for cpu in $(seq "${part%-*}" "${part#*-}"); do
-            taskset -c "$cpu" chrt --rr 3 perl -e "$look" >"$work/withheld.$cpu" &
+            taskset -c "$cpu" chrt --rr 3 perl -e "$look" >"$work/withheld.$BASHPID/$cpu" &
             lookers+=($!)
         done
     done
@@ -102,7 +147,7 @@ look_back() {
     [ ${#lookers[@]} -gt 0 ] || return 0
     kill "${lookers[@]}" 2>/dev/null || true
     wait "${lookers[@]}" || true
-    most=$(sort -n "$work"/withheld.* | tail -1)
+    most=$(sort -n "$work/withheld.$BASHPID"/* | tail -1)
     most=${most:-0}
 }
 
@@ -126,24 +171,26 @@ conclude() {
     return 3
 }
 
+# in_real_time fd|placed: a process of Linux, over CAN FD, or with identifiers of its own.
+in_real_time() {
+    local options=(--fd) words=--fd bus='CAN FD'
+    if [ "$1" = placed ]; then
+        options=(--identifiers "$work/identifiers") words="--identifiers '$work/identifiers'" bus=$placed
+    fi
+    echo "-- a process of Linux, real time, $bus"
+    judge vcan0 "${options[@]}"
+    conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $words"
+}
+
 check_ecu() {
-    local options bus
+    local placed='identifiers of 11 and 29 bits, placed one by one'
     # As in a vehicle whose bus has identifiers of 29 bits: what is not said here stays in the block.
     printf '%s\n' MotionCommand=0x0CFF0210 EgoMotionA=0x0CFF0321 EgoMotionB=0x0CFF0421 PeerMotionA=0x18FF4021/0x100 \
         PeerMotionB=0x18FF5021/0x100 DriverRequest=0x123 >"$work/identifiers"
-    for options in '' --fd "--identifiers '$work/identifiers'"; do
-        case $options in
-        '') bus= ;;
-        --fd) bus=', CAN FD' ;;
-        *) bus=', identifiers of 11 and 29 bits, placed one by one' ;;
-        esac
-        echo "-- a process of Linux, real time$bus"
-        eval "judge vcan0 $options"
-        conclude scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 $options"
-        echo "-- a process of Linux, lock step$bus"
-        eval "judge vcan0 --lock-step $options"
-        scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step $options"
-    done
+    both 'in_real_time fd' 'in_real_time placed'
+    echo "-- a process of Linux, lock step, $placed"
+    judge vcan0 --lock-step --identifiers "$work/identifiers"
+    scripts/vcan.sh --real-time "${harness[@]}" --device "'$sim' ecu --bus vcan0 --station 1 --lock-step --identifiers '$work/identifiers'"
 }
 
 check_m4() {
@@ -170,6 +217,13 @@ check_r5() {
     scripts/device-r5.sh "$work/$target-lock-step" -- "${harness[@]}"
 }
 
+# beside_process [--fd]: the node and a process.
+beside_process() {
+    echo "-- the first node and a process of Linux${1:+, CAN FD}"
+    conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 $1 & shift; "$@"; code=$?; kill $!; exit $code' \
+        "$sim" "${1:-}" "${node[@]}" "$@"
+}
+
 check_node() {
     need qemu-system-arm qemu-system-arm
     local target=thumbv7em-none-eabihf python=$work/python
@@ -177,12 +231,7 @@ check_node() {
     # The guest of user-mode Linux runs on the machine's own files, and so with this environment.
     need_python "$python" examples/first-node/requirements.txt
     images $target
-    echo "-- the first node and a process of Linux"
-    conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 & "$@"; code=$?; kill $!; exit $code' \
-        "$sim" "${node[@]}"
-    echo "-- the first node and a process of Linux, CAN FD"
-    conclude scripts/vcan.sh --real-time bash -c '"$0" ecu --bus vcan0 --station 1 --fd & "$@"; code=$?; kill $!; exit $code' \
-        "$sim" "${node[@]}" --fd
+    both beside_process 'beside_process --fd'
     echo "-- the first node and an emulated Cortex-M4F over slcan"
     conclude scripts/device-m4.sh "$work/$target-real-time" -- "${node[@]}" --channel slcan0
 }
@@ -194,11 +243,20 @@ done
 [ $# -gt 0 ] && checks=("$@")
 
 mkdir -p "$work"
+rm -f "$work"/*-none-eabi*
 code=0
-scripts/vcan.sh true || code=$?
+kernel=$(scripts/vcan.sh cat /proc/sys/kernel/random/boot_id) || code=$?
 [ "$code" != 77 ] || skip "no vcan0 can be had on this machine"
 [ "$code" = 0 ] || exit "$code"
+own_kernel=yes
+[ "$kernel" != "$(cat /proc/sys/kernel/random/boot_id)" ] || own_kernel=no
 cargo build --locked --profile checked -p holdover-sim
+building=
+if [[ $own_kernel = yes && " ${checks[*]} " = *' m4 '*' r5 '* ]]; then
+    test_binaries >/dev/null # first, because cargo does one thing at a time
+    (build_images thumbv7em-none-eabihf && build_images armv7r-none-eabihf) >"$work/images" 2>&1 &
+    building=$!
+fi
 for name in "${checks[@]}"; do
     echo "-- $name"
     "check_$name"

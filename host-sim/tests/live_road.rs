@@ -141,12 +141,13 @@ fn what_is_kept_of_a_vehicle_goes_when_it_goes() {
 
 #[test]
 fn collisions_are_told_as_the_referee_finds_them_and_those_at_crossings_too() {
+    const TICKS: u64 = 9000;
     let play = play();
     let mut stage = play.begin(&[]).unwrap();
     let (mut told, mut events) = (BTreeSet::new(), Vec::new());
-    while stage.ticks() < 4500 {
+    while stage.ticks() < TICKS {
         // Persons drive as fast as they can, whoever comes.
-        if stage.ticks().is_multiple_of(500) {
+        if stage.ticks().is_multiple_of(250) {
             for seen in stage.scene(&Pulse::default()).vehicles.iter().filter(|seen| stage.has(seen.id)) {
                 events.push(Order::Drive { vehicle: seen.id, mps2: 2.5 }.event(stage.next_s()).unwrap());
             }
@@ -157,7 +158,7 @@ fn collisions_are_told_as_the_referee_finds_them_and_those_at_crossings_too() {
         told.extend(stage.scene(&Pulse::default()).hits);
     }
     let mut referee = Referee::new(&play.experiment.network, &play.trips);
-    play.again(&events, 4500, None, &mut [&mut referee]).unwrap();
+    play.again(&events, TICKS, None, &mut [&mut referee]).unwrap();
     assert_eq!(told, referee.collisions.iter().map(|collision| collision.trips).collect());
     let is_crossing = |collision: &Collision| matches!(collision.place, Place::Intersection(_));
     assert!(referee.collisions.iter().any(is_crossing), "{:?}", referee.collisions);
