@@ -131,11 +131,11 @@ look='use Time::HiRes "time"; my ($caller, $end, $largest) = (getppid, 0, 0); $S
 look_out() {
     local part cpu
     lookers=()
-    mkdir -p "$work/withheld.$BASHPID" && rm -f "$work/withheld.$BASHPID"/*
+    rm -rf "$withheld" && mkdir -p "$withheld"
     chrt --rr 3 perl -MTime::HiRes -e 1 2>/dev/null || return 0
     for part in $(taskset -cp $$ | sed 's/.*: //; s/,/ /g'); do
         for cpu in $(seq "${part%-*}" "${part#*-}"); do
-            taskset -c "$cpu" chrt --rr 3 perl -e "$look" >"$work/withheld.$BASHPID/$cpu" &
+            taskset -c "$cpu" chrt --rr 3 perl -e "$look" >"$withheld/$cpu" &
             lookers+=($!)
         done
     done
@@ -147,7 +147,7 @@ look_back() {
     [ ${#lookers[@]} -gt 0 ] || return 0
     kill "${lookers[@]}" 2>/dev/null || true
     wait "${lookers[@]}" || true
-    most=$(sort -n "$work/withheld.$BASHPID"/* | tail -1)
+    most=$(sort -n "$withheld"/* | tail -1)
     most=${most:-0}
 }
 
@@ -155,7 +155,7 @@ look_back() {
 # this machine kept a processor from its programs for half a period: then it is asked again, as after a verdict of
 # "inconclusive".
 conclude() {
-    local attempt code most why lookers
+    local attempt code most why lookers withheld=$work/withheld.$BASHPID
     for attempt in {1..8}; do
         look_out
         code=0

@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use crate::draft::{draft_in, folder_of, is_straight};
 use crate::error::{Error, plain, quoted};
 
-/// That the report can be written into the folder. Missing folders are created when it is written.
+/// That files can be written into the folder that this option or argument names, with this remedy. Missing folders are created when they are
+/// written.
 ///
 /// # Errors
 /// It is a file or below one, has no name, or cannot be written.
-pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
+pub fn can_be_folder(option: &str, folder: &Path, remedy: &str) -> Result<(), Error> {
     let name = |path: &Path| quoted(&path.to_string_lossy());
     let existing = folder.ancestors().find(|path| path.as_os_str().is_empty() || path.exists());
     let existing = existing.filter(|path| !path.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -26,7 +27,7 @@ pub fn can_be_folder(folder: &Path) -> Result<(), Error> {
     } else {
         return Ok(());
     };
-    Err(Error::new(cause, "name a folder for the report, or give --no-report").in_option("--out"))
+    Err(Error::new(cause, remedy).in_option(option))
 }
 
 /// That a file can be written there, without losing an input or another output.

@@ -68,3 +68,12 @@ fn there_is_a_manual_page_for_each_command_with_every_option() {
     let refused = holdover(&["man", "/dev/null/x"]);
     assert_eq!(refused.status.code(), Some(2));
 }
+
+#[test]
+fn a_folder_for_the_pages_that_cannot_be_is_refused_by_its_name() {
+    let refused = holdover(&["man", "/proc/nope"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said.starts_with("error: FOLDER: \"/proc/nope\" cannot be written ("), "{said}");
+    assert!(said.ends_with("; name a folder that you may write\n") && said.lines().count() == 1, "{said}");
+}

@@ -60,7 +60,7 @@ impl Destination {
     /// An impossible folder.
     pub fn new(json: bool, report: Option<PathBuf>) -> Result<Self, Error> {
         if let Some(folder) = &report {
-            can_be_folder(folder)?;
+            can_be_folder("--out", folder, "name a folder for the report, or give --no-report")?;
         }
         Ok(Self { json, report, inputs: Vec::new(), warnings: Vec::new() })
     }

@@ -56,7 +56,7 @@ pub fn completions(shell: Shell) -> Result<Verdict, Error> {
 /// # Errors
 /// A folder that cannot be made, and pages that cannot be written.
 pub fn man(folder: &Path) -> Result<Verdict, Error> {
-    can_be_folder(folder)?;
+    can_be_folder("FOLDER", folder, "name a folder that you may write")?;
     fs::create_dir_all(folder).map_err(|error| Error::unwritable(folder, &error))?;
     let mut program = Cli::command().disable_help_subcommand(true);
     program.build();
