@@ -231,6 +231,9 @@ pub fn run_before<P: Port>(
 ) -> io::Result<Outcome> {
     let Setup { scenario, config, .. } = setup;
     let mut world = World::new(scenario, scenario.seed, None).map_err(io::Error::other)?;
+    if !onlooker.judges() {
+        world = world.unrecorded();
+    }
     let seat = world.give_seat(scenario.ego, setup.alias());
     let mut listener = BusListener::new(config, seat).map_err(io::Error::other)?;
     if !onlooker.judges() {
