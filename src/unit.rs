@@ -4,7 +4,8 @@
 //! ```text
 //!  frame -> Receiver -> message -> Scene: all that is known, changed by messages and by the first two stages of a tick
 //!                                    |
-//!  tick:  review   whom the ego follows, by the order at the intersections        coordinate
+//!  tick:  look     at what the range sensor saw                                 scene
+//!         review   whom the ego follows, by the order at the intersections        coordinate
 //!         update   every horizon, brought up to now                               estimator
 //!         decide   the mode, and the gains of a new association                   course, mode, association
 //!         drive    the demand, by the course of the mode                          course, room, controller
@@ -188,6 +189,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
+        self.scene.look(&mut self.health);
         let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
         let target = self.review(now, last);
         let (before, reading) = self.update(now, target, is_due);
@@ -244,7 +246,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             Mode::Holdover { .. } => target.and_then(|index| self.scene.estimated(index, now)),
             _ => None,
         };
-        let unreachable = self.scene.estimator.update(now, &self.scene.peers, target, is_own_due);
+        let fused = self.scene.fuse();
+        let Scene { estimator, peers, .. } = &mut self.scene;
+        let unreachable = estimator.update(now, peers, target, is_own_due, fused.as_ref());
         self.health.add(Cause::Unreachable, unreachable);
         (before, target.and_then(|index| self.scene.estimated(index, now)))
     }

@@ -74,8 +74,6 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     present: Held<i64>,
     /// If more steps than this lie between two ticks, horizons start anew.
     pause: i64,
-    /// The state of a peer by its messages and another sensor together, until it is used.
-    track: Held<(usize, Sample)>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -96,7 +94,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             room: 0,
             present: Held::Nothing,
             pause: 0,
-            track: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
             own_length: Distance::ZERO,
@@ -116,7 +113,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.room = steps_a_tick(config.period);
         self.present.clear();
         self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
-        self.track.clear();
         self.own.clear();
         self.station = config.station;
         self.own_length = config.length;
@@ -131,12 +127,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Notes that there is news of a peer.
     pub fn note_news(&mut self, index: usize) {
         self.turns.note(index);
-    }
-
-    /// Notes a peer's state by its messages and another sensor together. What the peer itself says of how it will drive takes
-    /// precedence in the same tick.
-    pub fn note_track(&mut self, index: usize, sample: Sample) {
-        self.track.set((index, sample));
     }
 
     /// Whether a peer said how it will drive, and its predecessor is known.
@@ -156,20 +146,10 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }));
     }
 
-    /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there.
+    /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there, or because the peer's axis moved.
     pub fn move_horizon(&mut self, index: usize, way: Distance) {
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.shift(way);
-        }
-    }
-
-    /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
-    pub fn shift(&mut self, index: usize, way: Distance) {
-        self.move_horizon(index, way);
-        if let Held::Value((fused, sample)) = &mut self.track
-            && *fused == index
-        {
-            sample.position = sample.position.ahead(way);
         }
     }
 
@@ -182,22 +162,20 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Brings every peer's horizon up to now. News is used in turns: that of the target at once, that of others as there is room for
-    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. Returns how many sent horizons were not used,
-    /// because their senders cannot drive them.
+    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. `fused` is a peer's state by its messages and
+    /// another sensor together, which is news of that peer; what the peer itself says of how it will drive takes precedence. Returns how
+    /// many sent horizons were not used, because their senders cannot drive them.
     pub fn update<const SAMPLES: usize>(
         &mut self,
         now: Instant,
         peers: &Peers<PEERS, SAMPLES>,
         target: Option<usize>,
         is_own_due: bool,
+        fused: Option<&(usize, Sample)>,
     ) -> u32 {
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
-        let fused = match &self.track {
-            Held::Nothing => None, // without a sensor always, and then nothing is copied
-            Held::Value(_) => core::mem::take(&mut self.track).get(),
-        };
-        let corrected = fused.as_ref().map(|(index, _)| *index);
+        let corrected = fused.map(|(index, _)| *index);
         // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
         let room = if self.model.endless {
             Room::of(self.room, self.length, steps_sent(self.grid.step, STEPS), is_own_due)
@@ -214,7 +192,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             let Some(track) = peers.get(index) else { continue };
             let Some(sample) = track.newest() else { continue };
             let says_how = self.is_foreseen(index, peers);
-            let source = match (self.turns.of(index), &fused) {
+            let source = match (self.turns.of(index), fused) {
                 (Turn::News, _) if says_how => Source::Heard(sample),
                 (_, Some((fused, sample))) if *fused == index => Source::Fused(sample),
                 (Turn::News, _) => Source::Heard(sample),

@@ -134,11 +134,11 @@ impl Bound {
         uncertainty: &Uncertainty,
         reach: &AccelerationRange,
     ) -> Self {
-        let (position, speed) = (micro_position(position), (i64::from(speed.to_bits()), 23));
+        let position = micro_position(position);
         let off = micro_up(uncertainty.position.to_bits(), 20);
         let faster = micro_up(uncertainty.speed.to_bits(), 23);
-        let slow = micro_down_64(speed.0, speed.1).saturating_sub(faster).max(0);
-        let fast = micro_up_64(speed.0, speed.1).saturating_add(faster).max(0);
+        let slow = micro_down(speed.to_bits(), 23).saturating_sub(faster).max(0);
+        let fast = micro_up(speed.to_bits(), 23).saturating_add(faster).max(0);
         let near = End { position: position.0.saturating_sub(off), speed: slow };
         let far = End { position: position.1.saturating_add(off), speed: fast };
         // At the earliest instant the far end is farthest ahead. At the latest instant the near end is farthest back. The speeds may have
@@ -169,8 +169,8 @@ impl Bound {
     #[must_use]
     pub fn shifted(&self, way: Distance) -> Self {
         let shift = |end: End, micros: i64| End { position: end.position.saturating_add(micros), ..end };
-        let bits = i64::from(way.to_bits());
-        Self { near: shift(self.near, micro_down_64(bits, 20)), far: shift(self.far, micro_up_64(bits, 20)), ..*self }
+        let (near, far) = (micro_down(way.to_bits(), 20), micro_up(way.to_bits(), 20));
+        Self { near: shift(self.near, near), far: shift(self.far, far), ..*self }
     }
 
     /// The bound at a later instant. At an earlier instant it is unchanged.
@@ -211,7 +211,7 @@ impl Bound {
     #[must_use]
     pub fn comes_near(&self, position: Position, within: Distance, speed: Speed, within_speed: Speed) -> bool {
         let (behind, ahead) = micro_position(position);
-        let (slower, faster) = (micro_down_64(speed.to_bits().into(), 23), micro_up(speed.to_bits(), 23));
+        let (slower, faster) = (micro_down(speed.to_bits(), 23), micro_up(speed.to_bits(), 23));
         let (way, change) = (micro_up(within.to_bits(), 20), micro_up(within_speed.to_bits(), 23));
         ahead.saturating_add(way) >= self.near.position
             && behind.saturating_sub(way) <= self.far.position
@@ -254,9 +254,17 @@ impl Bound {
     }
 }
 
-/// A word with `fraction` bits in millionths, rounded up.
+/// A word with `fraction` bits, at least 6, in millionths, rounded down.
+#[inline(always)]
+fn micro_down(word: i32, fraction: u32) -> i64 {
+    i64::from(word).wrapping_mul(15_625).wrapping_shr(fraction.wrapping_sub(6)) // below 2⁴⁵
+}
+
+/// The same, rounded up.
+#[inline(always)]
 fn micro_up(word: i32, fraction: u32) -> i64 {
-    micro_up_64(i64::from(word), fraction)
+    let negated = i64::from(word).wrapping_mul(-15_625); // below 2⁴⁵
+    negated.wrapping_shr(fraction.wrapping_sub(6)).wrapping_neg()
 }
 
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]

@@ -1,6 +1,6 @@
 //! The peers: messages from the slots enter, one track per slot leaves.
 //!
-//! The samples of a slot are kept in the order of their stamps. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
+//! Which samples of a slot were heard is kept in the order of their stamps, and of the newest all. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
 //! that, comes twice, or is from the future. The unit refuses a sample from another station or from too far away. Judging changes
 //! nothing. Only [`Track::admit`] changes a track by a sample.
 
@@ -15,7 +15,7 @@ mod track;
 pub use link::{LOSS_ONE, Link};
 pub use sample::{Sample, excess, largest_error, largest_speed_error, timely};
 pub use sender_clock::Off;
-pub use track::{Admission, Track};
+pub use track::{Admission, Heard, Track};
 
 use crate::health::Cause;
 use crate::parameters::DEFAULT_LENGTH;

@@ -6,7 +6,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, FractionFormat, GainFormat, SecondsFormat, SpeedFormat,
-    quotient, saturate_i32,
+    divide, saturate_i32,
 };
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
@@ -25,11 +25,12 @@ pub trait Quantity: Copy + PartialOrd {
 /// `steps / per_unit` as a word with so many fraction bits. Fields have at most 32 bits and formats at most 30 fraction
 /// bits, so that 64 bits hold it; 128-bit division, as of [`crate::fixed::ratio`], takes ten times as long on a
 /// Cortex-M.
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
 fn word(steps: i64, per_unit: i64, fraction: u32) -> i32 {
-    let scaled = steps.saturating_mul(1i64.wrapping_shl(fraction));
-    let half = per_unit / 2;
-    let rounded = if scaled < 0 { scaled.saturating_sub(half) } else { scaled.saturating_add(half) };
-    saturate_i32(quotient(rounded, per_unit))
+    let scaled = steps.unsigned_abs().wrapping_shl(fraction);
+    let per_unit = per_unit.unsigned_abs();
+    let word = divide(scaled.wrapping_add(per_unit / 2), per_unit).cast_signed(); // below 2⁶³
+    saturate_i32(if steps < 0 { word.wrapping_neg() } else { word })
 }
 
 /// How many `1/per_unit` a word with so many fraction bits is. Units have at most 10⁷ steps, so that 64 bits hold it.
