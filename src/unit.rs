@@ -218,11 +218,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.
     fn review(&mut self, now: Instant, last: Last) -> Option<usize> {
+        if self.scene.coordination.itinerary().is_some() {
+            self.scene.peers.carry(now); // all of them are asked for
+        }
         coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
         self.scene.passes.turn_to(self.scene.coordination.next());
         self.scene.note_others(now);
         let target = self.scene.target();
         self.scene.note_named(target);
+        if let Some(track) = target.and_then(|index| self.scene.peers.get_index_mut(index)) {
+            track.carry(now);
+        }
         target
     }
 

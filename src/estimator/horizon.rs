@@ -55,6 +55,14 @@ impl Grid {
         self.at_or_before(at.plus(Duration::from_micros(self.step.as_micros() / 2)))
     }
 
+    /// How much later a step is than an instant.
+    #[inline(always)]
+    #[must_use]
+    pub fn since(&self, index: i64, at: Instant) -> Duration {
+        let way = self.step.as_micros().wrapping_mul(index); // of steps of a millisecond or more: no overflow
+        Duration::from_micros(self.origin.since(at).as_micros().wrapping_add(way))
+    }
+
     /// The instant of a step.
     #[must_use]
     pub fn time_of(&self, index: i64) -> Instant {

@@ -74,6 +74,9 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     present: Held<i64>,
     /// If more steps than this lie between two ticks, horizons start anew.
     pause: i64,
+    /// Where the peers are at an instant, and that instant, if all were read since the horizons changed.
+    readings: [Held<Reading>; PEERS],
+    read_at: Held<Instant>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -94,6 +97,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             room: 0,
             present: Held::Nothing,
             pause: 0,
+            readings: [Held::Nothing; PEERS],
+            read_at: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
             own_length: Distance::ZERO,
@@ -113,6 +118,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.room = steps_a_tick(config.period);
         self.present.clear();
         self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
+        self.read_at.clear();
         self.own.clear();
         self.station = config.station;
         self.own_length = config.length;
@@ -148,6 +154,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there, or because the peer's axis moved.
     pub fn move_horizon(&mut self, index: usize, way: Distance) {
+        self.read_at.clear();
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.shift(way);
         }
@@ -155,6 +162,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
 
     /// Forgets a peer.
     pub fn forget(&mut self, index: usize) {
+        self.read_at.clear();
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.clear();
         }
@@ -173,6 +181,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         is_own_due: bool,
         fused: Option<&(usize, Sample)>,
     ) -> u32 {
+        self.read_at.clear();
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
         let corrected = fused.map(|(index, _)| *index);
@@ -186,7 +195,13 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             (0..PEERS).for_each(|index| self.turns.note(index));
         }
         self.present.set(present);
-        self.turns.take(room, &self.chain, target, corrected);
+        let late = |index| {
+            let newest = peers.get(index).and_then(Track::newest);
+            newest.map_or(0, |newest| {
+                usize::try_from(present.saturating_sub(self.grid.at_or_before(newest.at))).unwrap_or(0)
+            })
+        };
+        self.turns.take(room, &self.chain, target, corrected, late);
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
@@ -276,9 +291,24 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         at: Instant,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Option<Reading> {
-        let (reading, track) = (self.read(index, at)?, peers.get(index)?);
-        let bound = track.certainty().bound().filter(|bound| self.model.stamped && at >= bound.at());
-        Some(bound.map_or(reading, |bound| certain::limited(reading, &bound.after(at, &track.reach()))))
+        let track = peers.get(index)?;
+        if self.read_at.get() == Some(at)
+            && track.is_carried_to(at)
+            && let Some(reading) = self.readings.get(index).and_then(Held::get)
+        {
+            return Some(reading);
+        }
+        let reading = self.read(index, at)?;
+        let is_limited = track.certainty().bound().is_some_and(|bound| self.model.stamped && at >= bound.at());
+        let bound = track.bound(at).filter(|_| is_limited);
+        Some(bound.map_or(reading, |bound| certain::limited(reading, &bound)))
+    }
+
+    /// Reads where all peers are at an instant, for all who ask for it until the horizons change.
+    pub fn read_all<const SAMPLES: usize>(&mut self, at: Instant, peers: &Peers<PEERS, SAMPLES>) {
+        self.read_at.clear();
+        self.readings = core::array::from_fn(|index| self.read_inside(index, at, peers).into());
+        self.read_at.set(at);
     }
 
     /// Where a peer is at an instant by its horizon.

@@ -124,6 +124,10 @@ pub struct Bound {
 }
 
 impl Bound {
+    /// At the origin of time and place: all zero.
+    pub const ZERO: Self =
+        Self { at: Instant::ZERO, near: End { position: 0, speed: 0 }, far: End { position: 0, speed: 0 } };
+
     /// The bound around a sample that is taken to be of `at`. The bound is at `at`, or at the latest instant that the sample may really
     /// be from.
     #[must_use]

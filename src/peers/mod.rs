@@ -13,13 +13,13 @@ mod sender_clock;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
-pub use sample::{Sample, excess, largest_error, largest_speed_error, timely};
+pub use sample::{Heard, Sample, excess, largest_error, largest_speed_error, timely};
 pub use sender_clock::Off;
-pub use track::{Admission, Heard, Track};
+pub use track::{Admission, Track};
 
 use crate::health::Cause;
 use crate::parameters::DEFAULT_LENGTH;
-use crate::time::Duration;
+use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 use crate::wire::{Slot, StationHash};
 
@@ -63,6 +63,11 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
     /// The track of a slot by its index, to be changed.
     pub fn get_index_mut(&mut self, index: usize) -> Option<&mut Track<SAMPLES>> {
         self.tracks.get_mut(index)
+    }
+
+    /// Computes what is certain of all of them at this instant.
+    pub fn carry(&mut self, at: Instant) {
+        self.tracks.iter_mut().for_each(|track| track.carry(at));
     }
 
     /// The station of the slot `from` is in the slot `to` now.

@@ -5,14 +5,14 @@ use heapless::Deque;
 use super::limits::Limits;
 use super::link::Link;
 use super::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
-use super::sample::Sample;
+use super::sample::{Heard, Sample};
 use super::sender_clock::{Off, SenderClock};
 use crate::config::Link as Settings;
 use crate::health::Cause;
 use crate::held::Held;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::parameters::DEFAULT_LENGTH;
-use crate::time::{Duration, Instant, Stamp};
+use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
 use crate::wire::StationHash;
 use crate::wire::driving_parameters::DrivingParameters;
@@ -26,24 +26,6 @@ pub enum Admission {
     News,
     /// Older than the newest; it only fills the history.
     History,
-}
-
-/// Of a sample, what tells it apart from others: by this a duplicate is known, and the sample to which a horizon belongs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Heard {
-    /// The instant at which it was true.
-    pub at: Instant,
-    /// When it was received.
-    pub received: Instant,
-    stamp: Stamp,
-    tag: u8,
-}
-
-impl Heard {
-    const fn of(sample: &Sample) -> Self {
-        Self { at: sample.at, received: sample.received, stamp: sample.stamp, tag: sample.tag }
-    }
 }
 
 /// What is held of one slot: the newest sample of its station, which ones were heard, and what the station said of itself.
@@ -61,6 +43,9 @@ pub struct Track<const SAMPLES: usize> {
     link: Link,
     sender_clock: SenderClock,
     is_disputed: bool,
+    /// What is certain, carried on to the last tick, if that was done since the last change: many ask for it in a tick.
+    carried: Bound,
+    is_carried: bool,
 }
 
 impl<const SAMPLES: usize> Track<SAMPLES> {
@@ -78,6 +63,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             link: Link::new(period),
             sender_clock: SenderClock::NEW,
             is_disputed: false,
+            carried: Bound::ZERO,
+            is_carried: false,
         }
     }
 
@@ -104,8 +91,31 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.certainty
     }
 
+    /// What is certain at an instant, now or later.
+    #[must_use]
+    pub fn bound(&self, at: Instant) -> Option<Bound> {
+        if self.is_carried_to(at) {
+            return Some(self.carried);
+        }
+        Some(self.certainty.bound()?.after(at, &self.reach()))
+    }
+
+    /// Whether what is certain at this instant was computed, and has not changed since.
+    #[must_use]
+    pub fn is_carried_to(&self, at: Instant) -> bool {
+        self.is_carried && self.carried.at() == at
+    }
+
+    /// Computes what is certain at this instant, for all who ask for it.
+    pub fn carry(&mut self, at: Instant) {
+        if let Some(bound) = self.bound(at) {
+            (self.carried, self.is_carried) = (bound, true);
+        }
+    }
+
     /// Narrows what is certain by what another sensor saw. Returns whether the two agree.
     pub fn narrow(&mut self, other: &Bound) -> bool {
+        self.is_carried = false;
         let reach = self.reach();
         self.certainty.narrow(other, &reach)
     }
@@ -141,13 +151,18 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if let Held::Value(newest) = &mut self.newest {
             newest.position = newest.position.ahead(way);
         }
-        self.certainty.shift(way);
+        self.shift_certainty(way);
     }
 
     /// Forgets everything that is held of its place. What it said of how it drives still holds.
     pub fn restart(&mut self) {
         self.forget_samples();
-        self.certainty = Certainty::NONE;
+        self.set_certainty(&Certainty::NONE);
+    }
+
+    fn set_certainty(&mut self, certainty: &Certainty) {
+        self.certainty = *certainty;
+        self.is_carried = false;
     }
 
     fn forget_samples(&mut self) {
@@ -159,6 +174,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     pub fn follow_on(&mut self, before: &Self) {
         if self.parameters.as_ref().is_none() {
             (self.parameters, self.published_at, self.limits) = (before.parameters, before.published_at, before.limits);
+            self.is_carried = false;
         }
     }
 
@@ -239,6 +255,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             let at = if newest.is_timed { off.corrected(newest.at) } else { newest.at };
             let newest = Sample { at, ..newest };
             let uncertainty = uncertainty(&newest, newest.is_timed, limits, off);
+            self.is_carried = false;
             self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &uncertainty));
         }
         off != Off::No && (begins || before == Off::No)
@@ -271,7 +288,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     pub fn judge(&self, sample: &Sample, uncertainty: &Uncertainty, period: Duration) -> Judgement {
         let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
         let is_frozen = self.newest().is_some_and(|newest| newest.stamp == sample.stamp);
-        if is_frozen || self.heard.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
+        if is_frozen || self.heard.iter().any(|held| held.is_again(sample)) {
             return verdict(Err(Cause::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
@@ -287,7 +304,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         if belief == Belief::Recovered {
             self.forget_samples();
         }
-        self.certainty = *certainty;
+        self.set_certainty(certainty);
         self.link.heard(sample.received, sample.at);
         self.settle();
         self.insert(sample)
@@ -295,11 +312,12 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Keeps the evidence of a refused sample.
     pub fn note(&mut self, certainty: &Certainty) {
-        self.certainty = *certainty;
+        self.set_certainty(certainty);
     }
 
     /// Moves what is certain ahead by this way, because the axis moved, on which the newest sample is already.
     pub fn shift_certainty(&mut self, way: Distance) {
+        self.is_carried = false;
         self.certainty.shift(way);
     }
 
@@ -334,6 +352,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             None => Limits::first(at, published),
         };
         self.limits.set(limits);
+        self.is_carried = false;
         self.certainty.settle(&limits);
         self.published_at = at;
         let is_new = self.parameters.as_ref() != Some(&parameters);
@@ -367,10 +386,4 @@ struct Foresight {
     /// The time of the sample that it was computed from, if that came before it.
     of: Option<Instant>,
     knots: Knots,
-}
-
-/// Whether two samples with the same stamp are of the same turn of the stamp, which repeats every 13.1 s.
-fn is_same_turn(a: &Heard, b: &Sample) -> bool {
-    let apart = a.at.since(b.at);
-    apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)
 }
