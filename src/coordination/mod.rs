@@ -257,6 +257,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary.is_some() && (self.at_once || self.due.get().is_none_or(|due| now >= due))
     }
 
+    /// A review that is due now is not done before the next tick. From then on the reviews come a period before the ticks in which they
+    /// would be due otherwise.
+    pub(crate) fn put_forward(&mut self, now: Instant, period: Duration) {
+        if self.is_due(now) {
+            self.due.set(self.due.get().unwrap_or(now).minus(period));
+        }
+    }
+
     /// When the next review is due.
     pub(crate) fn next_review(&self) -> Option<Instant> {
         self.itinerary?;

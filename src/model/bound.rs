@@ -9,7 +9,7 @@
 //! harder than it accelerates.
 //!
 //! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the true state. Products
-//! stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
+//! and sums of speeds stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
 //! Accelerations are at most 6.4e7. The times for which they last are cut at an hour, 3.6e9. Positions are exact within ±560,000 km. All
 //! of this is proved over the whole range in `proof` below this module.
 
@@ -94,22 +94,22 @@ impl End {
             return Self { position: self.position.saturating_add(way), speed: 0 };
         }
         let lost = millionths_up(could_lose).min(self.speed);
-        let way = millionths(self.speed.wrapping_mul(2).saturating_sub(lost).wrapping_mul(micros)) / 2;
-        Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
+        let way = millionths(self.speed.wrapping_mul(2).wrapping_sub(lost).wrapping_mul(micros)) / 2;
+        Self { position: self.position.saturating_add(way), speed: self.speed.wrapping_sub(lost) }
     }
 
     /// The end after accelerating for `micros` up to the top speed, rounded up.
     fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
         let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
-        let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).wrapping_mul(MICRO);
+        let to_gain = TOP_SPEED.wrapping_sub(self.speed).max(0).wrapping_mul(MICRO);
         // The top speed is reached after ⌈gain/a⌉. This is divided out only if it is before the end.
-        let rises_on = acceleration.wrapping_mul(micros.saturating_sub(1)) < to_gain;
+        let rises_on = acceleration.wrapping_mul(micros.wrapping_sub(1)) < to_gain;
         let rising = if rises_on { micros } else { micros.min(ceil(to_gain, acceleration)) };
         let gained = millionths_up(acceleration.wrapping_mul(rising));
-        let twice = self.speed.wrapping_mul(2).saturating_add(gained).wrapping_mul(rising);
+        let twice = self.speed.wrapping_mul(2).wrapping_add(gained).wrapping_mul(rising);
         let way = half_up(millionths_up(twice));
-        let speed = self.speed.saturating_add(gained).min(TOP_SPEED.max(self.speed));
-        let rest = millionths_up(speed.wrapping_mul(micros.saturating_sub(rising)));
+        let speed = self.speed.wrapping_add(gained).min(TOP_SPEED.max(self.speed));
+        let rest = millionths_up(speed.wrapping_mul(micros.wrapping_sub(rising)));
         Self { position: self.position.saturating_add(way).saturating_add(rest), speed }
     }
 }
@@ -305,12 +305,12 @@ const fn millionths(x: i64) -> i64 {
 
 /// A millionth, rounded up.
 const fn millionths_up(x: i64) -> i64 {
-    millionths(x.saturating_neg()).saturating_neg()
+    millionths(x.wrapping_neg()).wrapping_neg()
 }
 
 /// Half, rounded up.
 const fn half_up(x: i64) -> i64 {
-    x.saturating_add(1) >> 1
+    x.wrapping_add(1) >> 1
 }
 
 /// Quotient rounded down, for a positive divisor.

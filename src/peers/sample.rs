@@ -129,9 +129,11 @@ impl Heard {
     /// Whether another sample has the same stamp in the same turn of the stamp, which repeats every 13.1 s.
     #[must_use]
     pub fn is_again(&self, sample: &Sample) -> bool {
-        let apart = self.at.since(sample.at);
-        let is_same_turn = apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000);
-        self.stamp == sample.stamp && is_same_turn
+        let is_same_turn = || {
+            let apart = self.at.since(sample.at);
+            apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)
+        };
+        self.stamp == sample.stamp && is_same_turn()
     }
 }
 
