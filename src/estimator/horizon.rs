@@ -319,9 +319,10 @@ impl<const STEPS: usize> Horizon<STEPS> {
 
     /// The step of an index, or the first or last one if the index is outside.
     pub(super) fn held(&self, index: i64) -> Option<Reading> {
+        let last = self.len.checked_sub(1)?;
         let beyond = index.wrapping_sub(self.first); // of steps of a millisecond or more: no overflow
-        let n = if beyond <= 0 { 0 } else { usize::try_from(beyond).unwrap_or(usize::MAX) };
-        self.nth(n.min(self.len.wrapping_sub(1))).map(|step| self.reading(step)) // an empty one has no step 0
+        let n = if beyond <= 0 { 0 } else { usize::try_from(beyond).map_or(last, |n| n.min(last)) };
+        self.steps.get(self.place(n)).map(|step| self.reading(*step))
     }
 
     fn reading(&self, step: Step) -> Reading {
