@@ -192,9 +192,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
         // The own horizon takes most of a tick. What can wait for the next one does.
         let waits = is_due && self.scene.config.period.times(2) <= self.scene.config.link.period;
-        if !waits {
-            self.scene.look(&mut self.health);
-        }
+        self.scene.look(&mut self.health);
         let target = self.review(now, last, waits);
         let fused = if waits { None } else { self.scene.fuse() };
         let (before, reading) = self.update(now, target, is_due, fused.as_ref());
@@ -222,14 +220,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// The vehicle that the ego follows, by the order at the intersections or by the driver's word. The review of the order `waits` for
-    /// the next tick, or is done if it is due.
+    /// the next tick, or is done if it is due. One that is asked for at once does not wait.
     fn review(&mut self, now: Instant, last: Last, waits: bool) -> Option<usize> {
         if self.scene.coordination.itinerary().is_some() {
             self.scene.peers.carry(now); // all of them are asked for
         }
-        if waits {
-            self.scene.coordination.put_forward(now, self.scene.config.period);
-        } else {
+        if !waits || self.scene.coordination.is_asked_at_once() {
             coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
         }
         self.scene.passes.turn_to(self.scene.coordination.next());

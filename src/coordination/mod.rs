@@ -257,12 +257,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary.is_some() && (self.at_once || self.due.get().is_none_or(|due| now >= due))
     }
 
-    /// A review that is due now is not done before the next tick. From then on the reviews come a period before the ticks in which they
-    /// would be due otherwise.
-    pub(crate) fn put_forward(&mut self, now: Instant, period: Duration) {
-        if self.is_due(now) {
-            self.due.set(self.due.get().unwrap_or(now).minus(period));
-        }
+    /// Whether an extra review is asked for.
+    pub(crate) const fn is_asked_at_once(&self) -> bool {
+        self.at_once
     }
 
     /// When the next review is due.

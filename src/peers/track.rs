@@ -312,7 +312,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Keeps the evidence of a refused sample.
     pub fn note(&mut self, certainty: &Certainty) {
-        self.set_certainty(certainty);
+        self.is_carried &= self.certainty.bound() == certainty.bound();
+        self.certainty = *certainty;
     }
 
     /// Moves what is certain ahead by this way, because the axis moved, on which the newest sample is already.
