@@ -5,7 +5,10 @@
 //! at the newest message ([`Filter`]), and the views since then. A message is taken in at its stamp, and the views after it are taken in
 //! anew. So each message and each view counts once, at the instant of its measurement, whatever the link does.
 //!
-//! The fusion keeps [`VIEWS`] views. When there are more, the oldest goes into the base. A message that is older than the base is not
+//! What arrives is only kept. All of it is taken in once in a period ([`Fusion::update`]), so that a frame costs little. Of several
+//! messages in one period the newest counts.
+//!
+//! The fusion keeps [`VIEWS`] views. When there are as many, the oldest goes into the base. A message that is older than the base is not
 //! taken in: views were fused since then that say more.
 
 pub mod filter;
@@ -20,7 +23,7 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 
-/// So many views are kept: those of 0.32 s at 50 views a second.
+/// There is room for so many views: one for the next, and those of 0.3 s at 50 views a second.
 pub const VIEWS: usize = 16;
 
 /// A track without a view for this long ends.
@@ -41,15 +44,36 @@ pub struct Fusion {
     base: Held<Filter>,
     views: Deque<Measured, VIEWS>,
     newest: Held<Filter>,
+    /// So many of the last views are not in `newest` yet.
+    waiting: usize,
+    /// The newest message, until it is taken in.
+    heard: Held<Heard>,
+    /// Whether something came since the last update.
+    has_news: bool,
     /// When the newest view was taken.
     seen: Instant,
+}
+
+/// What a message says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Heard {
+    measured: Measured,
+    acceleration: Acceleration,
 }
 
 impl Fusion {
     /// Nothing is tracked.
     #[must_use]
     pub const fn new() -> Self {
-        Self { base: Held::Nothing, views: Deque::new(), newest: Held::Nothing, seen: Instant::ZERO }
+        Self {
+            base: Held::Nothing,
+            views: Deque::new(),
+            newest: Held::Nothing,
+            waiting: 0,
+            heard: Held::Nothing,
+            has_news: false,
+            seen: Instant::ZERO,
+        }
     }
 
     /// Whether a vehicle is tracked at an instant.
@@ -63,6 +87,8 @@ impl Fusion {
         self.base.clear();
         self.newest.clear();
         self.views.clear();
+        self.heard.clear();
+        (self.waiting, self.has_news) = (0, false);
     }
 
     /// Moves the track, because the axis of the vehicle moved.
@@ -72,81 +98,101 @@ impl Fusion {
                 filter.shift(way);
             }
         }
+        if let Held::Value(heard) = &mut self.heard {
+            heard.measured.position = heard.measured.position.ahead(way);
+        }
         self.views.iter_mut().for_each(|view| view.position = view.position.ahead(way));
     }
 
-    /// Takes in a view. A track begins with the newest message, if that is fresh, or else with the view. A view from before the
-    /// newest message or the newest view changes nothing. Returns the motion.
-    pub fn see(&mut self, view: &Measured, message: &Sample) -> Motion {
-        let tracked = self.newest.get().filter(|_| self.is_tracking(view.at));
-        let Some(mut filter) = tracked else {
-            self.clear();
-            let age = view.at.since(message.at);
-            let is_fresh = (Duration::ZERO..=FRESH).contains(&age);
-            let mut filter = if is_fresh {
-                of_message(message)
-            } else {
-                Filter::begin(view, Acceleration::ZERO, UNKNOWN_ACCELERATION)
-            };
-            self.base.set(filter);
-            if is_fresh {
-                self.keep(view);
-                step(&mut filter, view);
-            }
-            self.newest.set(filter);
-            self.seen = view.at;
-            return *filter.motion();
-        };
-        if view.at >= filter.motion().at {
-            self.seen = view.at;
+    /// Keeps a view. A track begins with the newest message, if that is fresh, or else with the view. A view from before the newest
+    /// message or the newest view changes nothing.
+    pub fn see(&mut self, view: &Measured, message: &Sample) {
+        let tracked = self.newest.as_ref().filter(|_| self.is_tracking(view.at));
+        let Some(tracked) = tracked else { return self.begin(view, message) };
+        let heard = self.heard.as_ref().map(|heard| heard.measured.at);
+        let last = self.views.back().map(|last| last.at);
+        if [Some(tracked.motion().at), heard, last].into_iter().flatten().all(|before| before <= view.at) {
             self.keep(view);
-            step(&mut filter, view);
-            self.newest.set(filter);
         }
-        *filter.motion()
     }
 
-    /// Takes in the newest message. Returns the motion, or `None` if no vehicle is tracked at `now`.
-    pub fn hear(&mut self, now: Instant, message: &Sample) -> Option<Motion> {
-        let mut base = self.base.get()?;
-        if !self.is_tracking(now) {
+    fn begin(&mut self, view: &Measured, message: &Sample) {
+        self.clear();
+        let age = view.at.since(message.at);
+        let is_fresh = (Duration::ZERO..=FRESH).contains(&age);
+        let base = if is_fresh {
+            Filter::begin(&measured(message), message.acceleration, acceleration_deviation())
+        } else {
+            Filter::begin(view, Acceleration::ZERO, UNKNOWN_ACCELERATION)
+        };
+        self.base.set(base);
+        self.newest.set(base);
+        if is_fresh {
+            self.keep(view);
+        }
+        (self.seen, self.has_news) = (view.at, true);
+    }
+
+    /// Keeps the newest message, until the next update. The track ends if no vehicle is tracked at `now`.
+    pub fn hear(&mut self, now: Instant, message: &Sample) {
+        if self.is_tracking(now) {
+            self.heard.set(Heard { measured: measured(message), acceleration: message.acceleration });
+            self.has_news = true;
+        } else {
             self.clear();
+        }
+    }
+
+    /// Takes in what came since the last update. Returns the motion, or `None` if nothing came.
+    pub fn update(&mut self) -> Option<Motion> {
+        let Self { base: Held::Value(base), newest: Held::Value(newest), views, waiting, heard, has_news, .. } = self
+        else {
+            return None;
+        };
+        if !core::mem::take(has_news) {
             return None;
         }
-        if message.at >= base.motion().at {
-            while let Some(view) = self.views.front().filter(|view| view.at <= message.at) {
-                step(&mut base, view);
-                self.views.pop_front();
+        if let Held::Value(heard) = core::mem::take(heard)
+            && heard.measured.at >= base.motion().at
+        {
+            while let Some(view) = views.front().filter(|view| view.at <= heard.measured.at) {
+                step(base, view);
+                views.pop_front();
             }
-            let heard = measured(message);
-            step(&mut base, &heard);
-            base.correct_acceleration(message.acceleration, acceleration_deviation());
-            self.base.set(base);
-            let mut newest = base;
-            self.views.iter().for_each(|view| step(&mut newest, view));
-            self.newest.set(newest);
+            step(base, &heard.measured);
+            base.correct_acceleration(heard.acceleration, acceleration_deviation());
+            (*newest, *waiting) = (*base, views.len());
         }
-        self.newest.as_ref().map(|newest| *newest.motion())
+        let known = views.len().saturating_sub(core::mem::take(waiting));
+        views.iter().skip(known).for_each(|view| step(newest, view));
+        let motion = *newest.motion();
+        if views.is_full() {
+            self.make_room();
+        }
+        Some(motion)
     }
 
-    /// Keeps a view. If there is no room, the oldest one goes into the base.
+    /// Keeps a view. It finds room, unless more views come in a period than the sensor's cycle says.
     fn keep(&mut self, view: &Measured) {
-        if self.views.is_full()
-            && let (Some(oldest), Held::Value(base)) = (self.views.pop_front(), &mut self.base)
-        {
-            step(base, &oldest);
+        if self.views.is_full() {
+            self.make_room();
         }
         let _ = self.views.push_back(*view); // there is room
+        self.waiting = self.waiting.saturating_add(1).min(VIEWS);
+        (self.seen, self.has_news) = (view.at, true);
+    }
+
+    /// The oldest view goes into the base.
+    fn make_room(&mut self) {
+        if let (Some(oldest), Held::Value(base)) = (self.views.pop_front(), &mut self.base) {
+            step(base, &oldest);
+        }
     }
 }
 
 fn step(filter: &mut Filter, measured: &Measured) {
     filter.predict(measured.at);
     filter.correct(measured);
-}
-
-fn of_message(message: &Sample) -> Filter {
-    Filter::begin(&measured(message), message.acceleration, acceleration_deviation())
 }
 
 /// What a message measures.

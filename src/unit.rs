@@ -4,7 +4,8 @@
 //! ```text
 //!  frame -> Receiver -> message -> Scene: all that is known, changed by messages and by the first two stages of a tick
 //!                                    |
-//!  tick:  review   whom the ego follows, by the order at the intersections        coordinate
+//!  tick:  look     at what the range sensor saw                                 scene
+//!         review   whom the ego follows, by the order at the intersections        coordinate
 //!         update   every horizon, brought up to now                               estimator
 //!         decide   the mode, and the gains of a new association                   course, mode, association
 //!         drive    the demand, by the course of the mode                          course, room, controller
@@ -189,8 +190,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
         let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
-        let target = self.review(now, last);
-        let (before, reading) = self.update(now, target, is_due);
+        // The own horizon takes most of a tick. What can wait for the next one does.
+        let waits = is_due && self.scene.config.period.times(2) <= self.scene.config.link.period;
+        self.scene.look(&mut self.health);
+        let target = self.review(now, last, waits);
+        let fused = if waits { None } else { self.scene.fuse() };
+        let (before, reading) = self.update(now, target, is_due, fused.as_ref());
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
@@ -214,13 +219,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         (now, Last { demand: self.controller.last_demand(), age })
     }
 
-    /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.
-    fn review(&mut self, now: Instant, last: Last) -> Option<usize> {
-        coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
+    /// The vehicle that the ego follows, by the order at the intersections or by the driver's word. The review of the order `waits` for
+    /// the next tick, or is done if it is due. One that is asked for at once does not wait.
+    fn review(&mut self, now: Instant, last: Last, waits: bool) -> Option<usize> {
+        if self.scene.coordination.itinerary().is_some() {
+            self.scene.peers.carry(now); // all of them are asked for
+        }
+        if !waits || self.scene.coordination.is_asked_at_once() {
+            coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
+        }
         self.scene.passes.turn_to(self.scene.coordination.next());
         self.scene.note_others(now);
         let target = self.scene.target();
         self.scene.note_named(target);
+        if let Some(track) = target.and_then(|index| self.scene.peers.get_index_mut(index)) {
+            track.carry(now);
+        }
         target
     }
 
@@ -239,12 +253,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     }
 
     /// Brings every horizon up to now. The target's reading of now by the horizon as it was, in a holdover, and as it is.
-    fn update(&mut self, now: Instant, target: Option<usize>, is_own_due: bool) -> (Option<Reading>, Option<Reading>) {
+    fn update(
+        &mut self,
+        now: Instant,
+        target: Option<usize>,
+        is_own_due: bool,
+        fused: Option<&(usize, Sample)>,
+    ) -> (Option<Reading>, Option<Reading>) {
         let before = match self.mode {
             Mode::Holdover { .. } => target.and_then(|index| self.scene.estimated(index, now)),
             _ => None,
         };
-        let unreachable = self.scene.estimator.update(now, &self.scene.peers, target, is_own_due);
+        let Scene { estimator, peers, .. } = &mut self.scene;
+        let unreachable = estimator.update(now, peers, target, is_own_due, fused);
         self.health.add(Cause::Unreachable, unreachable);
         (before, target.and_then(|index| self.scene.estimated(index, now)))
     }

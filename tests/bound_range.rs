@@ -133,6 +133,7 @@ fn an_age_that_was_rounded_up_by_almost_a_millisecond_leaves_the_truth_inside() 
     let before = rig.unit.bound(2, instant(at)).unwrap();
     let _ = rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)); // not trusted yet
     rig.put(at, &view(260.0 - 60.0 * taken, -60.0, 1)).unwrap();
+    rig.tick(at);
     let bound = rig.unit.bound(2, instant(at)).unwrap();
     let (low, high) = (m_of(bound.lowest_position()), m_of(bound.highest_position()));
     let truth = 260.0 + rig::LENGTH;
@@ -152,6 +153,7 @@ fn a_view_from_before_somebody_was_named_says_nothing_of_who_was() {
         let beyond = view(264.0 - 60.0 * (at - age * 1_000) as f64 * 1e-6, -60.0, age);
         let _ = rig.put(at, &beyond); // not trusted yet
         rig.put(at, &beyond).unwrap();
+        rig.tick(at);
         assert_eq!(rig.unit.bound(2, instant(at)).unwrap() != before, is_of_it, "{age}");
     }
 }

@@ -185,11 +185,10 @@ fn drive(seed: u64, late_s: f64, loss: f64) -> ([f64; 3], f64) {
             let stamp = now - 0.007;
             on_the_way.push((stamp, now + late_s));
         }
-        let mut motion = None;
         if let Some(place) = on_the_way.iter().position(|(_, due)| *due <= now) {
             let (stamp, _) = on_the_way.remove(place);
             newest = message(stamp, truth(DRIVE, stamp));
-            motion = fusion.hear(instant(now), &newest);
+            fusion.hear(instant(now), &newest);
             taken.push((stamp, true, truth(DRIVE, stamp)));
         }
         let (seen, seen_mps) = (x + draws.within(VIEW_ERRORS[0]), (v + draws.within(VIEW_ERRORS[1])).max(0.0));
@@ -200,7 +199,8 @@ fn drive(seed: u64, late_s: f64, loss: f64) -> ([f64; 3], f64) {
             position_error: distance(0.15),
             speed_error: speed(0.06),
         };
-        let motion = Some(fusion.see(&view, &newest)).or(motion).unwrap();
+        fusion.see(&view, &newest);
+        let motion = fusion.update().unwrap();
         taken.push((now, false, [seen, seen_mps, 0.0]));
         // The reference takes all of them in anew, in their order.
         taken.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(Ordering::Equal));
@@ -255,7 +255,8 @@ fn an_unannounced_braking_is_followed_within_0_1_s_though_nothing_is_heard() {
                 position_error: distance(0.15),
                 speed_error: speed(0.06),
             };
-            let off = (f64::from(fusion.see(&view, &heard).speed.to_bits()) / f64::from(1 << 23) - v).abs();
+            fusion.see(&view, &heard);
+            let off = (f64::from(fusion.update().unwrap().speed.to_bits()) / f64::from(1 << 23) - v).abs();
             // Before, and from 0.1 s after the braking began.
             let least = if (4.0..4.1).contains(&now) { 1.0 } else { 0.15 };
             assert!(off < least, "braking by {braking} m/s², {now:.2} s: {off} m/s");

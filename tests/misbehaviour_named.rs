@@ -243,7 +243,7 @@ fn five_samples_that_agree_with_one_another_are_believed_against_what_was_certai
     }
     assert_eq!(target.says(Lie::default()), Ok(()));
     assert_eq!(target.newest(), target.body.position);
-    assert_eq!(target.rig.unit.peers().get(2).unwrap().samples().len(), 1);
+    assert_eq!(target.rig.unit.peers().get(2).unwrap().heard().len(), 1);
     assert_eq!(target.says(Lie::default()), Ok(()));
 }
 

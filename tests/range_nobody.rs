@@ -70,7 +70,7 @@ fn a_target_that_would_have_to_be_in_what_is_free_is_a_contradiction() {
     road.senses.range = false;
     for views in 1..=3 {
         let _ = road.rig.nobody(road.now, FREE, 0);
-        assert_eq!(road.rig.unit.health().of(Cause::RangeDisagrees), u32::from(views == 3), "{views}");
         road.run(0.02);
+        assert_eq!(road.rig.unit.health().of(Cause::RangeDisagrees), u32::from(views == 3), "{views}");
     }
 }

@@ -10,7 +10,7 @@ use holdover::wire::{Said, StationHash};
 use traffic::{TARGET, Traffic, Unit, pages, receive_all, settled};
 
 fn stamps(unit: &Unit, slot: usize) -> Vec<u64> {
-    unit.peers().get(slot).expect("a slot").samples().iter().map(|sample| sample.at.as_micros()).collect()
+    unit.peers().get(slot).expect("a slot").heard().map(|heard| heard.at.as_micros()).collect()
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn a_slot_is_given_to_another_station_only_after_a_silence() {
         if results.last().is_some_and(Result::is_ok) && taken_over.is_none() {
             taken_over = Some(period);
             let track = unit.peers().get(1).expect("a slot");
-            assert_eq!((track.station(), track.samples().len()), (Some(StationHash(7)), 1));
+            assert_eq!((track.station(), track.heard().len()), (Some(StationHash(7)), 1));
             assert_eq!((track.parameters(), track.knots()), (None, None), "what the other one said is forgotten");
         }
     }

@@ -211,7 +211,7 @@ fn a_stamp_that_is_held_already_is_refused() {
 #[test]
 fn a_sample_that_is_older_than_all_of_a_full_history_is_refused() {
     is_refused(Cause::OutOfOrder, |unit, traffic| {
-        assert_eq!(unit.peers().get(1).map(|track| track.samples().len()), Some(traffic::SAMPLES));
+        assert_eq!(unit.peers().get(1).map(|track| track.heard().len()), Some(traffic::SAMPLES));
         motion(unit, traffic, |motion, traffic| {
             motion.stamp = traffic.gnss(traffic.now().minus(Duration::from_millis(2_000))).stamp();
         })

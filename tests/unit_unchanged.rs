@@ -41,7 +41,8 @@ fn snapshot(unit: &Unit, cause: Cause) -> String {
         let is_doubt_of_time = cause.name().starts_with("sync_") && ["mark", "doubted"].contains(&name);
         // Who is too far away to be driven by is known to be there all the same.
         // By a sender's clock that is found to be ahead less is certain.
-        let is_far = matches!(cause, Cause::TooFar | Cause::Future) && ["bound", "course"].contains(&name);
+        let is_far =
+            matches!(cause, Cause::TooFar | Cause::Future) && ["bound", "course", "is_carried"].contains(&name);
         let is_waiting = axes.is_some() && name == "tie";
         if MAY_CHANGE.contains(&name) || is_doubt_of_time || is_far || is_waiting {
             skipped = line.ends_with(['{', '(', '[']).then_some(depth);

@@ -11,6 +11,8 @@ mod acceptance;
 #[cfg(any(chip = "zynqmp_r5", chip = "stm32g474", feature = "bxcan"))]
 mod bit_time;
 mod frame;
+#[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
+mod memory;
 mod outbox;
 mod periods;
 mod port;

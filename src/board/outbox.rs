@@ -40,8 +40,8 @@ struct Waiting {
     frame: CanFrame,
     /// The time of its tick.
     since: Instant,
-    /// Where the port has it.
-    place: Option<usize>,
+    /// Where the port has it: in a byte, because dozens wait.
+    place: Option<u8>,
     /// A newer one waits, or the port has left the bus: it is not to be sent any more.
     is_overtaken: bool,
     /// The port was asked for it.
@@ -84,7 +84,7 @@ impl Outbox {
         let Some(next) = self.next().and_then(|next| self.waiting.get_mut(next)) else {
             return if self.waiting.is_empty() { Pass::Nothing } else { Pass::Full };
         };
-        next.place = port.load(&next.frame);
+        next.place = port.load(&next.frame).and_then(|place| u8::try_from(place).ok());
         if next.place.is_some() {
             return Pass::Taken;
         }
@@ -120,7 +120,7 @@ impl Outbox {
     /// what is too old.
     fn settle<P: Port>(&mut self, now: Instant, port: &mut P) {
         let Self { waiting, dropped, keeps_all } = self;
-        waiting.retain_mut(|waiting| waiting.place.is_none_or(|place| waiting.is_still_here(port.fate(place))));
+        waiting.retain_mut(|waiting| waiting.place.is_none_or(|place| waiting.is_still_here(port.fate(place.into()))));
         let is_old = |waiting: &Waiting| !*keeps_all && now.since(waiting.since) > MOST_AGE;
         retain(waiting, dropped, |waiting| waiting.place.is_some() || !waiting.is_overtaken && !is_old(waiting));
         for waiting in waiting.iter_mut() {
@@ -166,7 +166,7 @@ impl Waiting {
 
     fn recall(&mut self, port: &mut impl Port) {
         if let Some(place) = self.place.filter(|_| !self.is_recalled) {
-            port.recall(place);
+            port.recall(place.into());
             self.is_recalled = true;
         }
     }

@@ -13,7 +13,7 @@ pub trait Port {
     /// A frame came before there was room for it, and is lost.
     fn receive(&mut self) -> Result<Option<CanFrame>, Overrun>;
 
-    /// Takes a frame to be sent; the place in which it has it, or `None` if it has none now. Places count from 0.
+    /// Takes a frame to be sent; the place in which it has it, or `None` if it has none now. Places count from 0, and are fewer than 256.
     fn load(&mut self, frame: &CanFrame) -> Option<usize>;
 
     /// What became of the frame in this place. Anything but [`Fate::Underway`] is told once, and then the place is free.

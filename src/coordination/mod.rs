@@ -257,6 +257,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.itinerary.is_some() && (self.at_once || self.due.get().is_none_or(|due| now >= due))
     }
 
+    /// Whether an extra review is asked for.
+    pub(crate) const fn is_asked_at_once(&self) -> bool {
+        self.at_once
+    }
+
     /// When the next review is due.
     pub(crate) fn next_review(&self) -> Option<Instant> {
         self.itinerary?;

@@ -14,7 +14,7 @@ use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
 
 /// A sample that is older than so many steps of the grid is brought up to now in fewer.
-const LATE: i64 = 200;
+pub(super) const LATE: usize = 200;
 
 /// Whose horizon is ahead: a follower's horizon is computed from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,11 +140,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     /// one. They are no longer than a [`LATE`]th of its age: an error that they make is small against that of the age.
     fn catch_up(&self, present: i64, news: &News<'_>, index: i64, state: State) -> (i64, State) {
         let late = present.saturating_sub(index);
-        if late <= LATE {
+        if late <= steps(LATE) {
             return (index, state);
         }
         let (mut index, mut state) = (index, state);
-        let each = quotient(late, LATE).saturating_add(1);
+        let each = quotient(late, steps(LATE)).saturating_add(1);
         let stride = news.vehicle.over(self.grid.step.times(each), news.length_ahead, self.model);
         let approach = self.approach(index);
         while index.saturating_add(each) <= present {
@@ -162,10 +162,13 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         parameters: &DrivingParameters,
     ) -> Option<(i64, State)> {
         let anchor = filling.anchor;
-        let start = Knot::start(anchor.speed, anchor.acceleration);
-        let curve = Curve::new(start, knots, Duration::from_millis(100).times(i64::from(parameters.horizon_tenths)));
+        let length = Duration::from_millis(100).times(i64::from(parameters.horizon_tenths));
         let first = self.grid.at_or_after(anchor.at).max(filling.present);
         let after = self.grid.time_of(first).since(anchor.at);
+        if after > length {
+            return None;
+        }
+        let curve = Curve::new(Knot::start(anchor.speed, anchor.acceleration), knots, length);
         let origin = anchor.position.ring();
         let acceleration = knots.knots.last()?.acceleration;
         let at = |(way, speed)| {
@@ -238,10 +241,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     /// The predecessor at a step, by that curve up to its end.
     fn ahead_before(&self, approach: Option<&Approach>, index: i64) -> Option<(RingPosition, Speed)> {
         match approach.zip(self.ahead) {
-            Some((approach, ahead)) if index < ahead.first() => {
-                let reading = approach.at(self.grid.time_of(index));
-                Some((reading.position.ring(), reading.speed))
-            }
+            Some((approach, ahead)) if index < ahead.first() => Some(approach.at_step(index, self.grid)),
             _ => self.ahead_at(index),
         }
     }

@@ -55,6 +55,14 @@ impl Grid {
         self.at_or_before(at.plus(Duration::from_micros(self.step.as_micros() / 2)))
     }
 
+    /// How much later a step is than an instant.
+    #[inline(always)]
+    #[must_use]
+    pub fn since(&self, index: i64, at: Instant) -> Duration {
+        let way = self.step.as_micros().wrapping_mul(index); // of steps of a millisecond or more: no overflow
+        Duration::from_micros(self.origin.since(at).as_micros().wrapping_add(way))
+    }
+
     /// The instant of a step.
     #[must_use]
     pub fn time_of(&self, index: i64) -> Instant {
@@ -311,9 +319,10 @@ impl<const STEPS: usize> Horizon<STEPS> {
 
     /// The step of an index, or the first or last one if the index is outside.
     pub(super) fn held(&self, index: i64) -> Option<Reading> {
+        let last = self.len.checked_sub(1)?;
         let beyond = index.wrapping_sub(self.first); // of steps of a millisecond or more: no overflow
-        let n = if beyond <= 0 { 0 } else { usize::try_from(beyond).unwrap_or(usize::MAX) };
-        self.nth(n.min(self.len.wrapping_sub(1))).map(|step| self.reading(step)) // an empty one has no step 0
+        let n = if beyond <= 0 { 0 } else { usize::try_from(beyond).map_or(last, |n| n.min(last)) };
+        self.steps.get(self.place(n)).map(|step| self.reading(*step))
     }
 
     fn reading(&self, step: Step) -> Reading {

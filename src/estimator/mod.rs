@@ -74,8 +74,9 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     present: Held<i64>,
     /// If more steps than this lie between two ticks, horizons start anew.
     pause: i64,
-    /// The state of a peer by its messages and another sensor together, until it is used.
-    track: Held<(usize, Sample)>,
+    /// Where the peers are at an instant, and that instant, if all were read since the horizons changed.
+    readings: [Held<Reading>; PEERS],
+    read_at: Held<Instant>,
     own: Horizon<STEPS>,
     station: StationHash,
     own_length: Distance,
@@ -96,7 +97,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             room: 0,
             present: Held::Nothing,
             pause: 0,
-            track: Held::Nothing,
+            readings: [Held::Nothing; PEERS],
+            read_at: Held::Nothing,
             own: Horizon::empty(),
             station: StationHash(0),
             own_length: Distance::ZERO,
@@ -116,7 +118,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.room = steps_a_tick(config.period);
         self.present.clear();
         self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
-        self.track.clear();
+        self.read_at.clear();
         self.own.clear();
         self.station = config.station;
         self.own_length = config.length;
@@ -131,12 +133,6 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     /// Notes that there is news of a peer.
     pub fn note_news(&mut self, index: usize) {
         self.turns.note(index);
-    }
-
-    /// Notes a peer's state by its messages and another sensor together. What the peer itself says of how it will drive takes
-    /// precedence in the same tick.
-    pub fn note_track(&mut self, index: usize, sample: Sample) {
-        self.track.set((index, sample));
     }
 
     /// Whether a peer said how it will drive, and its predecessor is known.
@@ -156,25 +152,17 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         }));
     }
 
-    /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there.
+    /// Moves a peer's horizon ahead by this way, because another sensor sees the peer there, or because the peer's axis moved.
     pub fn move_horizon(&mut self, index: usize, way: Distance) {
+        self.read_at.clear();
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.shift(way);
         }
     }
 
-    /// Moves what is held of a peer's place ahead by this way, because the peer's axis moved.
-    pub fn shift(&mut self, index: usize, way: Distance) {
-        self.move_horizon(index, way);
-        if let Held::Value((fused, sample)) = &mut self.track
-            && *fused == index
-        {
-            sample.position = sample.position.ahead(way);
-        }
-    }
-
     /// Forgets a peer.
     pub fn forget(&mut self, index: usize) {
+        self.read_at.clear();
         if let Some(horizon) = self.horizons.get_mut(index) {
             horizon.clear();
         }
@@ -182,22 +170,21 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Brings every peer's horizon up to now. News is used in turns: that of the target at once, that of others as there is room for
-    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. Returns how many sent horizons were not used,
-    /// because their senders cannot drive them.
+    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. `fused` is a peer's state by its messages and
+    /// another sensor together, which is news of that peer; what the peer itself says of how it will drive takes precedence. Returns how
+    /// many sent horizons were not used, because their senders cannot drive them.
     pub fn update<const SAMPLES: usize>(
         &mut self,
         now: Instant,
         peers: &Peers<PEERS, SAMPLES>,
         target: Option<usize>,
         is_own_due: bool,
+        fused: Option<&(usize, Sample)>,
     ) -> u32 {
+        self.read_at.clear();
         let mut unreachable = 0u32;
         let present = self.grid.at_or_before(now);
-        let fused = match &self.track {
-            Held::Nothing => None, // without a sensor always, and then nothing is copied
-            Held::Value(_) => core::mem::take(&mut self.track).get(),
-        };
-        let corrected = fused.as_ref().map(|(index, _)| *index);
+        let corrected = fused.map(|(index, _)| *index);
         // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
         let room = if self.model.endless {
             Room::of(self.room, self.length, steps_sent(self.grid.step, STEPS), is_own_due)
@@ -208,13 +195,19 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             (0..PEERS).for_each(|index| self.turns.note(index));
         }
         self.present.set(present);
-        self.turns.take(room, &self.chain, target, corrected);
+        let late = |index| {
+            let newest = peers.get(index).and_then(Track::newest);
+            newest.map_or(0, |newest| {
+                usize::try_from(present.saturating_sub(self.grid.at_or_before(newest.at))).unwrap_or(0)
+            })
+        };
+        self.turns.take(room, &self.chain, target, corrected, late);
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };
             let Some(sample) = track.newest() else { continue };
             let says_how = self.is_foreseen(index, peers);
-            let source = match (self.turns.of(index), &fused) {
+            let source = match (self.turns.of(index), fused) {
                 (Turn::News, _) if says_how => Source::Heard(sample),
                 (_, Some((fused, sample))) if *fused == index => Source::Fused(sample),
                 (Turn::News, _) => Source::Heard(sample),
@@ -298,9 +291,24 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         at: Instant,
         peers: &Peers<PEERS, SAMPLES>,
     ) -> Option<Reading> {
-        let (reading, track) = (self.read(index, at)?, peers.get(index)?);
-        let bound = track.certainty().bound().filter(|bound| self.model.stamped && at >= bound.at());
-        Some(bound.map_or(reading, |bound| certain::limited(reading, &bound.after(at, &track.reach()))))
+        let track = peers.get(index)?;
+        if self.read_at.get() == Some(at)
+            && track.is_carried_to(at)
+            && let Some(reading) = self.readings.get(index).and_then(Held::get)
+        {
+            return Some(reading);
+        }
+        let reading = self.read(index, at)?;
+        let is_limited = track.certainty().bound().is_some_and(|bound| self.model.stamped && at >= bound.at());
+        let bound = track.bound(at).filter(|_| is_limited);
+        Some(bound.map_or(reading, |bound| certain::limited(reading, &bound)))
+    }
+
+    /// Reads where all peers are at an instant, for all who ask for it until the horizons change.
+    pub fn read_all<const SAMPLES: usize>(&mut self, at: Instant, peers: &Peers<PEERS, SAMPLES>) {
+        self.read_at.clear();
+        self.readings = core::array::from_fn(|index| self.read_inside(index, at, peers).into());
+        self.read_at.set(at);
     }
 
     /// Where a peer is at an instant by its horizon.

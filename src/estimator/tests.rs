@@ -196,7 +196,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     peers.start(config.link.period);
     let track = peers.get_mut(crate::wire::Slot(1)).unwrap();
     let braking = Sample { station: StationHash(2), ..sample(0, 10_000, -1_500) };
-    track.admit(braking, Certainty::NONE, Belief::Agrees);
+    track.admit(&braking, &Certainty::NONE, Belief::Agrees);
     track.publish(
         GRID.origin,
         DrivingParameters { predecessor: Predecessor::Station(StationHash(77)), ..leader() },
@@ -204,7 +204,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     );
     estimator.note_change(&peers);
     estimator.note_news(1);
-    estimator.update(GRID.origin, &peers, None, false);
+    estimator.update(GRID.origin, &peers, None, false, None);
     for hundredths in [0, 10, 40, 60] {
         let t = f64::from(hundredths) * 0.01;
         let at = GRID.origin.plus(Duration::from_millis(i64::from(hundredths) * 10));
@@ -230,12 +230,12 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
             Sample { station: StationHash(2), position: Position::from_mm(4_980_000), ..sample(0, 10_000, 0) };
         for (slot, sample, parameters) in [(front, front_sample, stands), (back, back_sample, follower())] {
             let track = peers.get_mut(crate::wire::Slot(slot)).unwrap();
-            track.admit(sample, Certainty::NONE, Belief::Agrees);
+            track.admit(&sample, &Certainty::NONE, Belief::Agrees);
             track.publish(GRID.origin, parameters, Duration::from_millis(10_000));
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);
-        estimator.update(GRID.origin, &peers, None, false);
+        estimator.update(GRID.origin, &peers, None, false, None);
         let end = GRID.origin.plus(Duration::from_millis(600));
         let (leads, follows) = (estimator.read(front.into(), end).unwrap(), estimator.read(back.into(), end).unwrap());
         assert_eq!(metres(leads), 5_000.0);

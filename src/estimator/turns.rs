@@ -14,14 +14,20 @@
 //! sample in every tick.
 
 use super::chain::Chain;
+use super::forecast::LATE;
 use crate::time::Duration;
 
 /// A tick of 10 ms has room for so many steps of horizons that start anew: three horizons of 400 steps.
 const STEPS_A_TICK: usize = 3 * (400 + BEGINNING);
 const TICK_MS: usize = 10;
 
-/// To start a horizon anew takes as long as so many steps in addition: its constants, its sample or its knots, and the steps up to now.
+/// To start a horizon anew takes as long as so many steps in addition: its constants, its sample or its knots, and a few steps up to now.
 const BEGINNING: usize = 64;
+
+/// These few steps, by which a sample may be older than now. Each further one, up to [`LATE`] of them, takes as long as so many others:
+/// the vehicle ahead is read before its horizon begins.
+const YOUNG: usize = 8;
+const EACH_LATE: usize = 4;
 
 /// See [`steps_sent`].
 const SENT: Duration = Duration::from_millis(10_700);
@@ -61,10 +67,20 @@ impl Room {
         Self { left: room.saturating_sub(own), each }
     }
 
-    fn take(&mut self) -> bool {
-        let left = self.left.checked_sub(self.each);
+    /// What a horizon takes that starts anew from a sample that is so many steps old.
+    fn of_one(&self, late: usize) -> usize {
+        self.each.saturating_add(late.min(LATE).saturating_sub(YOUNG).saturating_mul(EACH_LATE))
+    }
+
+    fn take(&mut self, late: usize) -> bool {
+        let left = self.left.checked_sub(self.of_one(late));
         self.left = left.unwrap_or(self.left);
         left.is_some()
+    }
+
+    /// Takes it in any case.
+    fn spend(&mut self, late: usize) {
+        self.left = self.left.saturating_sub(self.of_one(late));
     }
 }
 
@@ -107,24 +123,32 @@ impl<const PEERS: usize> Turns<PEERS> {
         self.turns.get(index).copied().unwrap_or(Turn::None)
     }
 
-    /// Decides on a tick. News of these two does not wait.
+    /// Decides on a tick. News of these two does not wait. `late` tells by how many steps the newest sample of a peer is older than now.
     #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
-    pub fn take(&mut self, mut room: Room, chain: &Chain<PEERS>, target: Option<usize>, corrected: Option<usize>) {
+    pub fn take(
+        &mut self,
+        mut room: Room,
+        chain: &Chain<PEERS>,
+        target: Option<usize>,
+        corrected: Option<usize>,
+        late: impl Fn(usize) -> usize,
+    ) {
         self.turns = [Turn::None; PEERS];
         if self.again == 0 && !self.news.contains(&true) {
             return;
         }
         let has_news = target.is_some_and(|index| self.serve(index));
-        if has_news {
-            room.take();
+        if let Some(index) = target.filter(|_| has_news) {
+            room.spend(late(index));
         }
-        if corrected.is_some_and(|index| self.serve(index)) || corrected.is_some() {
-            room.take();
+        if let Some(index) = corrected {
+            self.serve(index);
+            room.spend(0);
         }
         let (first, mut waits) = (usize::from(self.first), None);
         for place in (first..PEERS).chain(0..first.min(PEERS)) {
             let Some(index) = chain.at(place).filter(|index| self.news.get(*index) == Some(&true)) else { continue };
-            if waits.is_none() && room.take() {
+            if waits.is_none() && room.take(late(index)) {
                 self.serve(index);
             } else if waits.is_none() {
                 waits = Some(place);
@@ -133,7 +157,7 @@ impl<const PEERS: usize> Turns<PEERS> {
         let name = target.map_or(0, |index| (index as u8).saturating_add(1));
         let is_behind = if has_news { waits.is_some() } else { self.again == name };
         self.again = if is_behind { name } else { 0 };
-        if let Some(index) = target.filter(|_| is_behind && waits.is_none() && room.take()) {
+        if let Some(index) = target.filter(|index| is_behind && waits.is_none() && room.take(late(*index))) {
             self.set(index, Turn::Again);
             self.again = 0;
         }
@@ -164,11 +188,13 @@ mod tests {
     struct Ticks {
         turns: Turns<8>,
         target: Option<usize>,
+        /// How old the samples are, in steps.
+        late: usize,
     }
 
     impl Ticks {
         fn new(target: Option<usize>) -> Self {
-            Self { turns: Turns::NONE, target }
+            Self { turns: Turns::NONE, target, late: 3 }
         }
 
         fn hear(&mut self, peers: impl IntoIterator<Item = usize>) {
@@ -177,7 +203,8 @@ mod tests {
 
         /// The slots whose horizons start anew, and those which do once more.
         fn tick(&mut self, length: usize, is_own_due: bool) -> (Vec<usize>, Vec<usize>) {
-            self.turns.take(Room::of(STEPS_A_TICK, length, length, is_own_due), &Chain::new(), self.target, None);
+            let room = Room::of(STEPS_A_TICK, length, length, is_own_due);
+            self.turns.take(room, &Chain::new(), self.target, None, |_| self.late);
             let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
             (of(Turn::News), of(Turn::Again))
         }
@@ -221,6 +248,33 @@ mod tests {
                 assert!(*waited <= 3, "{index}");
             }
         }
+    }
+
+    /// In how many ticks all peers with news are served, if the first of these ticks is one of the ego's own horizon.
+    fn served_within(late: usize) -> usize {
+        let mut ticks = Ticks { late, ..Ticks::new(Some(7)) };
+        ticks.hear(0..8);
+        let (mut served, mut count) = (0, 0);
+        while served < 8 {
+            served += ticks.tick(400, count == 0).0.len();
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn news_waits_for_four_ticks_at_most_and_for_eight_if_it_is_old() {
+        for (late, most) in [(0, 4), (3, 4), (8, 4), (20, 5), (200, 8), (1_000, 8)] {
+            assert!(served_within(late) <= most, "{late}: {}", served_within(late));
+        }
+    }
+
+    #[test]
+    fn an_old_sample_takes_the_room_of_three() {
+        let mut ticks = Ticks { late: 200, ..Ticks::new(Some(7)) };
+        ticks.hear(0..8);
+        assert_eq!(ticks.tick(359, false), (vec![7], vec![]));
+        assert_eq!(ticks.tick(359, false), (vec![0], vec![]));
     }
 
     #[test]

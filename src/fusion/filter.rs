@@ -164,8 +164,11 @@ impl Filter {
     fn take_in(&mut self, off: i32, variance: i32, noise: i32, with: [i32; 3]) {
         let spread = i64::from(variance).saturating_add(i64::from(noise)).max(1);
         // A divisor below 2²⁴ is quick.
-        let scale = if spread >= 1 << 23 { 8 } else { 0 };
-        let gain = |covariance: i32| quotient(i64::from(covariance) << BITS.saturating_sub(scale), spread >> scale);
+        let is_wide = spread >= 1 << 23;
+        let gain = |covariance: i32| match is_wide {
+            true => quotient(i64::from(covariance) << (BITS - 8), spread >> 8),
+            false => quotient(i64::from(covariance) << BITS, spread),
+        };
         let [r, v, a] = with;
         let (of_r, of_v, of_a) = (gain(r), gain(v), gain(a));
         let Motion { at, position, speed, acceleration } = self.motion;
@@ -241,11 +244,20 @@ impl Covariances {
 
 /// A product, rounded to nearest, saturating.
 fn product(a: i32, b: i32) -> i32 {
-    scaled(a.into(), b)
+    // Below 2⁶³: nothing wraps.
+    saturate_i32(i64::from(a).wrapping_mul(b.into()).wrapping_add(1 << (BITS - 1)) >> BITS)
 }
 
 /// The product with a gain, which may be beyond a word: an acceleration follows from a speed within milliseconds.
 fn scaled(gain: i64, word: i32) -> i32 {
+    match i32::try_from(gain) {
+        Ok(gain) => product(gain, word),
+        Err(_) => scaled_far(gain, word),
+    }
+}
+
+#[inline(never)] // seldom
+fn scaled_far(gain: i64, word: i32) -> i32 {
     saturate_i32(gain.saturating_mul(word.into()).saturating_add(1 << (BITS - 1)) >> BITS)
 }
 

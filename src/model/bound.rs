@@ -9,7 +9,7 @@
 //! harder than it accelerates.
 //!
 //! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the true state. Products
-//! stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
+//! and sums of speeds stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
 //! Accelerations are at most 6.4e7. The times for which they last are cut at an hour, 3.6e9. Positions are exact within ±560,000 km. All
 //! of this is proved over the whole range in `proof` below this module.
 
@@ -94,22 +94,22 @@ impl End {
             return Self { position: self.position.saturating_add(way), speed: 0 };
         }
         let lost = millionths_up(could_lose).min(self.speed);
-        let way = millionths(self.speed.wrapping_mul(2).saturating_sub(lost).wrapping_mul(micros)) / 2;
-        Self { position: self.position.saturating_add(way), speed: self.speed.saturating_sub(lost) }
+        let way = millionths(self.speed.wrapping_mul(2).wrapping_sub(lost).wrapping_mul(micros)) / 2;
+        Self { position: self.position.saturating_add(way), speed: self.speed.wrapping_sub(lost) }
     }
 
     /// The end after accelerating for `micros` up to the top speed, rounded up.
     fn accelerated(self, micros: i64, acceleration: Acceleration) -> Self {
         let acceleration = micro_up(acceleration.to_bits(), 25).max(1);
-        let to_gain = TOP_SPEED.saturating_sub(self.speed).max(0).wrapping_mul(MICRO);
+        let to_gain = TOP_SPEED.wrapping_sub(self.speed).max(0).wrapping_mul(MICRO);
         // The top speed is reached after ⌈gain/a⌉. This is divided out only if it is before the end.
-        let rises_on = acceleration.wrapping_mul(micros.saturating_sub(1)) < to_gain;
+        let rises_on = acceleration.wrapping_mul(micros.wrapping_sub(1)) < to_gain;
         let rising = if rises_on { micros } else { micros.min(ceil(to_gain, acceleration)) };
         let gained = millionths_up(acceleration.wrapping_mul(rising));
-        let twice = self.speed.wrapping_mul(2).saturating_add(gained).wrapping_mul(rising);
+        let twice = self.speed.wrapping_mul(2).wrapping_add(gained).wrapping_mul(rising);
         let way = half_up(millionths_up(twice));
-        let speed = self.speed.saturating_add(gained).min(TOP_SPEED.max(self.speed));
-        let rest = millionths_up(speed.wrapping_mul(micros.saturating_sub(rising)));
+        let speed = self.speed.wrapping_add(gained).min(TOP_SPEED.max(self.speed));
+        let rest = millionths_up(speed.wrapping_mul(micros.wrapping_sub(rising)));
         Self { position: self.position.saturating_add(way).saturating_add(rest), speed }
     }
 }
@@ -124,6 +124,10 @@ pub struct Bound {
 }
 
 impl Bound {
+    /// At the origin of time and place: all zero.
+    pub const ZERO: Self =
+        Self { at: Instant::ZERO, near: End { position: 0, speed: 0 }, far: End { position: 0, speed: 0 } };
+
     /// The bound around a sample that is taken to be of `at`. The bound is at `at`, or at the latest instant that the sample may really
     /// be from.
     #[must_use]
@@ -134,11 +138,11 @@ impl Bound {
         uncertainty: &Uncertainty,
         reach: &AccelerationRange,
     ) -> Self {
-        let (position, speed) = (micro_position(position), (i64::from(speed.to_bits()), 23));
+        let position = micro_position(position);
         let off = micro_up(uncertainty.position.to_bits(), 20);
         let faster = micro_up(uncertainty.speed.to_bits(), 23);
-        let slow = micro_down_64(speed.0, speed.1).saturating_sub(faster).max(0);
-        let fast = micro_up_64(speed.0, speed.1).saturating_add(faster).max(0);
+        let slow = micro_down(speed.to_bits(), 23).saturating_sub(faster).max(0);
+        let fast = micro_up(speed.to_bits(), 23).saturating_add(faster).max(0);
         let near = End { position: position.0.saturating_sub(off), speed: slow };
         let far = End { position: position.1.saturating_add(off), speed: fast };
         // At the earliest instant the far end is farthest ahead. At the latest instant the near end is farthest back. The speeds may have
@@ -169,8 +173,8 @@ impl Bound {
     #[must_use]
     pub fn shifted(&self, way: Distance) -> Self {
         let shift = |end: End, micros: i64| End { position: end.position.saturating_add(micros), ..end };
-        let bits = i64::from(way.to_bits());
-        Self { near: shift(self.near, micro_down_64(bits, 20)), far: shift(self.far, micro_up_64(bits, 20)), ..*self }
+        let (near, far) = (micro_down(way.to_bits(), 20), micro_up(way.to_bits(), 20));
+        Self { near: shift(self.near, near), far: shift(self.far, far), ..*self }
     }
 
     /// The bound at a later instant. At an earlier instant it is unchanged.
@@ -211,7 +215,7 @@ impl Bound {
     #[must_use]
     pub fn comes_near(&self, position: Position, within: Distance, speed: Speed, within_speed: Speed) -> bool {
         let (behind, ahead) = micro_position(position);
-        let (slower, faster) = (micro_down_64(speed.to_bits().into(), 23), micro_up(speed.to_bits(), 23));
+        let (slower, faster) = (micro_down(speed.to_bits(), 23), micro_up(speed.to_bits(), 23));
         let (way, change) = (micro_up(within.to_bits(), 20), micro_up(within_speed.to_bits(), 23));
         ahead.saturating_add(way) >= self.near.position
             && behind.saturating_sub(way) <= self.far.position
@@ -254,9 +258,17 @@ impl Bound {
     }
 }
 
-/// A word with `fraction` bits in millionths, rounded up.
+/// A word with `fraction` bits, at least 6, in millionths, rounded down.
+#[inline(always)]
+fn micro_down(word: i32, fraction: u32) -> i64 {
+    i64::from(word).wrapping_mul(15_625).wrapping_shr(fraction.wrapping_sub(6)) // below 2⁴⁵
+}
+
+/// The same, rounded up.
+#[inline(always)]
 fn micro_up(word: i32, fraction: u32) -> i64 {
-    micro_up_64(i64::from(word), fraction)
+    let negated = i64::from(word).wrapping_mul(-15_625); // below 2⁴⁵
+    negated.wrapping_shr(fraction.wrapping_sub(6)).wrapping_neg()
 }
 
 #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
@@ -293,12 +305,12 @@ const fn millionths(x: i64) -> i64 {
 
 /// A millionth, rounded up.
 const fn millionths_up(x: i64) -> i64 {
-    millionths(x.saturating_neg()).saturating_neg()
+    millionths(x.wrapping_neg()).wrapping_neg()
 }
 
 /// Half, rounded up.
 const fn half_up(x: i64) -> i64 {
-    x.saturating_add(1) >> 1
+    x.wrapping_add(1) >> 1
 }
 
 /// Quotient rounded down, for a positive divisor.

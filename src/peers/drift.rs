@@ -70,14 +70,15 @@ impl Course {
         if uncertain(uncertainty) > LEAST_CERTAIN {
             return Ok(None);
         }
-        let off = off(sample, uncertainty, reach);
+        let faster = reach.acceleration.max(reach.braking).over(uncertain(uncertainty).fine_seconds());
+        let off = off(sample, faster);
         let own = Self::of(sample, uncertainty, off);
         let (Some(held), Some(last)) = (held, last) else { return Ok(Some(own)) };
         let gap = sample.at.since(last.at);
         if gap <= Duration::ZERO || gap > LONGEST_GAP {
             return Ok(Some(own));
         }
-        let off_before = self::off(last, uncertainty, reach);
+        let off_before = self::off(last, faster);
         let mean =
             |one: Speed, other: Speed| Speed::from_bits(one.to_bits() / 2).plus(Speed::from_bits(other.to_bits() / 2));
         let way = mean(last.speed, sample.speed).over(gap.seconds());
@@ -94,11 +95,9 @@ fn uncertain(uncertainty: &Uncertainty) -> Duration {
     uncertainty.earlier.max(uncertainty.later)
 }
 
-/// How far off the speed at the stamp may be.
-fn off(sample: &Sample, uncertainty: &Uncertainty, reach: &AccelerationRange) -> Speed {
-    let hardest = reach.acceleration.max(reach.braking);
-    let accuracy = sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING);
-    accuracy.plus(hardest.over(uncertain(uncertainty).fine_seconds()))
+/// How far off the speed at the stamp may be, if it may have changed by `faster` in the time that is uncertain.
+fn off(sample: &Sample, faster: Speed) -> Speed {
+    sample.speed_accuracy.unwrap_or(UNPUBLISHED_SPEED_ACCURACY).plus(SPEED_ROUNDING).plus(faster)
 }
 
 /// The acceleration with 15 fraction bits, rounded up. Sums and products of a few such values stay below 2⁶³.

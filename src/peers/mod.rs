@@ -1,6 +1,6 @@
 //! The peers: messages from the slots enter, one track per slot leaves.
 //!
-//! The samples of a slot are kept in the order of their stamps. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
+//! Which samples of a slot were heard is kept in the order of their stamps, and of the newest all. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
 //! that, comes twice, or is from the future. The unit refuses a sample from another station or from too far away. Judging changes
 //! nothing. Only [`Track::admit`] changes a track by a sample.
 
@@ -13,13 +13,13 @@ mod sender_clock;
 mod track;
 
 pub use link::{LOSS_ONE, Link};
-pub use sample::{Sample, excess, largest_error, largest_speed_error, timely};
+pub use sample::{Heard, Sample, excess, largest_error, largest_speed_error, timely};
 pub use sender_clock::Off;
 pub use track::{Admission, Track};
 
 use crate::health::Cause;
 use crate::parameters::DEFAULT_LENGTH;
-use crate::time::Duration;
+use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 use crate::wire::{Slot, StationHash};
 
@@ -63,6 +63,11 @@ impl<const PEERS: usize, const SAMPLES: usize> Peers<PEERS, SAMPLES> {
     /// The track of a slot by its index, to be changed.
     pub fn get_index_mut(&mut self, index: usize) -> Option<&mut Track<SAMPLES>> {
         self.tracks.get_mut(index)
+    }
+
+    /// Computes what is certain of all of them at this instant.
+    pub fn carry(&mut self, at: Instant) {
+        self.tracks.iter_mut().for_each(|track| track.carry(at));
     }
 
     /// The station of the slot `from` is in the slot `to` now.

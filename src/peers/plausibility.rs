@@ -142,9 +142,10 @@ impl Certainty {
     /// Judges a sample that is newer than all before; `last` is the sample before it. It is believed, or refused as `Implausible`, `Jump`
     /// or `Stuck`, or as `Duplicate` of a refused sample.
     #[must_use]
-    pub fn judge(mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Judgement {
-        let verdict = self.weigh(sample, last, grounds);
-        Judgement { certainty: self, verdict }
+    pub fn judge(&self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Judgement {
+        let mut judgement = Judgement { certainty: *self, verdict: Ok(Belief::Late) };
+        judgement.verdict = judgement.certainty.weigh(sample, last, grounds);
+        judgement
     }
 
     fn weigh(&mut self, sample: &Sample, last: Option<&Sample>, grounds: &Grounds) -> Result<Belief, Cause> {

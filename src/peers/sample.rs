@@ -105,6 +105,38 @@ impl Sample {
     }
 }
 
+/// Of a sample, what tells it apart from others: by this a duplicate is known, and the sample to which a horizon belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Heard {
+    /// The instant at which it was true.
+    pub at: Instant,
+    /// When it was received.
+    pub received: Instant,
+    /// Its raw stamp.
+    pub stamp: Stamp,
+    /// Its tag.
+    pub tag: u8,
+}
+
+impl Heard {
+    /// Of a sample.
+    #[must_use]
+    pub const fn of(sample: &Sample) -> Self {
+        Self { at: sample.at, received: sample.received, stamp: sample.stamp, tag: sample.tag }
+    }
+
+    /// Whether another sample has the same stamp in the same turn of the stamp, which repeats every 13.1 s.
+    #[must_use]
+    pub fn is_again(&self, sample: &Sample) -> bool {
+        let is_same_turn = || {
+            let apart = self.at.since(sample.at);
+            apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)
+        };
+        self.stamp == sample.stamp && is_same_turn()
+    }
+}
+
 /// By how much the largest error of a distance with this accuracy exceeds the accuracy. Whether there is room for another vehicle is
 /// asked without it: several accuracies would have to be exceeded at once, all in one direction.
 #[must_use]

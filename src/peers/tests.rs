@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::config::{Config, Link as Limits};
-use crate::model::bound::Uncertainty;
-use crate::time::{GnssTime, Instant};
+use crate::model::bound::{Bound, Uncertainty};
+use crate::time::GnssTime;
 use crate::units::{Acceleration, Position, Speed};
 use crate::wire::horizon::{KNOTS, Knot, Knots};
 
@@ -25,9 +25,9 @@ fn admit<const N: usize>(track: &mut Track<N>, sample: Sample) -> Result<Admissi
     timely(sample.at, sample.received, LIMITS.stale, LIMITS.future)?;
     let judgement = track.judge(&sample, &UNCERTAINTY, LIMITS.period);
     match judgement.verdict {
-        Ok(belief) => Ok(track.admit(sample, judgement.certainty, belief)),
+        Ok(belief) => Ok(track.admit(&sample, &judgement.certainty, belief)),
         Err(cause) => {
-            track.note(judgement.certainty);
+            track.note(&judgement.certainty);
             Err(cause)
         }
     }
@@ -60,15 +60,15 @@ fn track<const N: usize>(true_at: [u64; N]) -> Track<4> {
 }
 
 fn held(track: &Track<4>) -> Vec<u64> {
-    let since = |sample: &Sample| sample.at.since(at(0)).as_millis().unsigned_abs();
-    track.samples().iter().map(since).collect()
+    track.heard().map(|heard| heard.at.since(at(0)).as_millis().unsigned_abs()).collect()
 }
 
 /// Refuses the sample for this cause, and changes nothing.
 fn refuses(track: &Track<4>, sample: Sample, cause: Cause) {
     let mut tried = track.clone();
     assert_eq!(admit(&mut tried, sample), Err(cause));
-    assert_eq!((tried.samples(), tried.link()), (track.samples(), track.link()));
+    assert!(tried.heard().eq(track.heard()) && tried.newest() == track.newest());
+    assert_eq!(tried.link(), track.link());
 }
 
 #[test]
@@ -186,4 +186,27 @@ fn a_horizon_that_was_overtaken_with_its_sample_does_not_displace_the_newest_one
     assert!(!track.foresee(at(400), knots(1)));
     admit(&mut track, tagged(400, 401, 1)).unwrap();
     assert_eq!(track.knots(), Some(&knots(1)));
+}
+
+#[test]
+fn what_was_carried_on_is_what_is_certain_whatever_was_heard_since() {
+    let mut track = track([100]);
+    let now = at(250);
+    for heard in [None, Some(200), Some(150), Some(240)] {
+        if let Some(millis) = heard {
+            admit(&mut track, sample(millis, 250)).unwrap();
+        }
+        let certain = track.certainty().bound().map(|bound| bound.after(now, &track.reach()));
+        assert_eq!(track.bound(now), certain, "{heard:?}");
+        track.carry(now);
+        assert!(track.is_carried_to(now));
+        assert_eq!(track.bound(now), certain, "{heard:?}");
+    }
+    let seen = Bound::not_behind(now, track.bound(now).unwrap().lowest_position().ahead(Distance::from_mm(10)));
+    let before = track.bound(now);
+    assert!(track.narrow(&seen));
+    assert_ne!(track.bound(now), before);
+    track.restart();
+    track.carry(now);
+    assert_eq!(track.bound(now), None);
 }

@@ -1,11 +1,11 @@
-//! The track of one peer. Checked messages enter by rule; a short history of samples in the order of their stamps leaves.
+//! The track of one peer. Checked messages enter by rule; the newest sample, and which samples were heard before it, leave.
 
-use heapless::Vec;
+use heapless::Deque;
 
 use super::limits::Limits;
 use super::link::Link;
 use super::plausibility::{Belief, Certainty, Grounds, Judgement, uncertainty};
-use super::sample::Sample;
+use super::sample::{Heard, Sample};
 use super::sender_clock::{Off, SenderClock};
 use crate::config::Link as Settings;
 use crate::health::Cause;
@@ -28,10 +28,12 @@ pub enum Admission {
     History,
 }
 
-/// What is held of one slot: the samples of its station, oldest first, and what the station said of itself.
+/// What is held of one slot: the newest sample of its station, which ones were heard, and what the station said of itself.
 #[derive(Clone, Debug)]
 pub struct Track<const SAMPLES: usize> {
-    samples: Vec<Sample, SAMPLES>,
+    newest: Held<Sample>,
+    /// The last samples with the newest, oldest first.
+    heard: Deque<Heard, SAMPLES>,
     certainty: Certainty,
     parameters: Held<DrivingParameters>,
     /// When its driving parameters were received last.
@@ -41,6 +43,9 @@ pub struct Track<const SAMPLES: usize> {
     link: Link,
     sender_clock: SenderClock,
     is_disputed: bool,
+    /// What is certain, carried on to the last tick, if that was done since the last change: many ask for it in a tick.
+    carried: Bound,
+    is_carried: bool,
 }
 
 impl<const SAMPLES: usize> Track<SAMPLES> {
@@ -48,7 +53,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     #[must_use]
     pub const fn new(period: Duration) -> Self {
         Self {
-            samples: Vec::new(),
+            newest: Held::Nothing,
+            heard: Deque::new(),
             certainty: Certainty::NONE,
             parameters: Held::Nothing,
             published_at: Instant::ZERO,
@@ -57,6 +63,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             link: Link::new(period),
             sender_clock: SenderClock::NEW,
             is_disputed: false,
+            carried: Bound::ZERO,
+            is_carried: false,
         }
     }
 
@@ -69,13 +77,12 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// The newest sample by its stamp.
     #[must_use]
     pub fn newest(&self) -> Option<&Sample> {
-        self.samples.last()
+        self.newest.as_ref()
     }
 
-    /// All samples held, oldest first.
-    #[must_use]
-    pub fn samples(&self) -> &[Sample] {
-        &self.samples
+    /// The last samples with the newest, oldest first.
+    pub fn heard(&self) -> impl ExactSizeIterator<Item = &Heard> {
+        self.heard.iter()
     }
 
     /// What is certain of the vehicle.
@@ -84,8 +91,31 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
         &self.certainty
     }
 
+    /// What is certain at an instant, now or later.
+    #[must_use]
+    pub fn bound(&self, at: Instant) -> Option<Bound> {
+        if self.is_carried_to(at) {
+            return Some(self.carried);
+        }
+        Some(self.certainty.bound()?.after(at, &self.reach()))
+    }
+
+    /// Whether what is certain at this instant was computed, and has not changed since.
+    #[must_use]
+    pub fn is_carried_to(&self, at: Instant) -> bool {
+        self.is_carried && self.carried.at() == at
+    }
+
+    /// Computes what is certain at this instant, for all who ask for it.
+    pub fn carry(&mut self, at: Instant) {
+        if let Some(bound) = self.bound(at) {
+            (self.carried, self.is_carried) = (bound, true);
+        }
+    }
+
     /// Narrows what is certain by what another sensor saw. Returns whether the two agree.
     pub fn narrow(&mut self, other: &Bound) -> bool {
+        self.is_carried = false;
         let reach = self.reach();
         self.certainty.narrow(other, &reach)
     }
@@ -118,20 +148,33 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
 
     /// Moves everything that is held of its place ahead by this way, because its axis moved.
     pub fn shift(&mut self, way: Distance) {
-        self.samples.iter_mut().for_each(|sample| sample.position = sample.position.ahead(way));
-        self.certainty.shift(way);
+        if let Held::Value(newest) = &mut self.newest {
+            newest.position = newest.position.ahead(way);
+        }
+        self.shift_certainty(way);
     }
 
     /// Forgets everything that is held of its place. What it said of how it drives still holds.
     pub fn restart(&mut self) {
-        self.samples.clear();
-        self.certainty = Certainty::NONE;
+        self.forget_samples();
+        self.set_certainty(&Certainty::NONE);
+    }
+
+    fn set_certainty(&mut self, certainty: &Certainty) {
+        self.certainty = *certainty;
+        self.is_carried = false;
+    }
+
+    fn forget_samples(&mut self) {
+        self.newest.clear();
+        self.heard.clear();
     }
 
     /// Takes over what the same station said of how it drives in the slot that it was in before.
     pub fn follow_on(&mut self, before: &Self) {
         if self.parameters.as_ref().is_none() {
             (self.parameters, self.published_at, self.limits) = (before.parameters, before.published_at, before.limits);
+            self.is_carried = false;
         }
     }
 
@@ -212,6 +255,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             let at = if newest.is_timed { off.corrected(newest.at) } else { newest.at };
             let newest = Sample { at, ..newest };
             let uncertainty = uncertainty(&newest, newest.is_timed, limits, off);
+            self.is_carried = false;
             self.certainty.restart(self.around(newest.at, newest.position, newest.speed, &uncertainty));
         }
         off != Off::No && (begins || before == Off::No)
@@ -244,45 +288,60 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     pub fn judge(&self, sample: &Sample, uncertainty: &Uncertainty, period: Duration) -> Judgement {
         let verdict = |verdict| Judgement { certainty: self.certainty, verdict };
         let is_frozen = self.newest().is_some_and(|newest| newest.stamp == sample.stamp);
-        if is_frozen || self.samples.iter().any(|held| held.stamp == sample.stamp && is_same_turn(held, sample)) {
+        if is_frozen || self.heard.iter().any(|held| held.is_again(sample)) {
             return verdict(Err(Cause::Duplicate));
         }
         if self.newest().is_none_or(|newest| newest.at < sample.at) {
             let around = self.around(sample.at, sample.position, sample.speed, uncertainty);
             return self.certainty.judge(sample, self.newest(), &self.grounds(around, *uncertainty, period));
         }
-        let is_oldest = self.samples.first().is_some_and(|oldest| sample.at <= oldest.at);
-        verdict(if is_oldest && self.samples.is_full() { Err(Cause::OutOfOrder) } else { Ok(Belief::Late) })
+        let is_oldest = self.heard.front().is_some_and(|oldest| sample.at <= oldest.at);
+        verdict(if is_oldest && self.heard.is_full() { Err(Cause::OutOfOrder) } else { Ok(Belief::Late) })
     }
 
     /// Admits a sample that was judged like this, and what is certain with it.
-    pub fn admit(&mut self, sample: Sample, certainty: Certainty, belief: Belief) -> Admission {
+    pub fn admit(&mut self, sample: &Sample, certainty: &Certainty, belief: Belief) -> Admission {
         if belief == Belief::Recovered {
-            self.samples.clear();
+            self.forget_samples();
         }
-        self.certainty = certainty;
+        self.set_certainty(certainty);
         self.link.heard(sample.received, sample.at);
         self.settle();
         self.insert(sample)
     }
 
     /// Keeps the evidence of a refused sample.
-    pub fn note(&mut self, certainty: Certainty) {
-        self.certainty = certainty;
+    pub fn note(&mut self, certainty: &Certainty) {
+        self.is_carried &= self.certainty.bound() == certainty.bound();
+        self.certainty = *certainty;
     }
 
-    fn insert(&mut self, sample: Sample) -> Admission {
-        let older = self.samples.iter().take_while(|held| held.at < sample.at).count();
-        let is_news = older == self.samples.len();
-        // The other samples move by swaps, so that no index can be out of bounds.
-        let mut moved = sample;
-        if self.samples.is_full() {
-            self.samples.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
-        } else {
-            self.samples.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
-            let _ = self.samples.push(moved); // it is not full
+    /// Moves what is certain ahead by this way, because the axis moved, on which the newest sample is already.
+    pub fn shift_certainty(&mut self, way: Distance) {
+        self.is_carried = false;
+        self.certainty.shift(way);
+    }
+
+    fn insert(&mut self, sample: &Sample) -> Admission {
+        let heard = Heard::of(sample);
+        if self.newest().is_none_or(|newest| newest.at < sample.at) {
+            if self.heard.is_full() {
+                self.heard.pop_front();
+            }
+            let _ = self.heard.push_back(heard); // there is room
+            self.newest.set(*sample);
+            return Admission::News;
         }
-        if is_news { Admission::News } else { Admission::History }
+        let older = self.heard.iter().take_while(|held| held.at < sample.at).count();
+        // The others move by swaps, so that no index can be out of bounds.
+        let mut moved = heard;
+        if self.heard.is_full() {
+            self.heard.iter_mut().take(older).rev().for_each(|held| core::mem::swap(held, &mut moved));
+        } else {
+            self.heard.iter_mut().skip(older).for_each(|held| core::mem::swap(held, &mut moved));
+            let _ = self.heard.push_back(moved); // it is not full
+        }
+        Admission::History
     }
 
     /// Takes in the driving parameters of the station, received at `at`. Returns whether they are new. No message older than `stale`
@@ -294,6 +353,7 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
             None => Limits::first(at, published),
         };
         self.limits.set(limits);
+        self.is_carried = false;
         self.certainty.settle(&limits);
         self.published_at = at;
         let is_new = self.parameters.as_ref() != Some(&parameters);
@@ -305,8 +365,8 @@ impl<const SAMPLES: usize> Track<SAMPLES> {
     /// tag that was received last before it. Where there is none, it has overtaken its sample, and waits for it. A horizon that was
     /// overtaken together with its sample does not displace the newest sample's.
     pub fn foresee(&mut self, received: Instant, knots: Knots) -> bool {
-        let is_its = |held: &&Sample| held.tag == knots.tag && self.is_of_one_round(held.received, received);
-        let of = self.samples.iter().filter(is_its).max_by_key(|held| held.received).map(|held| held.at);
+        let is_its = |held: &&Heard| held.tag == knots.tag && self.is_of_one_round(held.received, received);
+        let of = self.heard.iter().filter(is_its).max_by_key(|held| held.received).map(|held| held.at);
         let behind = self.newest().map_or(0, |newest| newest.tag.wrapping_sub(knots.tag) % 4);
         let is_overtaken = match of {
             Some(at) => self.newest().is_some_and(|newest| newest.at != at),
@@ -327,10 +387,4 @@ struct Foresight {
     /// The time of the sample that it was computed from, if that came before it.
     of: Option<Instant>,
     knots: Knots,
-}
-
-/// Whether two samples with the same stamp are of the same turn of the stamp, which repeats every 13.1 s.
-fn is_same_turn(a: &Sample, b: &Sample) -> bool {
-    let apart = a.at.since(b.at);
-    apart < Duration::from_millis(6_000) && apart > Duration::from_millis(-6_000)
 }

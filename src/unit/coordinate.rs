@@ -30,6 +30,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     if !scene.coordination.is_due(now) {
         return;
     }
+    scene.estimator.read_all(now, &scene.peers);
     let Some(ego) = scene.ego_at(now, last_demand) else { return };
     let (front, speed) = (scene.front(&ego), ego.speed);
     // Without GNSS time the ego cannot tell when it arrives. It minds the others all the same, but arrives at no crossing.

@@ -118,7 +118,7 @@ fn still_known<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     if seen.is_some() && target == scene.visible() {
         return seen;
     }
-    let stood = scene.ranging.standing(now).map(|sight| sight.bound().after(now, &AccelerationRange::WORST));
+    let stood = scene.ranging.standing(now).map(|sight| sight.bound.after(now, &AccelerationRange::WORST));
     let stood = stood.filter_map(|bound| near(scene, bound.lowest_position(), bound.lowest_speed()));
     let stood = stood.min_by_key(|rear| rear.position);
     let target = target.filter(|index| !scene.is_seen_past(*index, now));

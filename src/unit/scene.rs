@@ -291,8 +291,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// What is certain of a peer at an instant, now or later.
     pub fn bound(&self, index: usize, at: Instant) -> Option<Bound> {
-        let track = self.peers.get(index)?;
-        Some(track.certainty().bound()?.after(at, &track.reach()))
+        self.peers.get(index)?.bound(at)
     }
 
     /// The rear bumper of a peer at its near end, and the bound.

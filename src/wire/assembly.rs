@@ -53,13 +53,18 @@ impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
     pub(super) const NEW: Self =
         Self { parts: [Payload::EMPTY; PARTS], held: 0, tag: 0, since: Instant::ZERO, tie: Tie::NONE };
 
-    /// Takes one part; the whole message if it was the last one missing.
+    /// The parts of the message that was whole last.
+    pub(super) const fn parts(&self) -> &[Payload; PARTS] {
+        &self.parts
+    }
+
+    /// Takes one part. Returns whether it was the last one missing; then all are in [`parts`](Self::parts) until the next one comes.
     ///
     /// # Errors
     /// `Torn`, once for each message that stays incomplete because this part belongs to another one (its tag differs,
     /// this part is here already, it was received more than `within` apart from the first one, or with it the counters are not
     /// those of one message); the part then begins the new message. `Range` for a part that there is not.
-    pub(super) fn add(&mut self, piece: &Piece) -> Result<Option<[Payload; PARTS]>, Cause> {
+    pub(super) fn add(&mut self, piece: &Piece) -> Result<bool, Cause> {
         let Piece { at, within, part, tag, counter, payload } = *piece;
         let place = self.parts.get_mut(usize::from(part)).ok_or(Cause::Range)?;
         *place = payload;
@@ -72,7 +77,7 @@ impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
             #[allow(clippy::cast_possible_truncation)] // at most 8 parts
             if self.tie.holds(PARTS as u8) {
                 self.held = 0;
-                return Ok(Some(self.parts));
+                return Ok(true);
             }
             torn = true;
         }
@@ -81,7 +86,7 @@ impl<const PARTS: usize, const STEP: u8> Assembly<PARTS, STEP> {
         }
         self.held |= bit;
         self.tag = tag;
-        if torn { Err(Cause::Torn) } else { Ok(None) }
+        if torn { Err(Cause::Torn) } else { Ok(false) }
     }
 }
 
@@ -101,28 +106,29 @@ mod tests {
     fn parts_of_one_tag_make_a_message_in_any_order() {
         let mut assembly = Assembly::<3, 1>::NEW;
         for order in [[0, 1, 2], [2, 0, 1]] {
-            assert_eq!(assembly.add(&piece(7, order[0], 1)), Ok(None));
-            assert_eq!(assembly.add(&piece(7, order[1], 1)), Ok(None));
-            assert_eq!(assembly.add(&piece(7, order[2], 1)), Ok(Some([P; 3])));
+            assert_eq!(assembly.add(&piece(7, order[0], 1)), Ok(false));
+            assert_eq!(assembly.add(&piece(7, order[1], 1)), Ok(false));
+            assert_eq!(assembly.add(&piece(7, order[2], 1)), Ok(true));
+            assert_eq!(assembly.parts(), &[P; 3]);
         }
     }
 
     #[test]
     fn a_message_that_stays_incomplete_is_torn_once_and_the_next_is_whole() {
         let mut assembly = Assembly::<3, 1>::NEW;
-        assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
-        assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(None));
+        assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(false));
+        assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(false));
         assert_eq!(assembly.add(&piece(7, 0, 2)), Err(Cause::Torn));
-        assert_eq!(assembly.add(&piece(7, 1, 2)), Ok(None));
-        assert_eq!(assembly.add(&piece(7, 2, 2)), Ok(Some([P; 3])));
+        assert_eq!(assembly.add(&piece(7, 1, 2)), Ok(false));
+        assert_eq!(assembly.add(&piece(7, 2, 2)), Ok(true));
     }
 
     #[test]
     fn the_same_part_twice_under_one_tag_is_another_message() {
         let mut assembly = Assembly::<2, 1>::NEW;
-        assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(None));
+        assert_eq!(assembly.add(&piece(7, 0, 1)), Ok(false));
         assert_eq!(assembly.add(&piece(7, 0, 1)), Err(Cause::Torn));
-        assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(Some([P; 2])));
+        assert_eq!(assembly.add(&piece(7, 1, 1)), Ok(true));
         assert_eq!(assembly.add(&piece(7, 2, 1)), Err(Cause::Range));
     }
 
@@ -131,23 +137,23 @@ mod tests {
         let torn = Err(Cause::Torn);
         for (then, later) in [(0, 50_001), (50_001, 0), (0, 600_000_000)] {
             let mut assembly = Assembly::<2, 1>::NEW;
-            assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(None));
+            assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(false));
             assert_eq!(assembly.add(&piece(later, 1, 1)), torn, "{then} {later}");
             // What came late begins a new message.
-            assert_eq!(assembly.add(&piece(later, 0, 1)), Ok(Some([P; 2])));
+            assert_eq!(assembly.add(&piece(later, 0, 1)), Ok(true));
         }
         for (then, later) in [(0, 50_000), (50_000, 0)] {
             let mut assembly = Assembly::<2, 1>::NEW;
-            assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(None));
-            assert_eq!(assembly.add(&piece(later, 1, 1)), Ok(Some([P; 2])), "{then} {later}");
+            assert_eq!(assembly.add(&piece(then, 0, 1)), Ok(false));
+            assert_eq!(assembly.add(&piece(later, 1, 1)), Ok(true), "{then} {later}");
         }
     }
 
     #[test]
     fn the_time_counts_from_the_first_part() {
         let mut assembly = Assembly::<3, 1>::NEW;
-        assert_eq!(assembly.add(&piece(0, 0, 1)), Ok(None));
-        assert_eq!(assembly.add(&piece(30_000, 1, 1)), Ok(None));
+        assert_eq!(assembly.add(&piece(0, 0, 1)), Ok(false));
+        assert_eq!(assembly.add(&piece(30_000, 1, 1)), Ok(false));
         assert_eq!(assembly.add(&piece(60_000, 2, 1)), Err(Cause::Torn));
     }
 
@@ -156,10 +162,10 @@ mod tests {
         let of = |message: u8, part| Piece { counter: message + part, ..piece(7, part, 1) };
         for (lost, rest) in [(0, [1, 2]), (2, [0, 1])] {
             let mut assembly = Assembly::<3, 1>::NEW;
-            (0..3).filter(|part| *part != lost).for_each(|part| assert_eq!(assembly.add(&of(0, part)), Ok(None)));
+            (0..3).filter(|part| *part != lost).for_each(|part| assert_eq!(assembly.add(&of(0, part)), Ok(false)));
             assert_eq!(assembly.add(&of(3, lost)), Err(Cause::Torn));
-            assert_eq!(assembly.add(&of(3, rest[0])), Ok(None));
-            assert_eq!(assembly.add(&of(3, rest[1])), Ok(Some([P; 3])));
+            assert_eq!(assembly.add(&of(3, rest[0])), Ok(false));
+            assert_eq!(assembly.add(&of(3, rest[1])), Ok(true));
         }
     }
 }

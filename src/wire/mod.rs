@@ -77,6 +77,7 @@ pub struct Slot(pub u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[allow(clippy::large_enum_variant)] // a message lives for one call; boxing needs an allocator
+#[repr(u32)] // what follows the tag is on words, and is copied by words
 pub enum Said {
     /// Where it is and how it moves.
     Motion(motion::Motion),
@@ -109,6 +110,7 @@ pub enum Transport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[allow(clippy::large_enum_variant)] // as above
+#[repr(u32)] // as above
 pub enum Message {
     /// First step of the time synchronisation.
     Sync(sync::Sync),

@@ -6,7 +6,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, FractionFormat, GainFormat, SecondsFormat, SpeedFormat,
-    quotient, saturate_i32,
+    divide, saturate_i32,
 };
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
@@ -26,10 +26,24 @@ pub trait Quantity: Copy + PartialOrd {
 /// bits, so that 64 bits hold it; 128-bit division, as of [`crate::fixed::ratio`], takes ten times as long on a
 /// Cortex-M.
 fn word(steps: i64, per_unit: i64, fraction: u32) -> i32 {
-    let scaled = steps.saturating_mul(1i64.wrapping_shl(fraction));
-    let half = per_unit / 2;
-    let rounded = if scaled < 0 { scaled.saturating_sub(half) } else { scaled.saturating_add(half) };
-    saturate_i32(quotient(rounded, per_unit))
+    let (magnitude, per_unit) = (steps.unsigned_abs(), per_unit.unsigned_abs());
+    let word = match (u16::try_from(magnitude), u16::try_from(per_unit)) {
+        (Ok(steps), Ok(per_unit)) => short_word(steps.into(), per_unit.into(), fraction),
+        _ => divide(magnitude.wrapping_shl(fraction).wrapping_add(per_unit / 2), per_unit),
+    };
+    let word = word.cast_signed(); // below 2⁶³
+    saturate_i32(if steps < 0 { word.wrapping_neg() } else { word })
+}
+
+/// The same of fewer than 2¹⁶ steps, of which a unit has fewer than 2¹⁶: `2^fraction = whole·per_unit + rest`, and so 32 bits are enough.
+#[cfg_attr(not(target_pointer_width = "64"), inline(never))]
+fn short_word(steps: u32, per_unit: u32, fraction: u32) -> u64 {
+    let (one, per_unit) = (1u32.wrapping_shl(fraction), per_unit.max(1));
+    let whole = one.checked_div(per_unit).unwrap_or(0);
+    let rest = one.wrapping_sub(whole.wrapping_mul(per_unit));
+    // Below 2³², because the rest is below 2¹⁶ - 1.
+    let part = steps.wrapping_mul(rest).wrapping_add(per_unit / 2).checked_div(per_unit).unwrap_or(0);
+    u64::from(steps).wrapping_mul(whole.into()).wrapping_add(part.into())
 }
 
 /// How many `1/per_unit` a word with so many fraction bits is. Units have at most 10⁷ steps, so that 64 bits hold it.
@@ -117,6 +131,20 @@ mod tests {
             let bits = raw as i32 * 8191;
             assert_eq!(Speed::from_bits(bits).to_steps(500), Speed::from_bits(bits).to_multiple_of(500));
             assert_eq!(Gain::from_bits(bits).to_steps(1000), Gain::from_bits(bits).to_multiple_of(1000));
+        }
+    }
+
+    #[test]
+    fn short_words_are_those_that_64_bits_give() {
+        for per_unit in [1i64, 2, 3, 7, 20, 50, 500, 1000, 4096, 65_535, 65_536] {
+            for fraction in [20, 23, 25, 29, 30] {
+                for steps in (0..=65_536i64).step_by(257).chain([1, 2, 65_534, 65_535, 65_536]) {
+                    let exact = ((i128::from(steps) << fraction) + i128::from(per_unit / 2)) / i128::from(per_unit);
+                    let exact = exact.min(i32::MAX.into()) as i32;
+                    assert_eq!(word(steps, per_unit, fraction), exact, "{steps} {per_unit} {fraction}");
+                    assert_eq!(word(-steps, per_unit, fraction).unsigned_abs().min(i32::MAX as u32), exact as u32);
+                }
+            }
         }
     }
 

@@ -84,17 +84,28 @@ impl Parts {
         route: Assembly::NEW,
     };
 
-    fn add(&mut self, about: About, piece: &Piece) -> Result<Option<Said>, Cause> {
-        Ok(match about {
-            About::MotionA => self.motion.add(&piece.of(0))?.map(|parts| Said::Motion(Motion::decode(&parts))),
-            About::MotionB => self.motion.add(&piece.of(1))?.map(|parts| Said::Motion(Motion::decode(&parts))),
-            About::Horizon => self.horizon.add(piece)?.map(|parts| Said::Horizon(Knots::decode(&parts))),
-            About::DrivingParameters => {
-                self.parameters.add(piece)?.map(|parts| Said::DrivingParameters(DrivingParameters::decode(&parts)))
-            }
-            About::Geo => self.geo.add(piece)?.map(|parts| Said::Geo(GeoPosition::decode(&parts))),
-            About::Route => self.route.add(piece)?.map(|parts| Said::Route(Route::decode(&parts))),
-        })
+    /// Takes one part. Returns whether the message is whole.
+    fn add(&mut self, about: About, piece: &Piece) -> Result<bool, Cause> {
+        match about {
+            About::MotionA => self.motion.add(&piece.of(0)),
+            About::MotionB => self.motion.add(&piece.of(1)),
+            About::Horizon => self.horizon.add(piece),
+            About::DrivingParameters => self.parameters.add(piece),
+            About::Geo => self.geo.add(piece),
+            About::Route => self.route.add(piece),
+        }
+    }
+
+    /// The message that is whole.
+    #[inline(always)] // made where it is wanted
+    fn said(&self, about: About) -> Said {
+        match about {
+            About::MotionA | About::MotionB => Said::Motion(Motion::decode(self.motion.parts())),
+            About::Horizon => Said::Horizon(Knots::decode(self.horizon.parts())),
+            About::DrivingParameters => Said::DrivingParameters(DrivingParameters::decode(self.parameters.parts())),
+            About::Geo => Said::Geo(GeoPosition::decode(self.geo.parts())),
+            About::Route => Said::Route(Route::decode(self.route.parts())),
+        }
     }
 }
 
@@ -188,9 +199,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
         self.check_of(place, entry, slot)?.receive(&LIMITS, data_id, data)?;
         let payload = Payload::from_bytes(*data);
         entry.check(payload)?;
-        Ok(self
-            .assemble::<UNIT>(at, entry, slot, e2e::counter_of(data), payload)?
-            .map_or(Received::Pending, Received::Whole))
+        self.assemble::<UNIT>(at, entry, slot, e2e::counter_of(data), payload)
     }
 
     fn check_of(&mut self, place: usize, entry: &Entry, slot: Slot) -> Result<&mut Check, Cause> {
@@ -204,6 +213,7 @@ impl<const PEERS: usize> Receiver<PEERS> {
     }
 
     /// What only the other side sends does not get here.
+    #[inline(always)] // a message is made where it is wanted
     fn assemble<const UNIT: bool>(
         &mut self,
         at: Instant,
@@ -211,30 +221,40 @@ impl<const PEERS: usize> Receiver<PEERS> {
         slot: Slot,
         counter: u8,
         payload: Payload,
-    ) -> Result<Option<Message>, Cause> {
+    ) -> Result<Received, Cause> {
         let (part, tag) = (entry.part_of(payload), super::field::TAG.byte(payload));
         let piece = Piece { at, within: entry.within, part, tag, counter, payload };
-        Ok(match entry.content {
+        let message = match entry.content {
             Content::EstimateA | Content::EstimateB if UNIT => None,
             Content::Said(Speaker::Own, _) if UNIT => None,
-            Content::Pass(speaker) => self.pass.add(&piece)?.and_then(|parts| pass::<UNIT>(speaker, &parts)),
+            Content::Said(speaker, about) => {
+                let parts = match speaker {
+                    Speaker::Ego | Speaker::Own => &mut self.own,
+                    Speaker::Peer => &mut self.peers.get_mut(usize::from(slot.0)).ok_or(Cause::UnknownSlot)?.parts,
+                };
+                if !parts.add(about, &piece)? {
+                    return Ok(Received::Pending);
+                }
+                return Ok(Received::Whole(match speaker {
+                    Speaker::Ego => Message::Ego(parts.said(about)),
+                    Speaker::Own => Message::Own(parts.said(about)),
+                    Speaker::Peer => Message::Peer(slot, parts.said(about)),
+                }));
+            }
+            Content::Pass(_) if !self.pass.add(&piece)? => None,
+            Content::Pass(speaker) => pass::<UNIT>(speaker, self.pass.parts()),
             Content::EstimateA => self.add_estimate(&piece.of(0))?,
             Content::EstimateB => self.add_estimate(&piece.of(1))?,
-            Content::Said(Speaker::Ego, about) => self.own.add(about, &piece)?.map(Message::Ego),
-            Content::Said(Speaker::Own, about) => self.own.add(about, &piece)?.map(Message::Own),
-            Content::Said(Speaker::Peer, about) => {
-                let peer = self.peers.get_mut(usize::from(slot.0)).ok_or(Cause::UnknownSlot)?;
-                peer.parts.add(about, &piece)?.map(|said| Message::Peer(slot, said))
-            }
             single => decode_single::<UNIT>(single, payload)?,
-        })
+        };
+        Ok(message.map_or(Received::Pending, Received::Whole))
     }
 
     fn add_estimate(&mut self, piece: &Piece) -> Result<Option<Message>, Cause> {
-        match self.estimate.add(piece)? {
-            Some(parts) => Ok(Some(Message::Estimate(TargetEstimate::decode(&parts)?))),
-            None => Ok(None),
+        if !self.estimate.add(piece)? {
+            return Ok(None);
         }
+        Ok(Some(Message::Estimate(TargetEstimate::decode(self.estimate.parts())?)))
     }
 }
 

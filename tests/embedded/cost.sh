@@ -59,7 +59,7 @@ limits() {
         function at(name, steps) { return count[name ",8," (steps ? steps : 400)] }
         function most(name, i, kinds, count) {
             count = 0
-            for (i = split("both sensor all", kinds, " "); i > 0; i--) { if (at(kinds[i] "-" name, 359) > count) count = at(kinds[i] "-" name, 359) }
+            for (i = split("both sensor terse all", kinds, " "); i > 0; i--) { if (at(kinds[i] "-" name, 359) > count) count = at(kinds[i] "-" name, 359) }
             return count
         }
         function row(what, limit, figure) {
@@ -111,17 +111,18 @@ tables() {
             }
         }' "$1"
     echo
-    echo '| a drive, 8 peers, 359 steps of 30 ms | bare | envelope | map | both | envelope, range sensor | all three |'
-    echo '|---|--:|--:|--:|--:|--:|--:|'
+    echo '| a drive, 8 peers, 359 steps of 30 ms | bare | envelope | map | both | envelope, range sensor | the same, a terse target | all three |'
+    echo '|---|--:|--:|--:|--:|--:|--:|--:|'
     awk -F, '
         { count[$1 "," $2 "," $3] = $4 }
         function row(what, name, figure, i) {
-            for (i = 1; i <= 6; i++) { figure = figure " | " count[kinds[i] "-" name ",8,359"] }
+            for (i = 1; i <= 7; i++) { figure = figure " | " count[kinds[i] "-" name ",8,359"] }
             print "| " what figure " |"
         }
         END {
-            split("bare envelope map both sensor all", kinds, " ")
+            split("bare envelope map both sensor terse all", kinds, " ")
             row("quiet tick", "quiet")
+            row("the tick of the review, no news", "review")
             row("send tick, no news", "send")
             row("send tick, all peers new", "all")
             row("the same, with their horizons", "horizons")

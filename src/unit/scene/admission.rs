@@ -52,6 +52,11 @@ impl Placed {
     }
 }
 
+impl Seat {
+    /// Of the station that spoke here before.
+    const KEPT: Self = Self { is_taken_over: false, is_renamed: false, is_of_another: false, left: None };
+}
+
 /// What a motion will change, before it changes anything.
 struct Plan {
     seat: Seat,
@@ -61,6 +66,13 @@ struct Plan {
 }
 
 impl Plan {
+    /// Nothing. As a constant it would be copied as a whole.
+    #[inline(always)]
+    fn none() -> Self {
+        let placed = Placed { axis: None, moved: None, motion: None, is_back: false };
+        Self { seat: Seat::KEPT, placed, sample: None }
+    }
+
     fn verdict(&self) -> Result<(), Cause> {
         self.sample.as_ref().map_or(Ok(()), |(_, judgement)| judgement.verdict.map(|_| ()))
     }
@@ -100,12 +112,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     ) -> Result<(), Cause> {
         let index = usize::from(slot.0);
         let holder = self.peers.get(index).ok_or(Cause::UnknownSlot)?.station();
-        let plan = self.plan(at, index, holder, motion);
-        let verdict = plan.as_ref().map_or_else(|refusal| Err(*refusal), Plan::verdict);
+        let mut plan = Plan::none();
+        let is_planned = self.plan(at, index, holder, motion, &mut plan);
+        let verdict = is_planned.and_then(|()| plan.verdict());
         let is_own = holder == Some(motion.station);
-        match plan.as_ref() {
-            Ok(plan) if verdict.is_ok() => self.carry_out(index, plan),
-            plan => self.note_refused(index, is_own, plan.ok()),
+        if verdict.is_ok() {
+            self.carry_out(index, &plan);
+        } else {
+            self.note_refused(index, is_own, is_planned.is_ok().then_some(&plan));
         }
         // A station whose clock is ahead is refused before it holds a slot. So its clock is noted for a free slot too.
         if (is_own || holder.is_none()) && matches!(verdict, Ok(()) | Err(Cause::Future)) {
@@ -114,28 +128,37 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         verdict
     }
 
-    fn plan(&self, at: Instant, index: usize, holder: Option<StationHash>, motion: &Motion) -> Result<Plan, Cause> {
+    /// The plan is written where it is wanted, because it is large.
+    fn plan(
+        &self,
+        at: Instant,
+        index: usize,
+        holder: Option<StationHash>,
+        motion: &Motion,
+        plan: &mut Plan,
+    ) -> Result<(), Cause> {
         let link = &self.config.link;
-        let mut seat = self.seat(at, index, holder, motion.station)?;
+        let Plan { seat, placed, sample: judged } = plan;
+        *seat = self.seat(at, index, holder, motion.station)?;
         let stamped = self.instant_of(motion.stamp, at).unwrap_or_else(|| at.minus(link.assumed_delay));
         let own = self.peers.get(index).filter(|_| holder.is_none_or(|holder| holder == motion.station));
         let own = own.filter(|_| !seat.is_of_another);
         let off = own.filter(|_| self.is_synchronised(at)).map_or(Off::No, Track::clock_off);
         let stamped = off.corrected(stamped);
         timely(stamped, at, link.stale, link.future)?;
-        let placed = self.place_motion(index, motion);
+        self.place_motion(index, motion, placed);
         let track = self.peers.get(index).filter(|_| !seat.is_taken_over && !seat.is_of_another);
-        let sample = placed.motion.map(|motion| {
+        if let Some(motion) = &placed.motion {
             let moved = placed.moved.unwrap_or(Distance::ZERO);
             let newest = || Some(track?.newest()?.position.ahead(moved));
             let ego = self.ego.as_ref().map(|ego| ego.position);
             let is_timed = self.is_synchronised(at);
-            let sample = Sample { is_timed, ..Sample::of(&motion, stamped, at, ego.or_else(newest)) };
-            (sample, self.judge(track, &sample, &placed))
-        });
+            let sample = Sample { is_timed, ..Sample::of(motion, stamped, at, ego.or_else(newest)) };
+            *judged = Some((sample, self.judge(track, &sample, placed)));
+        }
         let is_new = holder != Some(motion.station);
         // A motion without a place changes nothing of what is held, and the place that would tell two vehicles apart comes after it.
-        if let Some((sample, _)) = sample.as_ref().filter(|_| is_new) {
+        if let Some((sample, _)) = judged.as_ref().filter(|_| is_new) {
             let approach = placed.axis.as_ref().and_then(Axis::approach);
             let is_namesake = |other: &usize| self.is_namesake(*other, sample, approach);
             if self.is_in_another_slot(at, index, motion.station, is_namesake) {
@@ -147,11 +170,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             seat.left = None;
         }
         if seat.is_renamed
-            && !sample.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
+            && !judged.as_ref().is_some_and(|(sample, judgement)| self.continues(track, sample, judgement))
         {
             return Err(Cause::StationConflict);
         }
-        Ok(Plan { seat, placed, sample })
+        Ok(())
     }
 
     /// Whether a motion with a new station hash is of the vehicle that has the slot. It is if the motion agrees with what is certain of
@@ -181,7 +204,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         station: StationHash,
     ) -> Result<Seat, Cause> {
         if holder == Some(station) {
-            return Ok(Seat { is_taken_over: false, is_renamed: false, is_of_another: false, left: None });
+            return Ok(Seat::KEPT);
         }
         let is_renamed = holder.is_some() && self.is_heard(at, index);
         // Where there are intersections a new name has to tell its way first.
@@ -229,15 +252,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// A motion on the ego's axis.
-    fn place_motion(&self, index: usize, motion: &Motion) -> Placed {
-        let axis = self.coordination.itinerary().and(self.coordination.axis(index));
-        let Some(mut axis) = axis.copied() else {
-            return Placed { axis: None, moved: None, motion: Some(*motion), is_back: false };
+    fn place_motion(&self, index: usize, motion: &Motion, placed: &mut Placed) {
+        placed.axis = self.coordination.itinerary().and(self.coordination.axis(index)).copied();
+        let Some(axis) = &mut placed.axis else {
+            placed.motion = Some(*motion);
+            return;
         };
         let was_placed = axis.approach().is_some();
-        let (motion, moved) = axis.translate(motion);
-        let is_back = !was_placed && axis.approach().is_some() && self.is_placed_before(index);
-        Placed { axis: Some(axis), moved, motion, is_back }
+        (placed.motion, placed.moved) = axis.translate(motion);
+        placed.is_back = !was_placed && axis.approach().is_some() && self.is_placed_before(index);
     }
 
     /// Judges a sample by what is held of its station, if anything is.
@@ -246,7 +269,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// with what is certain, it still tells where the station is. Otherwise a vehicle that is long gone would be taken to stand where it
     /// was heard last.
     fn judge(&self, track: Option<&Track<SAMPLES>>, sample: &Sample, placed: &Placed) -> Judgement {
-        let held = track.map_or(Certainty::NONE, |track| *track.certainty());
         let judgement = self.weigh(track, sample, placed);
         let ego = self.ego.as_ref().map(|ego| ego.position);
         if ego.is_none_or(|ego| sample.position.ahead_of(ego).magnitude() <= FARTHEST_PEER) {
@@ -255,7 +277,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let is_known = !placed.is_elsewhere() && track.is_some_and(|track| track.newest().is_some());
         let certainty = match judgement.verdict {
             Ok(Belief::Agrees) if is_known => judgement.certainty,
-            _ => held,
+            _ => track.map_or(Certainty::NONE, |track| *track.certainty()),
         };
         Judgement { certainty, verdict: Err(Cause::TooFar) }
     }
@@ -288,19 +310,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if let Some(left) = plan.seat.left {
             self.peers.follow_on(left, index);
         }
-        if let Some(axis) = plan.placed.axis {
+        if let Some(axis) = &plan.placed.axis {
             self.place_on(index, axis, plan.placed.moved, plan.placed.is_back);
         }
         let Some(track) = self.peers.get_index_mut(index) else { return };
         // A sample is admitted only when the station's place is known. The place is taken in only while the slot is not disputed. So this
         // comes first.
         track.settle();
-        let Some((sample, Judgement { mut certainty, verdict: Ok(belief) })) = plan.sample else { return };
-        if let Some(moved) = plan.placed.moved.filter(|_| !plan.placed.is_elsewhere()) {
-            certainty.shift(moved);
-        }
+        let Some((sample, Judgement { certainty, verdict: Ok(belief) })) = &plan.sample else { return };
         let is_first = track.station() != Some(sample.station);
-        let admission = track.admit(sample, certainty, belief);
+        let admission = track.admit(sample, certainty, *belief);
+        if let Some(moved) = plan.placed.moved.filter(|_| !plan.placed.is_elsewhere()) {
+            track.shift_certainty(moved);
+        }
         if is_first {
             self.estimator.note_change(&self.peers);
         }
@@ -319,7 +341,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let Some(track) = self.peers.get_index_mut(index) else { return };
         if is_own {
             if let Some((_, judgement)) = plan.and_then(|plan| plan.sample.as_ref()) {
-                track.note(judgement.certainty);
+                track.note(&judgement.certainty);
             }
             return;
         }

@@ -1,9 +1,11 @@
 //! The fused track of the vehicle that the range sensor sees. A view that is of a station, or a message of that station, enters; a
 //! sample of the station by all that was seen and heard leaves.
 
+use super::Scene;
 use super::sight::{Sight, Whose};
 use crate::fusion::{Fusion, Measured, Motion};
 use crate::held::Held;
+use crate::model::bound::Uncertainty;
 use crate::peers::Sample;
 use crate::time::Instant;
 use crate::units::{Distance, Position};
@@ -13,29 +15,36 @@ use crate::units::{Distance, Position};
 pub(in crate::unit) struct Fused {
     track: Fusion,
     whose: Held<Whose>,
+    /// Whether the horizon of the station is to start from the track at the next update.
+    is_wanted: bool,
 }
 
 impl Fused {
     /// Nobody is tracked.
-    pub const NONE: Self = Self { track: Fusion::new(), whose: Held::Nothing };
+    pub const NONE: Self = Self { track: Fusion::new(), whose: Held::Nothing, is_wanted: false };
 
     /// Takes in a view of a station, with its front bumper there, and the station's newest message.
-    pub fn see(&mut self, whose: Whose, sight: &Sight, front: Position, newest: &Sample) -> Sample {
+    pub fn see(&mut self, whose: Whose, sight: &Sight, errors: &Uncertainty, front: Position, newest: &Sample) {
         if self.whose != Held::Value(whose) {
             self.whose.set(whose);
             self.track.clear();
+            self.is_wanted = false;
         }
-        let errors = &sight.uncertainty;
-        let view = Measured::within(sight.at, front, sight.speed, errors.position, errors.speed);
-        sample(self.track.see(&view, newest), newest)
+        self.track.see(&Measured::within(sight.at, front, sight.speed, errors.position, errors.speed), newest);
     }
 
-    /// Takes in the newest message of a station, if that is the one that is tracked.
-    pub fn hear(&mut self, whose: Whose, now: Instant, newest: &Sample) -> Option<Sample> {
-        if self.whose != Held::Value(whose) {
-            return None;
+    /// Takes in the newest message of a station. Returns whether that station is tracked.
+    pub fn hear(&mut self, whose: Whose, now: Instant, newest: &Sample) -> bool {
+        let is_tracked = self.whose == Held::Value(whose);
+        if is_tracked {
+            self.track.hear(now, newest);
         }
-        self.track.hear(now, newest).map(|motion| sample(motion, newest))
+        is_tracked
+    }
+
+    /// The horizon of the station is to start from the track.
+    pub fn want(&mut self) {
+        self.is_wanted = true;
     }
 
     /// Moves the track of a slot, because the axis of its station moved.
@@ -44,10 +53,20 @@ impl Fused {
             self.track.shift(way);
         }
     }
+
+    /// Takes in what came since the last tick. Returns whose motion that is, if its horizon is to start from it.
+    fn update(&mut self) -> Option<(Whose, Motion)> {
+        let motion = self.track.update()?;
+        core::mem::take(&mut self.is_wanted).then_some((self.whose.get()?, motion))
+    }
 }
 
-/// The station's sample at the instant of a motion.
-fn sample(motion: Motion, newest: &Sample) -> Sample {
-    let Motion { at, position, speed, acceleration } = motion;
-    Sample { at, position, speed, acceleration, demand: acceleration, ..*newest }
+impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
+    /// The slot of the vehicle that is seen, and its sample by all that was seen and heard, if its horizon is to start from that.
+    pub fn fuse(&mut self) -> Option<(usize, Sample)> {
+        let ((slot, station), Motion { at, position, speed, acceleration }) = self.fused.update()?;
+        let index = usize::from(slot.0);
+        let newest = self.peers.get(index)?.newest().filter(|newest| newest.station == station)?;
+        Some((index, Sample { at, position, speed, acceleration, demand: acceleration, ..*newest }))
+    }
 }

@@ -28,10 +28,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Sets the axis of a peer, and moves everything that is held of the peer by how far the axis moved.
-    pub(super) fn place_on(&mut self, index: usize, axis: Axis, moved: Option<Distance>, is_back: bool) {
+    pub(super) fn place_on(&mut self, index: usize, axis: &Axis, moved: Option<Distance>, is_back: bool) {
         let before = self.coordination.approach(index).copied();
         if let Some(held) = self.coordination.axis_mut(index) {
-            *held = axis;
+            *held = *axis;
         }
         if is_back {
             self.forget_place(index);
@@ -144,7 +144,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.forget_place(index);
         } else {
             track.shift(moved);
-            self.estimator.shift(index, moved);
+            self.estimator.move_horizon(index, moved);
             self.fused.shift(index, moved);
         }
     }

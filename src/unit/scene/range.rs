@@ -6,6 +6,8 @@
 //! driver named the target is not of the target. While view and messages contradict one another, neither changes the other, and the unit
 //! drives by what it sees.
 //!
+//! A frame with a view is only kept; the next tick looks at the view ([`Scene::look`]), so that a frame costs little.
+//!
 //! A view errs more than a message, and is newer. So both are fused to one track (`fusion`), from which the horizon of a vehicle starts
 //! that does not say how it will drive: its braking is seen before it is heard, and also in a silence. The horizon of a vehicle that said how
 //! it will drive stays as it said, as long as the estimated speed may be right. Then a view moves that horizon by a part of what is
@@ -37,8 +39,20 @@ const MOST_SHARE: i64 = 10;
 /// A correction by less than this fraction, one in so many, is not made.
 const LEAST_SHARE: i64 = 16;
 
+/// A view while it is looked at.
+#[derive(Clone, Copy)]
+struct View {
+    sight: Sight,
+    uncertainty: Uncertainty,
+    /// How much of the uncertainty of the place is beyond the accuracies that were told.
+    excess: Distance,
+}
+
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
-    /// Takes in a view of the vehicle ahead, received at `received`.
+    /// Keeps a view of the vehicle ahead, received at `received`, for the next tick.
+    ///
+    /// # Errors
+    /// [`Cause::Torn`] without an own motion, and [`Cause::Stale`] if that is too old or too new for the view.
     pub(super) fn take_range(
         &mut self,
         received: Instant,
@@ -46,49 +60,69 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         health: &mut Health,
     ) -> Result<(), Cause> {
         let ego = self.ego.as_ref().ok_or(Cause::Torn)?;
-        let at = received.minus(seen.age);
-        let since = at.since(ego.at);
+        let since = received.minus(seen.age).since(ego.at);
         let earliest = Duration::ZERO.minus(RangeSample::OLDEST).minus(self.config.link.ego_timeout);
         if since > self.config.link.ego_timeout || since < earliest {
             return Err(Cause::Stale);
         }
+        // A sensor with a shorter cycle than the unit's period costs more.
+        if let Some((received, seen)) = self.ranging.wait(received, seen) {
+            self.look_at(received, &seen, health);
+        }
+        Ok(())
+    }
+
+    /// Takes in the view that came since the last tick.
+    pub fn look(&mut self, health: &mut Health) {
+        if let Some((received, seen)) = self.ranging.take_waiting() {
+            self.look_at(received, &seen, health);
+        }
+    }
+
+    #[inline(never)] // keeps its stack apart from that of the doors
+    fn look_at(&mut self, received: Instant, seen: &RangeSample, health: &mut Health) {
+        let Some(ego) = self.ego.as_ref() else { return };
+        let at = received.minus(seen.age);
+        let since = at.since(ego.at);
         // The ego's own motion, moved to the instant of the view.
         let gained = ego.acceleration.over(since.fine_seconds());
         let mean = ego.speed.plus(Speed::from_bits(gained.to_bits() / 2));
         let front = ego.position.ahead(mean.over(since.seconds()));
         let rear = front.ahead(seen.distance);
         let speed = ego.speed.plus(gained).plus(seen.speed_difference).max(Speed::ZERO);
-        let uncertainty = self.uncertainty_of_sight(ego, since, &seen);
+        let uncertainty = self.uncertainty_of_sight(ego, since, seen);
         let excess = excess(Some(seen.distance_accuracy)).plus(excess(ego.position_accuracy));
-        let mut sight = Sight { at, rear, speed, uncertainty, excess, whose: None };
+        let mut view = View { sight: Sight::new(at, rear, speed, &uncertainty), uncertainty, excess };
         if seen.nobody {
-            self.take_nobody(received, &sight, health);
-            return Ok(());
+            return self.take_nobody(received, &view.sight, health);
         }
         self.ranging.note_seen(at);
-        let (visible, leading) = (self.visible(), self.coordination.choice().leading);
-        for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
-            self.raise(index, &sight);
-        }
+        let visible = self.visible();
+        self.raise_others(visible, &view.sight);
         if self.is_of_one_that_crosses(at, front, rear) {
             if !self.is_crossing_heard(at) {
-                self.ranging.see_crossing(sight);
+                self.ranging.see_crossing(view.sight);
             }
-            return Ok(());
+            return;
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {
-            sight.whose = self.compare(received, index, &sight, health);
+            view.sight.whose = self.compare(received, index, &view, health);
         }
-        self.ranging.see(sight);
-        Ok(())
+        self.ranging.see(view.sight);
+    }
+
+    /// Raises the near ends of the vehicles that are ahead for certain, without this one.
+    fn raise_others(&mut self, visible: Option<usize>, sight: &Sight) {
+        let leading = self.coordination.choice().leading;
+        for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
+            self.raise(index, sight);
+        }
     }
 
     /// Takes in that no vehicle is nearer than a place.
     fn take_nobody(&mut self, now: Instant, free: &Sight, health: &mut Health) {
-        let (visible, leading) = (self.visible(), self.coordination.choice().leading);
-        for index in (0..PEERS).filter(|index| Some(*index) != visible && leading.contains(*index)) {
-            self.raise(index, free);
-        }
+        let visible = self.visible();
+        self.raise_others(visible, free);
         // What was free before the driver named a vehicle may have been so because that one was not on the path yet.
         let named = visible.filter(|_| self.ranging.is_of_named(free.at.minus(ON_BUS)));
         if let Some((index, whose)) = named.and_then(|index| Some((index, self.whose(index)?))) {
@@ -107,8 +141,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let Some(track) = self.peers.get_index_mut(index) else { return true };
         // However long the peer is, its front is not behind its rear.
         let length = track.published_length().unwrap_or(Distance::ZERO);
-        let seen = sight.bound();
-        track.narrow(&Bound::not_behind(seen.at(), seen.lowest_position().ahead(length)))
+        let place = sight.bound.lowest_position().ahead(length);
+        // A near end never moves back.
+        track.certainty().bound().is_some_and(|bound| bound.lowest_position() >= place)
+            || track.narrow(&Bound::not_behind(sight.bound.at(), place))
     }
 
     /// What is uncertain of a view: the accuracies of the sensor and of the ego, and what the ego may have done between its own sample
@@ -140,19 +176,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Returns the station of the peer if the view is certainly of that peer; then the view narrows what is certain of the peer. It is
     /// certain if the view agrees with what is certain of the peer, and if this leaves no room for another vehicle. A view that may be of
     /// the peer or of another vehicle only corrects the estimate.
-    fn compare(&mut self, now: Instant, index: usize, sight: &Sight, health: &mut Health) -> Option<Whose> {
+    fn compare(&mut self, now: Instant, index: usize, view: &View, health: &mut Health) -> Option<Whose> {
+        let sight = &view.sight;
         let is_disputed = self.is_contradicted(index, now);
         let whose = self.whose(index)?;
         let track = self.peers.get_index_mut(index)?;
         let heard = track.newest().map(|newest| newest.received);
         let Some(length) = track.published_length() else {
             self.raise(index, sight);
-            self.correct_without_length(index, sight);
+            self.correct_without_length(index, view);
             return None;
         };
         let front = sight.rear.ahead(length);
         let reach = track.reach();
-        let seen = track.around(sight.at, front, sight.speed, &sight.uncertainty);
+        let seen = track.around(sight.at, front, sight.speed, &view.uncertainty);
         let before = track.certainty().bound().map(|bound| bound.after(sight.at, &reach));
         let verdict = if track.certainty().bound().is_none_or(|bound| bound.and(&seen, &reach).is_some()) {
             Verdict::Agrees
@@ -175,7 +212,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         // Another vehicle would have to be between: its rear not before what is seen, its front not past the peer's rear. What the peer's
         // own accuracy leaves open is room: one vehicle told its place that wrongly is enough.
         let newest = track.newest().copied();
-        let room = bound.highest_position().ahead_of(seen.lowest_position()).minus(sight.excess);
+        let room = bound.highest_position().ahead_of(seen.lowest_position()).minus(view.excess);
         let is_certain = room < SHORTEST;
         let track = self.peers.get_index_mut(index)?;
         if is_certain {
@@ -184,20 +221,21 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             self.raise(index, sight);
         }
         if let Some(newest) = newest {
-            self.correct(index, sight, front, &bound, &newest);
+            self.correct(index, view, front, &bound, &newest);
         }
         is_certain.then_some(whose)
     }
 
     /// Corrects the estimate of a peer whose length is not known by a view that may be of that peer. It says little of where the front
     /// is, and as much as any of the speed.
-    fn correct_without_length(&mut self, index: usize, sight: &Sight) {
-        let mut wide = *sight;
+    fn correct_without_length(&mut self, index: usize, view: &View) {
+        let mut wide = *view;
         wide.uncertainty.position = wide.uncertainty.position.plus(LENGTHS);
+        let View { sight, uncertainty, .. } = &wide;
         let front = sight.rear.ahead(DEFAULT_LENGTH);
         let Some(track) = self.peers.get(index) else { return };
         let reach = track.reach();
-        let seen = track.around(sight.at, front, sight.speed, &wide.uncertainty);
+        let seen = track.around(sight.at, front, sight.speed, uncertainty);
         let held = track.certainty().bound().filter(|bound| bound.and(&seen, &reach).is_some());
         let before = held.map(|bound| bound.after(sight.at, &reach));
         if let Some((bound, newest)) = before.zip(track.newest().copied()) {
@@ -228,21 +266,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Corrects the estimate by the view. The horizon of a vehicle that does not say how it will drive starts from the fused track. Where
     /// the vehicle did say so, and the estimated speed may be right, its horizon is moved; where that speed is certainly wrong, it
     /// starts from the fused track too.
-    fn correct(&mut self, index: usize, sight: &Sight, front: Position, bound: &Bound, newest: &Sample) {
+    fn correct(&mut self, index: usize, view: &View, front: Position, bound: &Bound, newest: &Sample) {
         let Some(whose) = self.whose(index) else { return };
-        let fused = self.fused.see(whose, sight, front, newest);
+        let View { sight, uncertainty, .. } = view;
+        self.fused.see(whose, sight, uncertainty, front, newest);
         let Some(estimate) = self.estimator.read(index, sight.at) else { return };
         let faster = sight.speed.minus(estimate.speed);
-        if !self.estimator.is_foreseen(index, &self.peers) || faster.magnitude() > sight.uncertainty.speed {
-            self.estimator.note_track(index, fused);
+        if !self.estimator.is_foreseen(index, &self.peers) || faster.magnitude() > uncertainty.speed {
+            self.fused.want();
             return;
         }
         let half = |high: Position, low: Position| Distance::from_bits(high.ahead_of(low).to_bits() / 2);
         let width = half(bound.highest_position(), bound.lowest_position());
-        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(sight.uncertainty.position.to_bits()));
+        let (share, whole) = weight(i64::from(width.to_bits()), i64::from(uncertainty.position.to_bits()));
         let share = share.min(quotient(whole, MOST_SHARE));
         if share.saturating_mul(LEAST_SHARE) >= whole {
-            let off = mixed(beyond(front.ahead_of(estimate.position), usual(sight)).to_bits(), share, whole);
+            let off = mixed(beyond(front.ahead_of(estimate.position), usual(uncertainty)).to_bits(), share, whole);
             self.estimator.move_horizon(index, Distance::from_bits(off));
         }
     }
@@ -252,16 +291,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let (Some(whose), Some(message)) = (self.whose(index), self.peers.get(index).and_then(Track::newest)) else {
             return;
         };
-        let fused = self.fused.hear(whose, now, message);
-        if let Some(fused) = fused.filter(|_| !self.estimator.is_foreseen(index, &self.peers)) {
-            self.estimator.note_track(index, fused);
+        if self.fused.hear(whose, now, message) && !self.estimator.is_foreseen(index, &self.peers) {
+            self.fused.want();
         }
     }
 }
 
 /// By how much the place in a view errs usually: a third of its largest error.
-fn usual(sight: &Sight) -> Distance {
-    Distance::from_bits(sight.uncertainty.position.to_bits() / 3)
+fn usual(uncertainty: &Uncertainty) -> Distance {
+    Distance::from_bits(uncertainty.position.to_bits() / 3)
 }
 
 /// What of a distance is beyond this magnitude.

@@ -17,7 +17,8 @@ use crate::held::Held;
 use crate::model::Reading;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
-use crate::units::{Distance, Position, Speed};
+use crate::units::{Position, Speed};
+use crate::wire::range_sensor::RangeSample;
 use crate::wire::{Slot, StationHash};
 
 /// A view older than this is not driven by. It also does not show any more that no vehicle is nearer.
@@ -58,28 +59,28 @@ pub(in crate::unit) struct Sight {
     /// Rear bumper of the vehicle ahead.
     pub rear: Position,
     pub speed: Speed,
-    pub uncertainty: Uncertainty,
-    /// How much of the uncertainty of the place is beyond the accuracies that were told.
-    pub excess: Distance,
+    /// What is certain of the rear that was seen, by this view alone.
+    pub bound: Bound,
     /// Whose it is, if it went into what is certain of that station.
     pub whose: Option<Whose>,
 }
 
 impl Sight {
+    /// A view of nobody's place in particular.
+    pub fn new(at: Instant, rear: Position, speed: Speed, uncertainty: &Uncertainty) -> Self {
+        let bound = Bound::around(at, rear, speed, uncertainty, &AccelerationRange::WORST);
+        Self { at, rear, speed, bound, whose: None }
+    }
+
     /// Whether the vehicle may have stood or crawled.
     fn stands(&self) -> bool {
-        self.bound().lowest_speed() <= CRAWL
+        self.bound.lowest_speed() <= CRAWL
     }
 
     /// Whether the vehicle is still remembered.
     fn is_remembered(&self, now: Instant) -> bool {
         let age = now.since(self.at);
         age <= MOVING || age <= STANDING && self.stands()
-    }
-
-    /// What is certain of the rear that was seen, by this view alone.
-    pub fn bound(&self) -> Bound {
-        Bound::around(self.at, self.rear, self.speed, &self.uncertainty, &AccelerationRange::WORST)
     }
 }
 
@@ -99,6 +100,8 @@ struct Contradiction {
 /// The range sensor's part of the unit.
 #[derive(Clone, Debug, Default)]
 pub(in crate::unit) struct Ranging {
+    /// The newest view with the time of its reception, until the next tick.
+    waiting: Held<(Instant, RangeSample)>,
     newest: Held<Sight>,
     /// The instant of the newest view of a vehicle, whether it is remembered or not.
     seen: Held<Instant>,
@@ -122,6 +125,7 @@ pub(in crate::unit) struct Ranging {
 impl Ranging {
     pub(in crate::unit) const fn new() -> Self {
         Self {
+            waiting: Held::Nothing,
             newest: Held::Nothing,
             seen: Held::Nothing,
             free: Held::Nothing,
@@ -133,6 +137,16 @@ impl Ranging {
             contradiction: Held::Nothing,
             named: Instant::ZERO,
         }
+    }
+
+    /// Keeps a view until the next tick. Returns the one that was kept before.
+    pub(in crate::unit) fn wait(&mut self, received: Instant, view: RangeSample) -> Option<(Instant, RangeSample)> {
+        core::mem::replace(&mut self.waiting, Held::Value((received, view))).get()
+    }
+
+    /// The view that was kept.
+    pub(in crate::unit) fn take_waiting(&mut self) -> Option<(Instant, RangeSample)> {
+        core::mem::take(&mut self.waiting).get()
     }
 
     /// Notes that the driver names another vehicle from now on. What was seen before is not of that vehicle.
@@ -159,11 +173,10 @@ impl Ranging {
 
     /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.
     pub(in crate::unit) fn see_nobody(&mut self, free: &Sight) {
-        let bound = free.bound();
-        let near = bound.lowest_position();
+        let near = free.bound.lowest_position();
         self.free.set((free.at, near));
         let is_gone = |held: &Sight| {
-            let then = held.bound().after(bound.at(), &AccelerationRange::WORST);
+            let then = held.bound.after(free.bound.at(), &AccelerationRange::WORST);
             held.at <= free.at && then.highest_position() < near
         };
         let held = self.hidden.iter_mut().chain([&mut self.newest, &mut self.crossing]);
@@ -184,16 +197,16 @@ impl Ranging {
         if newest.is_some_and(|newest| sight.at < newest.at) {
             return;
         }
-        let seen = sight.bound();
+        let seen = &sight.bound;
         // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be. One that drives may leave the path
         // close before one that stood. So a view of one that certainly drives is of one that stood only if that was seen just now, and can be
         // as fast.
         let drives = seen.lowest_speed() > CRAWL;
         let is_beyond = |held: &Sight| {
-            let then = held.bound().after(seen.at(), &AccelerationRange::WORST);
+            let then = held.bound.after(seen.at(), &AccelerationRange::WORST);
             let is_the_same = sight.at.since(held.at) <= RANGE_TIMEOUT && seen.lowest_speed() <= then.highest_speed();
             if drives && !is_the_same && held.stands() && held.is_remembered(sight.at) {
-                return seen.lowest_position() > held.bound().highest_position();
+                return seen.lowest_position() > held.bound.highest_position();
             }
             seen.highest_position() >= then.lowest_position()
         };
@@ -203,7 +216,7 @@ impl Ranging {
         if let Some(newest) = newest.filter(|newest| !is_beyond(newest)) {
             self.hide(sight.at, newest);
         }
-        let is_gone = |held: &Sight| seen.lowest_position() > held.bound().highest_position();
+        let is_gone = |held: &Sight| seen.lowest_position() > held.bound.highest_position();
         if self.crossing.as_ref().is_some_and(is_gone) {
             self.crossing.clear();
         }
@@ -219,7 +232,7 @@ impl Ranging {
     /// The near end of the vehicle that was seen to cross just now.
     pub(in crate::unit) fn crossing(&self, now: Instant) -> Option<Position> {
         let sight = self.crossing.get().filter(|sight| now.since(sight.at) <= CROSSING)?;
-        Some(sight.bound().lowest_position())
+        Some(sight.bound.lowest_position())
     }
 
     /// The vehicle ahead at now as the sensor saw it, at constant speed since the view. The position is that of its rear bumper. `None`
@@ -237,7 +250,7 @@ impl Ranging {
         whose: Option<Whose>,
     ) -> impl Iterator<Item = Bound> + use<'_> {
         let remembered = self.remembered(now);
-        remembered.filter(move |sight| whose.is_none() || sight.whose != whose).map(|sight| sight.bound())
+        remembered.filter(move |sight| whose.is_none() || sight.whose != whose).map(|sight| sight.bound)
     }
 
     /// The vehicles that were seen standing.

@@ -8,8 +8,7 @@ fn at(millis: i64) -> Instant {
 
 fn sight(millis: i64, metres: i64, mm_per_s: i32) -> Sight {
     let (rear, speed) = (Position::from_mm(metres * 1_000), Speed::from_mm_per_s(mm_per_s));
-    let uncertainty = Uncertainty::default();
-    Sight { at: at(millis), rear, speed, uncertainty, excess: Distance::ZERO, whose: None }
+    Sight::new(at(millis), rear, speed, &Uncertainty::default())
 }
 
 /// The rears, in metres, of what is remembered.

@@ -65,8 +65,10 @@ impl Traffic {
 /// The most instructions of a tick in a second.
 #[derive(Clone, Copy, Default)]
 pub struct Most {
-    /// Of the ticks without news.
+    /// Of the other ticks without news.
     pub quiet: u32,
+    /// Of the ticks after those in which the unit sends: without news too, and with the review of the order.
+    pub review: u32,
     /// Of the ticks in which the unit sends.
     pub send: u32,
     /// Of the ticks in which the last peer talks by itself.
@@ -80,6 +82,7 @@ impl Most {
     pub fn max(self, other: Self) -> Self {
         Self {
             quiet: self.quiet.max(other.quiet),
+            review: self.review.max(other.review),
             send: self.send.max(other.send),
             one: self.one.max(other.one),
             any: self.any.max(other.any),
@@ -144,7 +147,8 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             most.any = most.any.max(count);
             let place = match tick % 10 {
                 0 => &mut most.send,
-                1..=4 => &mut most.quiet,
+                1 => &mut most.review,
+                2..=4 => &mut most.quiet,
                 5 => &mut most.one,
                 _ => continue,
             };

@@ -12,6 +12,9 @@ pub mod float;
 pub mod junction;
 #[cfg(machine = "netduinoplus2")]
 pub mod kalman;
+#[cfg(machine = "netduinoplus2")]
+#[path = "../../../../src/board/memory.rs"]
+mod memory;
 pub mod output;
 pub mod road;
 pub mod semihosting;

@@ -39,6 +39,7 @@ pub struct Road {
     peers: u8,
     has_junctions: bool,
     has_sensor: bool,
+    is_terse: bool,
     sender: Sender<8>,
     tag: u8,
     sequence: u8,
@@ -50,7 +51,7 @@ impl Road {
         let sender = Sender::new(Identifiers::DEFAULT);
         #[cfg(feature = "fd")]
         let sender = sender.over(Transport::Fd);
-        Self { peers, has_junctions: false, has_sensor: false, sender, tag: 0, sequence: 0 }
+        Self { peers, has_junctions: false, has_sensor: false, is_terse: false, sender, tag: 0, sequence: 0 }
     }
 
     /// The same with intersections on it.
@@ -61,6 +62,15 @@ impl Road {
     /// The same with a range sensor on the ego.
     pub fn with_sensor(self) -> Self {
         Self { has_sensor: true, ..self }
+    }
+
+    /// The same with a last vehicle, which the ego follows, that tells nothing of how it drives.
+    pub fn with_terse_target(self) -> Self {
+        Self { is_terse: true, ..self }
+    }
+
+    fn is_silent_about_itself(&self, peer: u8) -> bool {
+        self.is_terse && peer + 1 == self.peers
     }
 
     /// Whether there are intersections on it.
@@ -165,7 +175,9 @@ impl Road {
 
     /// How a peer drives; with another time gap if `other`.
     pub fn parameters_of(&mut self, peer: u8, other: bool, hear: &mut impl FnMut(&Frame)) {
-        self.say(&Message::Peer(Slot(peer), Said::DrivingParameters(parameters(peer, other))), hear);
+        if !self.is_silent_about_itself(peer) {
+            self.say(&Message::Peer(Slot(peer), Said::DrivingParameters(parameters(peer, other))), hear);
+        }
     }
 
     /// Everything that a peer says of its motion and of what it will do: its motion sampled `age` ago, the horizon from it, and with
@@ -196,7 +208,9 @@ impl Road {
 
     /// The horizon that a peer computed from the motion that it sent last: on at its speed.
     pub fn horizon_of(&mut self, peer: u8, hear: &mut impl FnMut(&Frame)) {
-        self.say(&Message::Peer(Slot(peer), Said::Horizon(horizon(self.tag))), hear);
+        if !self.is_silent_about_itself(peer) {
+            self.say(&Message::Peer(Slot(peer), Said::Horizon(horizon(self.tag))), hear);
+        }
     }
 
     fn motion(&mut self, at: Instant, place: u8, station: StationHash) -> Motion {

@@ -69,18 +69,20 @@ fn measure<const PEERS: usize>(unit: &mut OnboardUnit<PEERS, 8, CAPACITY>, count
 /// What the configuration of the manual takes on a drive past an intersection, and without parts of it.
 #[inline(never)]
 fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
-    for (name, has_map, has_envelope, has_sensor) in [
-        ("bare", false, false, false),
-        ("envelope", false, true, false),
-        ("map", true, false, false),
-        ("both", true, true, false),
-        ("sensor", false, true, true),
-        ("all", true, true, true),
+    for (name, has_map, has_envelope, has_sensor, is_terse) in [
+        ("bare", false, false, false, false),
+        ("envelope", false, true, false, false),
+        ("map", true, false, false, false),
+        ("both", true, true, false, false),
+        ("sensor", false, true, true, false),
+        ("terse", false, true, true, true),
+        ("all", true, true, true, false),
     ] {
         let car = if has_sensor { Config::car(EGO).with_range_sensor() } else { Config::car(EGO) };
         let config = Config { envelope: car.envelope.filter(|_| has_envelope), ..car };
         let road = || {
             let road = if has_map { Road::new(8).with_junctions() } else { Road::new(8) };
+            let road = if is_terse { road.with_terse_target() } else { road };
             if has_sensor { road.with_sensor() } else { road }
         };
         let begin = |unit: &mut OnboardUnit<8, 8, CAPACITY>| {
@@ -114,6 +116,7 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
         let oldest = stale - 100;
         let rows = [
             ("quiet", usual.quiet),
+            ("review", usual.review),
             ("send", usual.send),
             ("all", all.any),
             ("horizons", horizons.any),
