@@ -21,6 +21,8 @@ struct Certain {
     far: Position,
     /// The near end of its rear bumper.
     rear: Position,
+    /// How far it has come at least on the ego's way.
+    come: Position,
 }
 
 /// A silent vehicle that could not stand nearer than this is out of the radio's reach, even if it has braked at its hardest since it was
@@ -47,7 +49,7 @@ pub(super) fn note<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
         }
     }
     for one in &lane {
-        scene.coordination.note_passed(one.index, one.near);
+        scene.coordination.note_passed(one.index, one.come);
     }
     scene.coordination.note_leading(leading, beyond);
 }
@@ -58,9 +60,13 @@ fn certain<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     now: Instant,
 ) -> Vec<Certain, PEERS> {
     let certain = |index: usize| {
-        scene.coordination.approach(index).filter(|approach| scene.coordination.is_on_lane(approach))?;
+        let approach = scene.coordination.approach(index)?;
         let (rear, bound) = scene.near_rear(index, now)?;
-        Some(Certain { index, near: bound.lowest_position(), far: bound.highest_position(), rear })
+        let near = bound.lowest_position();
+        scene.coordination.is_on_lane(approach, scene.coordination.has_left(approach, rear)).then_some(())?;
+        // Where a vehicle that turns off has come in the conflict area says nothing of a vehicle ahead of it that does not.
+        let come = scene.coordination.turns_off_at(approach).map_or(near, |begins| near.min(begins));
+        Some(Certain { index, near, far: bound.highest_position(), rear, come })
     };
     let mut lane = Vec::new();
     for one in (0..PEERS).filter_map(certain) {

@@ -3,7 +3,7 @@
 //! street to the east, which begins 400 m before. Vehicles with a unit each drive on them, and hear one another without delay, if at all.
 
 use super::*;
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement, Path, Scale, Segment};
 use holdover::wire::geo::GeoPosition;
 
 const CM: i32 = 687_194_767; // 0.01 · 2³⁶
@@ -45,38 +45,50 @@ static FIRST: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b110 },
-        Approach { leg: 1, path: &EASTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
-        Approach { leg: 2, path: &WESTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
+        Approach::straight(0, &NORTHWARD, Position::from_mm(200_000), 0b110),
+        Approach::straight(1, &EASTWARD, Position::from_mm(200_000), 0b01),
+        Approach::straight(2, &WESTWARD, Position::from_mm(200_000), 0b01),
     ],
 };
 static SECOND: Intersection = Intersection {
     id: 6,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(390_000), conflicts: 0b10 },
-        Approach { leg: 1, path: &FAR_EASTWARD, crossing: Position::from_mm(400_000), conflicts: 0b01 },
+        Approach::straight(0, &NORTHWARD, Position::from_mm(390_000), 0b10),
+        Approach::straight(1, &FAR_EASTWARD, Position::from_mm(400_000), 0b01),
     ],
 };
 pub static WAYS: [Itinerary; 4] = [
     Itinerary {
         path: &NORTHWARD,
         crossings: &[
-            Crossing { intersection: &FIRST, leg: 0, at: Position::from_mm(200_000) },
-            Crossing { intersection: &SECOND, leg: 0, at: Position::from_mm(390_000) },
+            Crossing { intersection: &FIRST, movement: Movement::straight(0), at: Position::from_mm(200_000) },
+            Crossing { intersection: &SECOND, movement: Movement::straight(0), at: Position::from_mm(390_000) },
         ],
     },
     Itinerary {
         path: &EASTWARD,
-        crossings: &[Crossing { intersection: &FIRST, leg: 1, at: Position::from_mm(200_000) }],
+        crossings: &[Crossing {
+            intersection: &FIRST,
+            movement: Movement::straight(1),
+            at: Position::from_mm(200_000),
+        }],
     },
     Itinerary {
         path: &FAR_EASTWARD,
-        crossings: &[Crossing { intersection: &SECOND, leg: 1, at: Position::from_mm(400_000) }],
+        crossings: &[Crossing {
+            intersection: &SECOND,
+            movement: Movement::straight(1),
+            at: Position::from_mm(400_000),
+        }],
     },
     Itinerary {
         path: &WESTWARD,
-        crossings: &[Crossing { intersection: &FIRST, leg: 2, at: Position::from_mm(200_000) }],
+        crossings: &[Crossing {
+            intersection: &FIRST,
+            movement: Movement::straight(2),
+            at: Position::from_mm(200_000),
+        }],
     },
 ];
 

@@ -183,6 +183,8 @@ pub struct RoadPlan {
     pub points: Vec<Point>,
     /// Offset of the lane to the right of that line; negative: to the left.
     pub right_m: f64,
+    /// Radius of its corners; 0: it has none.
+    pub corner_m: f64,
     /// Mean rate of arrivals.
     pub vehicles_per_min: f64,
 }

@@ -46,6 +46,7 @@ const EMERGENCIES: Number = Number { key: "share", unit: "a share", limits: 0.0.
 const STANDS: Number = Number { key: "stands_s", unit: "seconds", limits: 0.0..=60.0, default: 10.0 };
 const FAULTS: Number = Number { key: "faults", unit: "a share", limits: 0.0..=1.0, default: 0.02 };
 const RIGHT: Number = Number { key: "right_m", unit: "metres", limits: -8.0..=8.0, default: 0.0 };
+const CORNER: Number = Number { key: "corner_m", unit: "metres", limits: 0.0..=50.0, default: 0.0 };
 const PER_MINUTE: Number =
     Number { key: "vehicles_per_min", unit: "vehicles a minute", limits: 0.0..=30.0, default: 3.0 };
 const HALF: Number = Number { key: "half_m", unit: "metres", limits: 1.0..=5.0, default: 3.5 };
@@ -233,6 +234,7 @@ fn roads(document: &Document, sections: Vec<Section>, traffic: &Traffic) -> Resu
         let points = section.pairs(&DEGREES)?.ok_or_else(|| missing(document, line, "points"))?;
         let (at, points) = (points.line, points.value.iter().map(|pair| point(pair.value)).collect::<Vec<_>>());
         let right_m = section.number(&RIGHT)?.value;
+        let corner_m = section.number(&CORNER)?.value;
         let rate = section.number(&PER_MINUTE)?;
         section.finish()?;
         if roads.iter().any(|road| road.name == name) {
@@ -250,7 +252,7 @@ fn roads(document: &Document, sections: Vec<Section>, traffic: &Traffic) -> Resu
             let cause = format!("{} vehicles a minute do not fit a `headway_s` of {}", rate.value, traffic.headway_s);
             return Err(document.error_at(rate.line.or(line), cause, format!("give less than {most:.1}")));
         }
-        roads.push(RoadPlan { name, points, right_m, vehicles_per_min: rate.value });
+        roads.push(RoadPlan { name, points, right_m, corner_m, vehicles_per_min: rate.value });
     }
     Ok(roads)
 }

@@ -102,6 +102,22 @@ impl<'a> Referee<'a> {
                 together.insert((Place::Road(pair[0].road), sorted(pair[0].trip, pair[1].trip)));
             }
         }
+        self.on_shared_pavement(sightings, together);
+    }
+
+    /// The same for vehicles on different roads, where these share pavement.
+    fn on_shared_pavement(&mut self, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {
+        for own in sightings.iter().filter(|own| !self.network.shared[own.road].is_empty()) {
+            for other in sightings.iter().chain(&self.beyond).filter(|other| other.road != own.road) {
+                let on_road = self.network.on_road(own.road, other.road, other.way_m, other.length_m);
+                let Some([rear_m, _]) = on_road.filter(|[_, front_m]| *front_m >= own.way_m) else { continue };
+                let gap_m = rear_m - own.way_m;
+                self.smallest_gap_m = Some(self.smallest_gap_m.map_or(gap_m, |least| least.min(gap_m)));
+                if gap_m < 0.0 {
+                    together.insert((Place::Road(own.road), sorted(own.trip, other.trip)));
+                }
+            }
+        }
     }
 
     fn at_intersections(&mut self, at_s: f64, sightings: &[Sighting], together: &mut BTreeSet<(Place, [usize; 2])>) {

@@ -96,15 +96,15 @@ struct Placed {
     speed_mps: f64,
     length_m: f64,
     at_s: f64,
-    /// Whether the station was ahead of the unit on the unit's leg at that time. It still is, because vehicles do not
+    /// Whether the station was ahead of the unit on the unit's lane at that time. It still is, because vehicles do not
     /// overtake there, even if the unit has driven past that place since.
     is_ahead: bool,
 }
 
 impl Placed {
-    /// Distance by which that place is ahead of the unit on the unit's leg; `None` if the station is not ahead.
+    /// Distance by which that place is ahead of the unit on the unit's lane; `None` if the station is not ahead.
     fn ahead_m(&self, course: &Course) -> Option<f64> {
-        course.on_leg(&self.route).filter(|_| self.is_ahead)
+        course.on_lane(&self.route).filter(|_| self.is_ahead)
     }
 }
 
@@ -208,7 +208,7 @@ impl Relay {
     /// Relays what a station says of its passes, if it comes to the unit's next intersection or has just left it. It needs no slot.
     fn relay_pass(&mut self, message: &V2xMessage, frames: &mut Vec<Frame>) {
         let Some((pass, next)) = message.pass.zip(self.course.next()) else { return };
-        if pass.intersection == next.id || pass.left == Some(next.id) {
+        if pass.intersection == next.intersection.id || pass.left == Some(next.intersection.id) {
             let sent = self.sender.send(&Message::PeerPass(pass), &mut |frame| frames.push(frame));
             sent.expect("the catalogue has a line for passes");
         }
@@ -240,7 +240,7 @@ impl Relay {
         self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
         let length_m = message.parameters.map_or(LONGEST_M, |parameters| parameters.length.get().to_num());
-        let is_ahead = self.course.on_leg(&route).is_some_and(|ahead_m| ahead_m > 0.0);
+        let is_ahead = self.course.on_lane(&route).is_some_and(|ahead_m| ahead_m > 0.0);
         self.places.push(Placed { station, route, speed_mps, length_m, at_s, is_ahead });
     }
 
