@@ -105,7 +105,7 @@ fn pass() -> Pass {
         tag: 3,
         station_id: 0x1234_56C8,
         intersection: 201,
-        movement: Movement { leg: 5, exit: 2 },
+        movement: Movement::straight(5),
         left: Some(77),
         stamp: PassTime(12_345),
         arrival: 654_321,
