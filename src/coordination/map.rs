@@ -143,7 +143,7 @@ impl Intersection {
 
 /// Whether two movements come by different legs, and are one lane beyond the conflict area.
 #[must_use]
-fn join(a: Movement, b: Movement) -> bool {
+pub(super) fn join(a: Movement, b: Movement) -> bool {
     a.leg != b.leg && a.exit == b.exit
 }
 

@@ -235,6 +235,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         })
     }
 
+    /// Whether a peer with this approach comes by another leg and takes the ego's exit.
+    pub(crate) fn joins(&self, approach: &PeerApproach) -> bool {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
+        crossing.is_some_and(|crossing| map::join(crossing.movement, approach.movement))
+    }
+
     /// Whether a peer with this approach, and with its rear bumper at `rear`, has left the conflict area.
     pub(crate) fn has_left(&self, approach: &PeerApproach, rear: Position) -> bool {
         self.end_of(approach.crossing).is_some_and(|end| rear >= end.ahead(approach.shift))

@@ -319,6 +319,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         Some(Entry { station, arrival: approach.arrival, claim: approach.claim, leg: approach.movement.leg })
     }
 
+    /// Whether a peer comes by another leg and takes the ego's exit.
+    pub fn joins(&self, index: usize) -> bool {
+        self.coordination.approach(index).is_some_and(|approach| self.coordination.joins(approach))
+    }
+
     /// The standstill distance behind the vehicle that the ego follows.
     pub fn standstill(&self) -> Distance {
         let target = self.coordination.choice().target.map(usize::from);
