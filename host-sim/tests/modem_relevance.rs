@@ -7,7 +7,7 @@ use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
-use holdover_sim::sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
+use holdover_sim::sim::modem::{Ahead, Course, PEERS, REPEATED, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
 static INTERSECTIONS: [Intersection; 3] = [intersection(4), intersection(5), intersection(6)];
@@ -42,7 +42,7 @@ fn message(station: u8, route: Option<Route>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route, pass: None }
+    V2xMessage { motion, parameters: None, horizon: None, route, pass: None, repeated: [None; REPEATED] }
 }
 
 /// A modem on the way to the first intersection, and what a unit makes of its frames.

@@ -117,6 +117,8 @@ pub struct Radio {
     /// Length of each vehicle's radio silence: it neither transmits nor receives. The silence begins at a random time
     /// on its way.
     pub dark_s: f64,
+    /// How often every vehicle repeats the passes that it hears; 0: it does not.
+    pub repeats_hz: f64,
 }
 
 impl Radio {

@@ -38,6 +38,7 @@ const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 
 const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, default: 0.1 };
 const RANGE: Number = Number { key: "range_m", unit: "metres", limits: 50.0..=5000.0, default: 400.0 };
 const DARK: Number = Number { key: "dark_s", unit: "seconds", limits: 0.0..=60.0, default: 4.0 };
+const REPEATS: Number = Number { key: "repeats_hz", unit: "Hz", limits: 0.0..=5.0, default: 0.0 };
 const MASS: Number = Number { key: "mass_scale", unit: "a factor", limits: 0.5..=2.0, default: 1.0 };
 const GRADE: Number = Number { key: "grade", unit: "a share of the way", limits: -0.15..=0.15, default: 0.0 };
 const WIND: Number = Number { key: "headwind_mps", unit: "m/s", limits: -30.0..=30.0, default: 0.0 };
@@ -187,6 +188,7 @@ fn radio(mut section: Section) -> Result<Radio, Error> {
         loss: section.number(&LOSS)?.value,
         range_m: section.number(&RANGE)?.value,
         dark_s: section.number(&DARK)?.value,
+        repeats_hz: section.number(&REPEATS)?.value,
     };
     section.finish()?;
     Ok(radio)

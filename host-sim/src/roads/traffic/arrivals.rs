@@ -126,6 +126,7 @@ impl Traffic<'_> {
             vehicle.mistake_time(ahead_s);
         }
         vehicle.limit_slots(self.conditions.slots);
+        vehicle.repeat_passes(self.conditions.radio.repeats_hz);
         self.prepare(index, &mut vehicle).map_err(|cause| refused(&cause))?;
         vehicle.acknowledge(self.corridor.bus.actuator_state);
         let ground = Ground { road: lane.road, odometer_m };

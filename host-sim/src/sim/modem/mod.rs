@@ -27,11 +27,14 @@ use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slo
 
 mod front;
 mod relevance;
+mod repeater;
 mod transmitter;
 mod unserved;
 
 use front::Front;
 pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
+pub use repeater::REPEATED;
+use repeater::Repeater;
 pub use transmitter::{Transmitter, V2xMessage};
 pub use unserved::UNSERVED_EVERY_S;
 
@@ -121,6 +124,7 @@ pub struct Relay {
     is_begun: Vec<bool>,
     places: Vec<Placed>,
     course: Course,
+    repeater: Repeater,
     turned_away: u64,
     /// Time of the first message that the modem heard.
     begun_s: Option<f64>,
@@ -133,7 +137,8 @@ impl Relay {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
         let (left, is_begun) = (vec![None; PEERS], vec![false; PEERS]);
         let (sender, course) = (Sender::new(identifiers), Course::default());
-        Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
+        let repeater = Repeater::default();
+        Self { sender, slots, left, rested_s, is_begun, places, course, repeater, turned_away: 0, begun_s: None }
     }
 
     /// On a bus with these frames.
@@ -169,7 +174,7 @@ impl Relay {
         let station = message.motion.station;
         self.begun_s.get_or_insert(at_s);
         self.place(at_s, message);
-        self.relay_pass(message, frames);
+        self.relay_passes(at_s, message, frames);
         let front = Front::of(&self.course, &self.places);
         let rank = self.rank(station, at_s, &front);
         if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
@@ -202,15 +207,6 @@ impl Relay {
         for said in std::iter::repeat_n(said, times).flatten() {
             let sent = self.sender.send(&Message::Peer(Slot(slot as u8), said), &mut |frame| frames.push(frame));
             sent.expect("the catalogue has a line for each thing that a peer says");
-        }
-    }
-
-    /// Relays what a station says of its passes, if it comes to the unit's next intersection or has just left it. It needs no slot.
-    fn relay_pass(&mut self, message: &V2xMessage, frames: &mut Vec<Frame>) {
-        let Some((pass, next)) = message.pass.zip(self.course.next()) else { return };
-        if pass.intersection == next.intersection.id || pass.left == Some(next.intersection.id) {
-            let sent = self.sender.send(&Message::PeerPass(pass), &mut |frame| frames.push(frame));
-            sent.expect("the catalogue has a line for passes");
         }
     }
 

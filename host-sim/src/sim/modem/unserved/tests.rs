@@ -1,7 +1,7 @@
 //! What a modem with too few slots reports of the stations without a slot, on two streets that cross.
 
 use super::*;
-use crate::sim::modem::{Ahead, Course, V2xMessage};
+use crate::sim::modem::{Ahead, Course, REPEATED, V2xMessage};
 use holdover::coordination::{Approach, Intersection, Movement, Path};
 use holdover::time::Stamp;
 use holdover::units::{Acceleration, Position, Speed};
@@ -48,7 +48,14 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(said.0),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route: Some(route(said)), pass: None }
+    V2xMessage {
+        motion,
+        parameters: None,
+        horizon: None,
+        route: Some(route(said)),
+        pass: None,
+        repeated: [None; REPEATED],
+    }
 }
 
 /// A modem with this many slots, one of them in reserve, that has heard those stations for a second. Each station has
