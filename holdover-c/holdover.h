@@ -32,7 +32,7 @@
  * crossings. What is pointed to from several places counts as often.
  */
 #define HOLDOVER_MAP_SIZE(segments, paths, approaches, intersections, crossings) \
-    ((40U * (segments)) + (16U * (paths)) + (24U * (approaches)) + (24U * (intersections)) + (24U * (crossings)) + 32U)
+    ((40U * (segments)) + (16U * (paths)) + (40U * (approaches)) + (24U * (intersections)) + (24U * (crossings)) + 32U)
 
 // The most frames that one tick sends.
 #define HOLDOVER_MAX_FRAMES 20U
@@ -148,7 +148,7 @@ typedef int32_t holdover_status_t;
 #define HOLDOVER_MAP_CROSSINGS ((holdover_status_t)-16)
 // An intersection is met twice, or the crossings are not in the order in which they are met.
 #define HOLDOVER_MAP_ORDER ((holdover_status_t)-17)
-// A leg is numbered 8 or more.
+// A leg or an exit is numbered 8 or more.
 #define HOLDOVER_MAP_LEG ((holdover_status_t)-18)
 // Half a conflict area is negative, or longer than 5.115 m.
 #define HOLDOVER_MAP_AREA ((holdover_status_t)-19)
@@ -675,23 +675,28 @@ typedef struct holdover_path_t {
   size_t segment_count;
 } holdover_path_t;
 
-// A leg of an intersection.
+// A way through an intersection.
 typedef struct holdover_approach_t {
-  // Where the crossing point lies on the path, in units of 2^-20 m.
+  // Where the crossing point lies on the path, in units of 2^-20 m. For all ways of a leg it is the same distance beyond a place that
+  // all of them pass.
   int64_t crossing;
-  // The path of the vehicles that come by this leg.
+  // The distance from there to a place that all ways of the exit have in common, in units of 2^-20 m; 0 where ways do not join.
+  int64_t exits;
+  // The ways that it conflicts with: bit `8 leg + exit`. Those of its own leg are not among them.
+  uint64_t conflicts;
+  // The path of the vehicles that go this way.
   const struct holdover_path_t *path;
-  // Its number in messages; 0 to 7.
+  // The number of its leg in messages; 0 to 7.
   uint8_t leg;
-  // The legs that this leg's way crosses, one bit each.
-  uint8_t conflicts;
+  // The number of its exit; 0 to 7. The exit straight on has the number of the leg.
+  uint8_t exit;
 } holdover_approach_t;
 
 // An intersection.
 typedef struct holdover_intersection_t {
-  // The conflict area on every leg is this far before and behind the crossing point, in units of 2^-20 m; up to 5.115 m.
+  // The conflict area on every way is this far before and behind the crossing point, in units of 2^-20 m; up to 5.115 m.
   int64_t half;
-  // The legs.
+  // The ways through it.
   const struct holdover_approach_t *approaches;
   // How many there are.
   size_t approach_count;
@@ -707,6 +712,8 @@ typedef struct holdover_crossing_t {
   const struct holdover_intersection_t *intersection;
   // The leg by which the ego comes.
   uint8_t leg;
+  // The exit by which it leaves.
+  uint8_t exit;
 } holdover_crossing_t;
 
 // The ego's way.
@@ -886,11 +893,13 @@ HOLDOVER_ASSERT(offsetof(holdover_segment_t, heading) == 40U, "holdover_segment_
 HOLDOVER_ASSERT(sizeof(holdover_path_t) == 16U, "sizeof holdover_path_t");
 HOLDOVER_ASSERT(offsetof(holdover_path_t, segments) == 0U, "holdover_path_t.segments");
 HOLDOVER_ASSERT(offsetof(holdover_path_t, segment_count) == 8U, "holdover_path_t.segment_count");
-HOLDOVER_ASSERT(sizeof(holdover_approach_t) == 24U, "sizeof holdover_approach_t");
+HOLDOVER_ASSERT(sizeof(holdover_approach_t) == 40U, "sizeof holdover_approach_t");
 HOLDOVER_ASSERT(offsetof(holdover_approach_t, crossing) == 0U, "holdover_approach_t.crossing");
-HOLDOVER_ASSERT(offsetof(holdover_approach_t, path) == 8U, "holdover_approach_t.path");
-HOLDOVER_ASSERT(offsetof(holdover_approach_t, leg) == 16U, "holdover_approach_t.leg");
-HOLDOVER_ASSERT(offsetof(holdover_approach_t, conflicts) == 17U, "holdover_approach_t.conflicts");
+HOLDOVER_ASSERT(offsetof(holdover_approach_t, exits) == 8U, "holdover_approach_t.exits");
+HOLDOVER_ASSERT(offsetof(holdover_approach_t, conflicts) == 16U, "holdover_approach_t.conflicts");
+HOLDOVER_ASSERT(offsetof(holdover_approach_t, path) == 24U, "holdover_approach_t.path");
+HOLDOVER_ASSERT(offsetof(holdover_approach_t, leg) == 32U, "holdover_approach_t.leg");
+HOLDOVER_ASSERT(offsetof(holdover_approach_t, exit) == 33U, "holdover_approach_t.exit");
 HOLDOVER_ASSERT(sizeof(holdover_intersection_t) == 32U, "sizeof holdover_intersection_t");
 HOLDOVER_ASSERT(offsetof(holdover_intersection_t, half) == 0U, "holdover_intersection_t.half");
 HOLDOVER_ASSERT(offsetof(holdover_intersection_t, approaches) == 8U, "holdover_intersection_t.approaches");
@@ -900,6 +909,7 @@ HOLDOVER_ASSERT(sizeof(holdover_crossing_t) == 24U, "sizeof holdover_crossing_t"
 HOLDOVER_ASSERT(offsetof(holdover_crossing_t, at) == 0U, "holdover_crossing_t.at");
 HOLDOVER_ASSERT(offsetof(holdover_crossing_t, intersection) == 8U, "holdover_crossing_t.intersection");
 HOLDOVER_ASSERT(offsetof(holdover_crossing_t, leg) == 16U, "holdover_crossing_t.leg");
+HOLDOVER_ASSERT(offsetof(holdover_crossing_t, exit) == 17U, "holdover_crossing_t.exit");
 HOLDOVER_ASSERT(sizeof(holdover_itinerary_t) == 24U, "sizeof holdover_itinerary_t");
 HOLDOVER_ASSERT(offsetof(holdover_itinerary_t, path) == 0U, "holdover_itinerary_t.path");
 HOLDOVER_ASSERT(offsetof(holdover_itinerary_t, crossings) == 8U, "holdover_itinerary_t.crossings");

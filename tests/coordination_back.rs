@@ -4,7 +4,7 @@
 mod rig;
 
 use holdover::controller::Mode;
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement};
 use holdover::units::{Distance, Position};
 use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::driving_parameters::DrivingParameters;
@@ -37,7 +37,7 @@ impl Peer {
         let route = Route {
             tag: motion.tag,
             intersection,
-            leg: 0,
+            movement: Movement::straight(0),
             distance: rig::metres(crossing - self.body.position),
             stamp: motion.stamp,
             arrival: 1,
@@ -154,18 +154,18 @@ fn the_vehicle_that_the_driver_has_named_is_minded_on_a_way_too_also_when_it_say
 static AT_200: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
-    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b10 }],
+    approaches: &[Approach::straight(0, &NORTHWARD, Position::from_mm(200_000), 0b10)],
 };
 static AT_220: Intersection = Intersection {
     id: 6,
-    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(220_000), conflicts: 0b10 }],
+    approaches: &[Approach::straight(0, &NORTHWARD, Position::from_mm(220_000), 0b10)],
     ..AT_200
 };
 static CLOSE: Itinerary = Itinerary {
     path: &NORTHWARD,
     crossings: &[
-        Crossing { intersection: &AT_200, leg: 0, at: Position::from_mm(200_000) },
-        Crossing { intersection: &AT_220, leg: 0, at: Position::from_mm(220_000) },
+        Crossing { intersection: &AT_200, movement: Movement::straight(0), at: Position::from_mm(200_000) },
+        Crossing { intersection: &AT_220, movement: Movement::straight(0), at: Position::from_mm(220_000) },
     ],
 };
 
@@ -183,7 +183,15 @@ fn a_vehicle_in_the_area_just_beyond_the_next_one_is_not_met() {
             let motion = rig.motion(StationHash(42), now, 7_000.0, 0.0, 0.0, 0.0, Some((0.05, 0.02)));
             let (tag, stamp, predecessor) = (motion.tag, motion.stamp, Predecessor::None);
             let distance = rig::metres(220.0 - place);
-            let route = Route { tag, intersection: 6, leg: 1, distance, stamp, arrival: 1, predecessor };
+            let route = Route {
+                tag,
+                intersection: 6,
+                movement: Movement::straight(1),
+                distance,
+                stamp,
+                arrival: 1,
+                predecessor,
+            };
             for said in [Said::Route(route), Said::Motion(motion)] {
                 let _ = rig.put(now, &Message::Peer(Slot(2), said));
             }

@@ -4,6 +4,7 @@
 mod rig;
 
 use holdover::controller::{FallbackCause, Mode};
+use holdover::wire::Movement;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::junction::{CROSSING, Driver, Junction};
@@ -131,7 +132,7 @@ fn least_gap_behind_the_second(stations: [u8; 2]) -> f64 {
             let route = Route {
                 tag: motion.tag,
                 intersection: 5,
-                leg: 0,
+                movement: Movement::straight(0),
                 distance: metres(CROSSING - body.position),
                 stamp: motion.stamp,
                 arrival: 1,

@@ -3,6 +3,7 @@
 mod rig;
 
 use holdover::health::Cause;
+use holdover::wire::Movement;
 use holdover::wire::route::Route;
 use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
 use rig::junction::{CROSSING, Driver, HALF, Junction};
@@ -50,7 +51,9 @@ fn who_comes_first_goes_first_and_both_say_so() {
     junction.run(5.0, |junction| {
         for message in &junction.drivers[0].last.as_ref().unwrap().all {
             match message {
-                Message::Own(Said::Route(route)) => claims.push((route.intersection, route.leg, route.predecessor)),
+                Message::Own(Said::Route(route)) => {
+                    claims.push((route.intersection, route.movement.leg, route.predecessor))
+                }
                 Message::Own(Said::DrivingParameters(parameters)) => said_follow.push(parameters.predecessor),
                 _ => {}
             }
@@ -232,7 +235,7 @@ fn who_has_moved_on_to_another_intersection_is_not_followed_for_a_tick_longer() 
         let route = Route {
             tag: 0,
             intersection: 6,
-            leg: 1,
+            movement: Movement::straight(1),
             distance: rig::metres(300.0),
             stamp: newest.stamp,
             arrival: 1,
@@ -267,7 +270,7 @@ fn when_an_axis_moves_everything_held_of_its_peer_moves_with_it() {
     let route = Route {
         tag: 0,
         intersection: 5,
-        leg: 1,
+        movement: Movement::straight(1),
         distance: rig::metres((distance * 1e3).round() / 1e3),
         stamp: newest.stamp,
         arrival: 1,
@@ -316,7 +319,7 @@ fn says(junction: &mut Junction, slot: u8, station: u8, metres: f64) -> [Result<
     let route = Route {
         tag: motion.tag,
         intersection: 5,
-        leg: 1,
+        movement: Movement::straight(1),
         distance: rig::metres(metres),
         stamp: motion.stamp,
         arrival: 1,

@@ -4,7 +4,7 @@
 mod rig;
 
 use holdover::Config;
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement};
 use holdover::units::{Distance, Position};
 use rig::junction::{CROSSING, Driver, HALF, Junction, NORTHWARD};
 use rig::{LENGTH, config};
@@ -71,15 +71,16 @@ const POINT: Position = Position::from_mm(200_000);
 static FORK: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
-    approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: POINT, conflicts: 0b0010 },
-        Approach { leg: 3, path: &NORTHWARD, crossing: POINT, conflicts: 0 },
-    ],
+    approaches: &[Approach::straight(0, &NORTHWARD, POINT, 0b0010), Approach::straight(3, &NORTHWARD, POINT, 0)],
 };
-static TURNS: Itinerary =
-    Itinerary { path: &NORTHWARD, crossings: &[Crossing { intersection: &FORK, leg: 3, at: POINT }] };
-static STRAIGHT_ON: Itinerary =
-    Itinerary { path: &NORTHWARD, crossings: &[Crossing { intersection: &FORK, leg: 0, at: POINT }] };
+static TURNS: Itinerary = Itinerary {
+    path: &NORTHWARD,
+    crossings: &[Crossing { intersection: &FORK, movement: Movement::straight(3), at: POINT }],
+};
+static STRAIGHT_ON: Itinerary = Itinerary {
+    path: &NORTHWARD,
+    crossings: &[Crossing { intersection: &FORK, movement: Movement::straight(0), at: POINT }],
+};
 
 #[test]
 fn on_another_way_nothing_is_firm_at_once() {
@@ -104,14 +105,14 @@ fn on_another_way_nothing_is_firm_at_once() {
 fn through_two(gap: f64) -> &'static Itinerary {
     let at = |metres: f64| Position::from_mm((metres * 1e3) as i64);
     let of = |id, point| {
-        let leg = Approach { leg: 0, path: &NORTHWARD, crossing: point, conflicts: 0b10 };
+        let leg = Approach::straight(0, &NORTHWARD, point, 0b10);
         let approaches: &'static [Approach] = Box::leak(Box::new([leg]));
         &*Box::leak(Box::new(Intersection { id, half: Distance::from_mm(4_000), approaches }))
     };
     let [first, second] = [at(CROSSING), at(CROSSING + HALF + gap + HALF)];
     let crossings: &'static [Crossing] = Box::leak(Box::new([
-        Crossing { intersection: of(5, first), leg: 0, at: first },
-        Crossing { intersection: of(6, second), leg: 0, at: second },
+        Crossing { intersection: of(5, first), movement: Movement::straight(0), at: first },
+        Crossing { intersection: of(6, second), movement: Movement::straight(0), at: second },
     ]));
     Box::leak(Box::new(Itinerary { path: &NORTHWARD, crossings }))
 }

@@ -18,7 +18,7 @@ use holdover::wire::route::Route;
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::unserved::Unserved;
-use holdover::wire::{Identifiers, Message, Predecessor, Said, Sender, Slot, StationHash};
+use holdover::wire::{Identifiers, Message, Movement, Predecessor, Said, Sender, Slot, StationHash};
 
 fn m(mm: i32) -> Distance {
     Distance::from_mm(mm)
@@ -91,7 +91,7 @@ fn route() -> Said {
     Said::Route(Route {
         tag: 1,
         intersection: 2,
-        leg: 3,
+        movement: Movement::straight(3),
         distance: m(-4_321),
         stamp: Stamp::from_raw(12_345),
         arrival: 987_654,
@@ -105,7 +105,7 @@ fn pass() -> Pass {
         tag: 3,
         station_id: 0x1234_56C8,
         intersection: 201,
-        leg: 5,
+        movement: Movement::straight(5),
         left: Some(77),
         stamp: PassTime(12_345),
         arrival: 654_321,

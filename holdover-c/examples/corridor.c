@@ -117,6 +117,7 @@ static const holdover_path_t *path(void)
 static void crossing(holdover_crossing_t *crossing, holdover_intersection_t *intersection)
 {
     crossing->leg = (uint8_t)word();
+    crossing->exit = (uint8_t)word();
     crossing->at = word();
     crossing->intersection = intersection;
     intersection->id = (uint8_t)word();
@@ -130,9 +131,11 @@ static void crossing(holdover_crossing_t *crossing, holdover_intersection_t *int
     intersection->approaches = approaches;
     for (size_t number = 0; number < intersection->approach_count; number++) {
         approaches[number].leg = (uint8_t)word();
+        approaches[number].exit = (uint8_t)word();
         approaches[number].path = path();
         approaches[number].crossing = word();
-        approaches[number].conflicts = (uint8_t)word();
+        approaches[number].exits = word();
+        approaches[number].conflicts = (uint64_t)word();
     }
 }
 

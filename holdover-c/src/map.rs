@@ -1,6 +1,6 @@
 //! A way through intersections: C's structs enter, and the core's, in memory of the caller, leave.
 
-use holdover::coordination;
+use holdover::coordination::{self, Movement, Movements};
 use holdover::fixed::saturate_i32;
 use holdover::units::{Distance, Position};
 
@@ -48,27 +48,32 @@ pub struct Path {
     pub segment_count: usize,
 }
 
-/// A leg of an intersection.
+/// A way through an intersection.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Approach {
-    /// Where the crossing point lies on the path, in units of 2^-20 m.
+    /// Where the crossing point lies on the path, in units of 2^-20 m. For all ways of a leg it is the same distance beyond a place that
+    /// all of them pass.
     pub crossing: i64,
-    /// The path of the vehicles that come by this leg.
+    /// The distance from there to a place that all ways of the exit have in common, in units of 2^-20 m; 0 where ways do not join.
+    pub exits: i64,
+    /// The ways that it conflicts with: bit `8 leg + exit`. Those of its own leg are not among them.
+    pub conflicts: u64,
+    /// The path of the vehicles that go this way.
     pub path: *const Path,
-    /// Its number in messages; 0 to 7.
+    /// The number of its leg in messages; 0 to 7.
     pub leg: u8,
-    /// The legs that this leg's way crosses, one bit each.
-    pub conflicts: u8,
+    /// The number of its exit; 0 to 7. The exit straight on has the number of the leg.
+    pub exit: u8,
 }
 
 /// An intersection.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Intersection {
-    /// The conflict area on every leg is this far before and behind the crossing point, in units of 2^-20 m; up to 5.115 m.
+    /// The conflict area on every way is this far before and behind the crossing point, in units of 2^-20 m; up to 5.115 m.
     pub half: i64,
-    /// The legs.
+    /// The ways through it.
     pub approaches: *const Approach,
     /// How many there are.
     pub approach_count: usize,
@@ -86,6 +91,8 @@ pub struct Crossing {
     pub intersection: *const Intersection,
     /// The leg by which the ego comes.
     pub leg: u8,
+    /// The exit by which it leaves.
+    pub exit: u8,
 }
 
 /// The ego's way.
@@ -104,7 +111,7 @@ pub struct Itinerary {
 const _: () = assert!(
     size_of::<coordination::Segment>() <= 40
         && size_of::<coordination::Path>() <= 16
-        && size_of::<coordination::Approach>() <= 24
+        && size_of::<coordination::Approach>() <= 40
         && size_of::<coordination::Intersection>() <= 24
         && size_of::<coordination::Crossing>() <= 24
         && size_of::<coordination::Itinerary>() <= 24
@@ -122,10 +129,11 @@ pub unsafe fn take(way: &Itinerary, room: &mut Room) -> Result<&'static coordina
     let (path, crossings) =
         unsafe { (self::path(way.path, room)?, pointer::read_all(way.crossings, way.crossing_count)?) };
     let crossings = room.keep(crossings.len(), |room, number| {
-        let Crossing { at, intersection, leg } = *crossings.get(number).ok_or(Status::MapTooSmall)?;
+        let Crossing { at, intersection, leg, exit } = *crossings.get(number).ok_or(Status::MapTooSmall)?;
         // SAFETY: as above.
         let intersection = unsafe { self::intersection(intersection, room)? };
-        Ok(coordination::Crossing { intersection, leg, at: Position::from_bits(at) })
+        let movement = Movement { leg, exit };
+        Ok(coordination::Crossing { intersection, movement, at: Position::from_bits(at) })
     })?;
     room.keep_one(coordination::Itinerary { path, crossings })
 }
@@ -141,10 +149,17 @@ unsafe fn intersection(
     // SAFETY: as above.
     let approaches = unsafe { pointer::read_all(approaches, approach_count)? };
     let approaches = room.keep(approaches.len(), |room, number| {
-        let Approach { crossing, path, leg, conflicts } = *approaches.get(number).ok_or(Status::MapTooSmall)?;
+        let Approach { crossing, exits, conflicts, path, leg, exit } =
+            *approaches.get(number).ok_or(Status::MapTooSmall)?;
         // SAFETY: as above.
         let path = unsafe { self::path(path, room)? };
-        Ok(coordination::Approach { leg, path, crossing: Position::from_bits(crossing), conflicts })
+        Ok(coordination::Approach {
+            movement: Movement { leg, exit },
+            path,
+            crossing: Position::from_bits(crossing),
+            exits: distance(exits),
+            conflicts: Movements(conflicts),
+        })
     })?;
     room.keep_one(coordination::Intersection { id, half: distance(half), approaches })
 }

@@ -51,7 +51,7 @@ pub enum Status {
     MapCrossings = -16,
     /// An intersection is met twice, or the crossings are not in the order in which they are met.
     MapOrder = -17,
-    /// A leg is numbered 8 or more.
+    /// A leg or an exit is numbered 8 or more.
     MapLeg = -18,
     /// Half a conflict area is negative, or longer than 5.115 m.
     MapArea = -19,
@@ -288,7 +288,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::MapInUse, c"the unit's present map lies in this memory"),
     (Status::MapCrossings, c"map: no crossing, or more than 65,535"),
     (Status::MapOrder, c"map: an intersection is met twice, or out of order"),
-    (Status::MapLeg, c"map: a leg is numbered 8 or more"),
+    (Status::MapLeg, c"map: a leg or an exit is numbered 8 or more"),
     (Status::MapArea, c"map: half a conflict area is negative, or longer than 5.115 m"),
     (Status::MapPath, c"map: a path has no segment"),
     (Status::MapClose, c"map: no room for the ego between two conflict areas"),

@@ -38,12 +38,14 @@ impl Way {
         let path = Path { segments: SEGMENTS.as_ptr(), segment_count: 1 };
         let no_path = Path { segments: null(), segment_count: 0 };
         let mut way = Box::new(Self { path, no_path, approaches: vec![], intersections: vec![], crossings: vec![] });
-        way.approaches.push(Approach { crossing: mm(100_000), path: &raw const way.path, leg: 1, conflicts: 0b1 });
+        let (crossing, path) = (mm(100_000), &raw const way.path);
+        way.approaches.push(Approach { crossing, exits: 0, conflicts: 0b1, path, leg: 1, exit: 1 });
         let approaches = way.approaches.as_ptr();
         let build = |&(id, half, _): &(u8, i64, i64)| Intersection { half, approaches, approach_count: 1, id };
         way.intersections = intersections.iter().map(build).collect();
         let places = intersections.iter().zip(&way.intersections);
-        way.crossings = places.map(|(&(_, _, at), intersection)| Crossing { at, intersection, leg: 0 }).collect();
+        way.crossings =
+            places.map(|(&(_, _, at), intersection)| Crossing { at, intersection, leg: 0, exit: 0 }).collect();
         way
     }
 
@@ -63,7 +65,7 @@ struct Memory {
 }
 
 /// For a way over two intersections.
-const MAP: usize = 40 * 3 + 16 * 3 + 24 * 2 + 24 * 2 + 24 * 2 + 32;
+const MAP: usize = 40 * 3 + 16 * 3 + 40 * 2 + 24 * 2 + 24 * 2 + 32;
 
 impl Memory {
     fn new() -> Self {
@@ -126,6 +128,9 @@ fn a_way_that_cannot_be_driven_is_refused_by_the_core_s_name() {
     }
     let mut way = Way::new(&[(1, mm(3_500), far)]);
     way.crossings[0].leg = 8;
+    assert_eq!(Memory::new().set_out(&way.itinerary(), 0, 512), Status::MapLeg);
+    let mut way = Way::new(&[(1, mm(3_500), far)]);
+    way.approaches[0].exit = 8;
     assert_eq!(Memory::new().set_out(&way.itinerary(), 0, 512), Status::MapLeg);
     let mut way = Way::new(&[(1, mm(3_500), far)]);
     way.approaches[0].path = &raw const way.no_path;

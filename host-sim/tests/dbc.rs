@@ -191,7 +191,8 @@ fn expected_of_said(said: &Said) -> Expected {
             .value("Tag", r.tag)
             .value("Distance", si!(r.distance))
             .value("Stamp", f64::from(r.stamp.raw()) / 1e4)
-            .value("Leg", r.leg)
+            .value("Leg", r.movement.leg)
+            .value("Turn", (8 + r.movement.exit - r.movement.leg) % 8)
             .value("Intersection", r.intersection)
             .value("Arrival", f64::from(r.arrival) / 100.0)
             .predecessor(r.predecessor),
@@ -233,7 +234,8 @@ fn expected_of(message: &Message) -> Expected {
                 .value("Tag", p.tag)
                 .value("StationId", p.station_id)
                 .value("Intersection", p.intersection)
-                .value("Leg", p.leg)
+                .value("Leg", p.movement.leg)
+                .value("Turn", (8 + p.movement.exit - p.movement.leg) % 8)
                 .either("Left", p.left.map(f64::from), "none")
                 .value("PassStamp", f64::from(p.stamp.0) / 100.0)
                 .value("Arrival", f64::from(p.arrival) / 100.0);

@@ -1,25 +1,33 @@
 //! Whom a modem relays when more are heard than there are slots: a unit's way and what stations say of theirs enter; who is
 //! decoded on the unit's bus leaves.
 
+use holdover::coordination::{Intersection, Movement};
 use holdover::time::{Instant, Stamp};
 use holdover::units::{Acceleration, Distance, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{Identifiers, Message, Predecessor, Received, Receiver, Role, Said, StationHash};
-use holdover_sim::sim::modem::{Ahead, Course, PEERS, Relay, SLOT_REUSE_S, V2xMessage};
+use holdover_sim::sim::modem::{Ahead, Course, PEERS, REPEATED, Relay, SLOT_REUSE_S, V2xMessage};
 
 /// Intersections 4, 5 and 6, 200 m apart, the first of them 180 m away.
-const WAY: [Ahead; 3] = [ahead(4, 180.0), ahead(5, 380.0), ahead(6, 580.0)];
+static INTERSECTIONS: [Intersection; 3] = [intersection(4), intersection(5), intersection(6)];
 const OWN_LEG: u8 = 1;
 
-/// Every other leg crosses the own one.
-const fn ahead(id: u8, at_m: f64) -> Ahead {
-    Ahead { id, leg: OWN_LEG, crossed: !(1 << OWN_LEG), at_m }
+/// No way is on the map, so that every other leg crosses the own one.
+const fn intersection(id: u8) -> Intersection {
+    Intersection { id, half: Distance::ZERO, approaches: &[] }
+}
+
+fn way() -> Vec<Ahead> {
+    let ahead = |(intersection, at_m)| Ahead { intersection, movement: Movement::straight(OWN_LEG), at_m };
+    INTERSECTIONS.iter().zip([180.0, 380.0, 580.0]).map(ahead).collect()
 }
 
 fn route(intersection: u8, leg: u8, metres: i32) -> Route {
     let distance = Distance::from_mm(metres * 1000);
-    Route { tag: 0, intersection, leg, distance, stamp: Stamp::from_raw(7), arrival: 1, predecessor: Predecessor::None }
+    let movement = Movement::straight(leg);
+    let (stamp, predecessor) = (Stamp::from_raw(7), Predecessor::None);
+    Route { tag: 0, intersection, movement, distance, stamp, arrival: 1, predecessor }
 }
 
 fn message(station: u8, route: Option<Route>) -> V2xMessage {
@@ -34,7 +42,7 @@ fn message(station: u8, route: Option<Route>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route, pass: None }
+    V2xMessage { motion, parameters: None, horizon: None, route, pass: None, repeated: [None; REPEATED] }
 }
 
 /// A modem on the way to the first intersection, and what a unit makes of its frames.
@@ -46,7 +54,7 @@ struct Bus {
 impl Bus {
     fn new() -> Self {
         let mut relay = Relay::new(Identifiers::DEFAULT);
-        relay.set_out(Course::through(WAY.to_vec()));
+        relay.set_out(Course::through(way()));
         relay.take(&Said::Route(route(4, OWN_LEG, 100)));
         // It has listened for long; this one names no intersection of the way.
         relay.hear(-10.0, &message(255, Some(route(9, 0, 50))), &mut Vec::new());
@@ -234,7 +242,7 @@ fn who_fell_silent_before_the_intersection_keeps_its_slot_wherever_it_may_be_by_
 #[test]
 fn a_modem_listens_before_it_gives_a_slot_away_and_whoever_is_just_ahead_has_one_from_the_beginning() {
     let mut relay = Relay::new(Identifiers::DEFAULT);
-    relay.set_out(Course::through(WAY.to_vec()));
+    relay.set_out(Course::through(way()));
     let receiver = Receiver::new(Identifiers::DEFAULT, Role::Unit);
     let mut bus = Bus { relay, receiver };
     // Three times as many as there are slots, on all legs, and the one just ahead is the last to be heard.

@@ -11,7 +11,7 @@ use crate::held::Held;
 use crate::time::{Instant, Stamp};
 use crate::units::{Distance, Position};
 use crate::wire::motion::{Motion, WirePosition};
-use crate::wire::{Predecessor, StationHash};
+use crate::wire::{Movement, Predecessor, StationHash};
 
 /// What a peer says of its approach to an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +19,10 @@ use crate::wire::{Predecessor, StationHash};
 pub struct PeerApproach {
     /// The index of the intersection on the ego's way.
     pub crossing: usize,
-    /// The leg by which the peer comes.
-    pub leg: u8,
+    /// The peer's way through it.
+    pub movement: Movement,
+    /// How far ahead of the ego's crossing point the peer's lies on the ego's axis.
+    pub shift: Distance,
     /// When the peer arrived, if it says so.
     pub arrival: Option<Arrival>,
     /// The vehicle that the peer takes to be just ahead of it in the order.
@@ -149,7 +151,8 @@ mod tests {
 
     const STANDING: PeerApproach = PeerApproach {
         crossing: 0,
-        leg: 1,
+        movement: Movement::straight(1),
+        shift: Distance::ZERO,
         arrival: None,
         claim: Predecessor::None,
         heard: Instant::ZERO,

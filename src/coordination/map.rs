@@ -1,27 +1,79 @@
-//! The map, which the caller provides as constants: the intersections with the legs that lead to them, and the ego's way through some of
-//! them.
+//! The map, which the caller provides as constants: the intersections with the ways that lead through them, and the ego's way through
+//! some of them.
+//!
+//! A way in by a leg and out by an exit is a *movement*. Two movements of one leg are one lane until they have left the conflict area, and
+//! two movements to one exit are one lane from there on. Whether two movements conflict is a relation between them that the map states.
 
 use super::path::Path;
 use crate::units::{Distance, Position};
-
-/// Legs that an intersection can have.
-pub const LEGS: u8 = 8;
+use crate::wire::Movement;
+pub use crate::wire::movement::LEGS;
 
 /// An ego that waits between two conflict areas needs so much more room than its length.
 const ROOM: Distance = Distance::from_mm(3_000);
 
-/// A leg of an intersection.
+/// A set of movements: bit `8 leg + exit` is set for each of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Movements(pub u64);
+
+impl Movements {
+    /// The empty set.
+    pub const NONE: Self = Self(0);
+
+    /// The movements straight on from these legs: bit `n` is leg `n`.
+    #[must_use]
+    pub const fn straight(legs: u8) -> Self {
+        let (mut set, mut leg) = (Self::NONE, 0);
+        while leg < LEGS {
+            if legs & (1 << leg) != 0 {
+                set = set.with(Movement::straight(leg));
+            }
+            leg = leg.wrapping_add(1);
+        }
+        set
+    }
+
+    /// The same with one more.
+    #[must_use]
+    pub const fn with(self, movement: Movement) -> Self {
+        Self(self.0 | Self::bit(movement))
+    }
+
+    /// Whether it is one of them.
+    #[must_use]
+    pub const fn contains(self, movement: Movement) -> bool {
+        self.0 & Self::bit(movement) != 0
+    }
+
+    const fn bit(Movement { leg, exit }: Movement) -> u64 {
+        if leg < LEGS && exit < LEGS { 1 << ((leg << 3) | exit) } else { 0 }
+    }
+}
+
+/// A way through an intersection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Approach {
-    /// Its number in messages; below [`LEGS`].
-    pub leg: u8,
-    /// The path of the vehicles that come by this leg.
+    /// Its leg and exit, by their numbers in messages.
+    pub movement: Movement,
+    /// The path of the vehicles that go this way.
     pub path: &'static Path,
-    /// Where the crossing point lies on that path.
+    /// Where the crossing point lies on that path. For all movements of a leg it is the same way beyond a place that all of them pass.
     pub crossing: Position,
-    /// The legs that this leg's way crosses, one bit each.
-    pub conflicts: u8,
+    /// The way from there to a place that all movements of the exit have in common. It is used only where movements join.
+    pub exits: Distance,
+    /// The movements that it conflicts with. Those of its own leg are not among them.
+    pub conflicts: Movements,
+}
+
+impl Approach {
+    /// The way straight on from a leg of an intersection where nobody turns. `conflicts` are the legs that it crosses: bit `n` is leg `n`.
+    #[must_use]
+    pub const fn straight(leg: u8, path: &'static Path, crossing: Position, conflicts: u8) -> Self {
+        let (movement, conflicts) = (Movement::straight(leg), Movements::straight(conflicts));
+        Self { movement, path, crossing, exits: Distance::ZERO, conflicts }
+    }
 }
 
 /// What is wrong with a map.
@@ -32,7 +84,7 @@ pub enum MapError {
     Crossings,
     /// An intersection is met twice, or the crossings are not in the order in which they are met.
     Order,
-    /// A leg is numbered [`LEGS`] or more.
+    /// A leg or an exit is numbered [`LEGS`] or more.
     Leg,
     /// Half a conflict area is negative, or longer than 5.115 m. Twice that has to fit into the standstill distance of
     /// `DrivingParameters`.
@@ -49,22 +101,50 @@ pub enum MapError {
 pub struct Intersection {
     /// Its number in messages.
     pub id: u8,
-    /// The conflict area on every leg is this far before and behind the crossing point.
+    /// The conflict area on every way is this far before and behind the crossing point.
     pub half: Distance,
-    /// The legs.
+    /// The ways through it.
     pub approaches: &'static [Approach],
 }
 
 impl Intersection {
-    /// Whether the ways of two legs cross. A leg that is not on the map crosses all legs.
+    fn approach(&self, movement: Movement) -> Option<&Approach> {
+        self.approaches.iter().find(|approach| approach.movement == movement)
+    }
+
+    /// Whether two movements conflict. One that is not on the map conflicts with all of other legs.
     #[must_use]
-    pub fn conflict(&self, a: u8, b: u8) -> bool {
-        let approach = |leg| self.approaches.iter().find(|approach| approach.leg == leg);
-        match (approach(a), approach(b)) {
-            (Some(a), Some(_)) => a.conflicts & 1u8.checked_shl(b.into()).unwrap_or(0) != 0,
-            _ => a != b,
+    pub fn conflict(&self, a: Movement, b: Movement) -> bool {
+        match (self.approach(a), self.approach(b)) {
+            (Some(a), Some(_)) => a.conflicts.contains(b),
+            _ => a.leg != b.leg,
         }
     }
+
+    /// Whether a movement conflicts with one that begins on a leg. A leg that is not on the map crosses all others.
+    #[must_use]
+    pub fn crosses(&self, movement: Movement, leg: u8) -> bool {
+        let mut of_leg =
+            self.approaches.iter().map(|approach| approach.movement).filter(|other| other.leg == leg).peekable();
+        let is_unknown = of_leg.peek().is_none();
+        is_unknown && movement.leg != leg || of_leg.any(|other| self.conflict(movement, other))
+    }
+
+    /// How far ahead of the own crossing point that of another movement lies on the own axis. It is zero unless the two join. If they do,
+    /// it brings the places together that both pass on their common way out.
+    #[must_use]
+    pub fn shift(&self, own: Movement, other: Movement) -> Distance {
+        match (self.approach(own), self.approach(other)) {
+            (Some(own), Some(other)) if join(own.movement, other.movement) => own.exits.minus(other.exits),
+            _ => Distance::ZERO,
+        }
+    }
+}
+
+/// Whether two movements come by different legs, and are one lane beyond the conflict area.
+#[must_use]
+pub(super) fn join(a: Movement, b: Movement) -> bool {
+    a.leg != b.leg && a.exit == b.exit
 }
 
 /// An intersection on the ego's way.
@@ -73,8 +153,8 @@ impl Intersection {
 pub struct Crossing {
     /// The intersection.
     pub intersection: &'static Intersection,
-    /// The leg by which the ego comes.
-    pub leg: u8,
+    /// The ego's way through it.
+    pub movement: Movement,
     /// Where the crossing point lies on the ego's path.
     pub at: Position,
 }
@@ -104,7 +184,8 @@ impl Itinerary {
         }
         for (place, crossing) in self.crossings.iter().enumerate() {
             let Intersection { id, half, approaches } = crossing.intersection;
-            if crossing.leg >= LEGS || approaches.iter().any(|approach| approach.leg >= LEGS) {
+            let is_numbered = |movement: Movement| movement.leg < LEGS && movement.exit < LEGS;
+            if !is_numbered(crossing.movement) || !approaches.iter().all(|approach| is_numbered(approach.movement)) {
                 return Err(MapError::Leg);
             }
             if *half < Distance::ZERO || *half > AREA_MAX {
@@ -156,7 +237,7 @@ mod tests {
     }
 
     const fn crossing(intersection: &'static Intersection, leg: u8, at_mm: i64) -> Crossing {
-        Crossing { intersection, leg, at: Position::from_mm(at_mm) }
+        Crossing { intersection, movement: Movement::straight(leg), at: Position::from_mm(at_mm) }
     }
 
     #[test]
@@ -164,10 +245,8 @@ mod tests {
         static GOOD: Intersection = intersection(1, 5_115, &[]);
         static OTHER: Intersection = intersection(2, 0, &[]);
         static WIDE: Intersection = intersection(1, 5_116, &[]);
-        static LEGLESS: Intersection =
-            intersection(1, 4_000, &[Approach { leg: 8, path: &PATH, crossing: Position::ZERO, conflicts: 0 }]);
-        static PATHLESS: Intersection =
-            intersection(1, 4_000, &[Approach { leg: 7, path: &NO_PATH, crossing: Position::ZERO, conflicts: 0 }]);
+        static LEGLESS: Intersection = intersection(1, 4_000, &[Approach::straight(8, &PATH, Position::ZERO, 0)]);
+        static PATHLESS: Intersection = intersection(1, 4_000, &[Approach::straight(7, &NO_PATH, Position::ZERO, 0)]);
         let check =
             |crossings: &'static [Crossing]| Itinerary { path: &PATH, crossings }.check(Distance::from_mm(4_500));
         assert_eq!(check(&[const { crossing(&GOOD, 7, 0) }, const { crossing(&OTHER, 0, 12_615) }]), Ok(()));
@@ -186,14 +265,50 @@ mod tests {
 
     #[test]
     fn legs_conflict_as_the_map_says_and_an_unknown_leg_with_every_other() {
-        static APPROACHES: [Approach; 2] = [
-            Approach { leg: 0, path: &PATH, crossing: Position::ZERO, conflicts: 0b100 },
-            Approach { leg: 2, path: &PATH, crossing: Position::ZERO, conflicts: 0b001 },
+        static APPROACHES: [Approach; 2] =
+            [Approach::straight(0, &PATH, Position::ZERO, 0b100), Approach::straight(2, &PATH, Position::ZERO, 0b001)];
+        let intersection = intersection(1, 4_000, &APPROACHES);
+        let conflict = |a, b| {
+            let (a, b) = (Movement::straight(a), Movement::straight(b));
+            let conflict = intersection.conflict(a, b);
+            assert_eq!(intersection.crosses(a, b.leg), conflict);
+            conflict
+        };
+        assert!(conflict(0, 2) && conflict(2, 0));
+        assert!(!conflict(0, 0));
+        assert!(conflict(0, 3) && conflict(3, 0));
+        assert!(!conflict(3, 3));
+    }
+
+    #[test]
+    fn movements_of_one_leg_conflict_each_with_its_own_and_two_to_one_exit_meet_where_it_begins() {
+        const THROUGH: Movement = Movement::straight(0);
+        const RIGHT: Movement = Movement { leg: 0, exit: 1 };
+        const ACROSS: Movement = Movement::straight(1);
+        const ONCOMING: Movement = Movement::straight(2);
+        const fn way(movement: Movement, exits_mm: i32, conflicts: Movements) -> Approach {
+            let exits = Distance::from_mm(exits_mm);
+            Approach { movement, path: &PATH, crossing: Position::ZERO, exits, conflicts }
+        }
+        static APPROACHES: [Approach; 4] = [
+            way(THROUGH, 0, Movements::NONE.with(ACROSS)),
+            way(RIGHT, -2_500, Movements::NONE.with(ACROSS)),
+            way(ACROSS, 1_000, Movements::NONE.with(THROUGH).with(RIGHT)),
+            way(ONCOMING, 0, Movements::NONE),
         ];
         let intersection = intersection(1, 4_000, &APPROACHES);
-        assert!(intersection.conflict(0, 2) && intersection.conflict(2, 0));
-        assert!(!intersection.conflict(0, 0));
-        assert!(intersection.conflict(0, 3) && intersection.conflict(3, 0));
-        assert!(!intersection.conflict(3, 3));
+        for (a, b, conflict) in
+            [(THROUGH, ACROSS, true), (RIGHT, ACROSS, true), (RIGHT, THROUGH, false), (RIGHT, ONCOMING, false)]
+        {
+            assert_eq!((intersection.conflict(a, b), intersection.conflict(b, a)), (conflict, conflict), "{a:?} {b:?}");
+        }
+        assert!(intersection.crosses(ACROSS, 0) && !intersection.crosses(ONCOMING, 0));
+        assert!(intersection.conflict(Movement { leg: 0, exit: 7 }, ONCOMING), "nobody knows where that leads");
+        assert_eq!(intersection.shift(RIGHT, ACROSS), Distance::from_mm(-3_500));
+        assert_eq!(intersection.shift(ACROSS, RIGHT), Distance::from_mm(3_500));
+        assert_eq!(
+            (intersection.shift(THROUGH, ACROSS), intersection.shift(THROUGH, RIGHT)),
+            (Distance::ZERO, Distance::ZERO)
+        );
     }
 }

@@ -29,7 +29,7 @@ mod yield_timer;
 pub use axis::{Axis, PeerApproach};
 pub use choice::{Choice, Slots};
 pub use comfort_braking::ComfortBraking;
-pub use map::{Approach, Crossing, Intersection, Itinerary, MapError};
+pub use map::{Approach, Crossing, Intersection, Itinerary, MapError, Movements};
 pub use order::{Arrival, Entry, Regard};
 pub use path::{Path, Place, Scale, Segment};
 pub(crate) use present::{Present, Side};
@@ -40,14 +40,19 @@ use yield_timer::YieldTimer;
 use crate::held::Held;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position, Speed};
+pub use crate::wire::Movement;
 use crate::wire::{Predecessor, StationHash};
 
-/// The standstill distance behind a vehicle that comes by a crossing leg is the length of the conflict area, if that is longer than the
-/// law's. Then the rear of the vehicle ahead has left the area when the front of the ego enters it, at any speed.
+/// The standstill distance behind a vehicle whose movement conflicts with the ego's is the length of the conflict area, if that is longer
+/// than the law's. Then the rear of the vehicle ahead has left the area when the front of the ego enters it, at any speed.
 #[must_use]
-pub fn standstill_behind(law: Distance, crossing: &Crossing, leg: u8) -> Distance {
+pub fn standstill_behind(law: Distance, crossing: &Crossing, other: Movement) -> Distance {
     let intersection = crossing.intersection;
-    if intersection.conflict(crossing.leg, leg) { law.max(intersection.half.plus(intersection.half)) } else { law }
+    if intersection.conflict(crossing.movement, other) {
+        law.max(intersection.half.plus(intersection.half))
+    } else {
+        law
+    }
 }
 
 /// Time from one review to the next.
@@ -209,7 +214,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// The leg by which the ego comes to its next crossing.
     #[must_use]
     pub fn leg(&self) -> u8 {
-        self.crossing().map_or(0, |crossing| crossing.leg)
+        self.crossing().map_or(0, |crossing| crossing.movement.leg)
     }
 
     /// Where a crossing point of the ego's way lies on the ego's axis.
@@ -219,11 +224,33 @@ impl<const PEERS: usize> Coordination<PEERS> {
         Some(Position::from_bits(tie.to_bits().saturating_add(crossing.at.to_bits())))
     }
 
-    /// Whether a peer with this approach comes by the ego's leg.
+    /// Whether a peer with this approach is on the ego's lane: until it has left the conflict area if it comes by the ego's leg, and from
+    /// then on if it takes the ego's exit.
     #[must_use]
-    pub(crate) fn is_on_lane(&self, approach: &PeerApproach) -> bool {
+    pub(crate) fn is_on_lane(&self, approach: &PeerApproach, has_left: bool) -> bool {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
-        crossing.is_some_and(|crossing| crossing.leg == approach.leg)
+        crossing.is_some_and(|Crossing { movement, .. }| match has_left {
+            false => movement.leg == approach.movement.leg,
+            true => movement.exit == approach.movement.exit,
+        })
+    }
+
+    /// Whether a peer with this approach comes by another leg and takes the ego's exit.
+    pub(crate) fn joins(&self, approach: &PeerApproach) -> bool {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
+        crossing.is_some_and(|crossing| map::join(crossing.movement, approach.movement))
+    }
+
+    /// Whether a peer with this approach, and with its rear bumper at `rear`, has left the conflict area.
+    pub(crate) fn has_left(&self, approach: &PeerApproach, rear: Position) -> bool {
+        self.end_of(approach.crossing).is_some_and(|end| rear >= end.ahead(approach.shift))
+    }
+
+    /// Where a peer with this approach comes to the conflict area that it leaves by another exit than the ego.
+    pub(crate) fn turns_off_at(&self, approach: &PeerApproach) -> Option<Position> {
+        let crossing = self.itinerary?.crossings.get(approach.crossing)?;
+        let begins = self.crossing_point(crossing)?.ahead(crossing.intersection.half.negated());
+        (crossing.movement.exit != approach.movement.exit).then_some(begins)
     }
 
     /// Whether a peer with this approach is at the crossing that is next for the ego.
@@ -348,7 +375,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         speed: Speed,
     ) -> ComfortBraking {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(next));
-        let shared = crossing.filter(|crossing| approach.crossing == next && approach.leg != crossing.leg);
+        let shared =
+            crossing.filter(|crossing| approach.crossing == next && approach.movement.leg != crossing.movement.leg);
         let Some((crossing, point)) = shared.and_then(|crossing| Some((crossing, self.crossing_point(crossing)?)))
         else {
             return ComfortBraking::NONE;

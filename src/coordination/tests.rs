@@ -16,7 +16,7 @@ static SEGMENTS: [Segment; 1] = [Segment {
 static PATH: Path = Path { segments: &SEGMENTS };
 
 const fn approach(leg: u8, conflicts: u8) -> Approach {
-    Approach { leg, path: &PATH, crossing: Position::from_mm(200_000), conflicts }
+    Approach::straight(leg, &PATH, Position::from_mm(200_000), conflicts)
 }
 
 // Leg 2 comes along the same street from the other side.
@@ -25,7 +25,8 @@ static INTERSECTION: Intersection = Intersection {
     half: Distance::from_mm(4_000),
     approaches: &[approach(0, 0b010), approach(1, 0b101), approach(2, 0b010)],
 };
-static CROSSINGS: [Crossing; 1] = [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
+static CROSSINGS: [Crossing; 1] =
+    [Crossing { intersection: &INTERSECTION, movement: Movement::straight(0), at: Position::from_mm(200_000) }];
 static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
 
 fn entry(station: u8, arrival: u32, claim: Option<u8>) -> Entry {
@@ -88,7 +89,7 @@ impl Meeting {
     fn of(arrivals: &[u32]) -> Self {
         static INTERSECTION: Intersection = Intersection { id: 1, half: Distance::from_mm(4_000), approaches: &[] };
         static CROSSINGS: [Crossing; 1] =
-            [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::from_mm(200_000) }];
+            [Crossing { intersection: &INTERSECTION, movement: Movement::straight(0), at: Position::from_mm(200_000) }];
         static ITINERARY: Itinerary = Itinerary { path: &PATH, crossings: &CROSSINGS };
         let stations = arrivals.iter().enumerate().map(|(index, arrival)| {
             let mut coordination = Coordination::idle();
@@ -259,7 +260,8 @@ fn who_comes_by_another_leg_is_followed_after_4_5_s_and_sooner_only_where_no_gen
         for (ms, is_told) in [(0, false), (4_499, false), (4_500, true), (60_000, true)] {
             for (leg, is_followed) in [(0, true), (1, is_told || !is_far), (2, is_told || !is_far)] {
                 let (since, claim) = (at(3), Predecessor::Unknown);
-                let approach = PeerApproach { crossing: 0, leg, arrival: None, claim, heard: since, since };
+                let (movement, shift) = (Movement::straight(leg), Distance::ZERO);
+                let approach = PeerApproach { crossing: 0, movement, shift, arrival: None, claim, heard: since, since };
                 let (front, speed) = (Position::from_mm(front), Speed::from_mm_per_s(10_000));
                 let now = since.plus(Duration::from_millis(ms));
                 let is_announced = coordination.is_announced(&approach, now, 0, front, speed);

@@ -7,7 +7,7 @@ use super::{Claim, Known, PIECES, Rules};
 use crate::coordination::Arrival;
 use crate::held::Held;
 use crate::time::GnssTime;
-use crate::wire::StationHash;
+use crate::wire::{Movement, StationHash};
 
 /// So many vehicles are known at once.
 pub const KNOWN: usize = 24;
@@ -18,8 +18,8 @@ pub const KNOWN: usize = 24;
 pub struct Station {
     /// Its whole identity.
     pub id: u32,
-    /// The leg by which it comes.
-    pub leg: u8,
+    /// Its way through the intersection.
+    pub movement: Movement,
     /// The stamp of the message.
     pub heard: GnssTime,
     /// When it arrived.
@@ -33,8 +33,14 @@ pub struct Station {
 impl Station {
     /// A vehicle, with what it claims.
     #[must_use]
-    pub fn new(id: u32, leg: u8, heard: GnssTime, arrival: Arrival, claims: [Option<Claim>; PIECES]) -> Self {
-        let mut held = Self { id, leg, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_gone: false };
+    pub fn new(
+        id: u32,
+        movement: Movement,
+        heard: GnssTime,
+        arrival: Arrival,
+        claims: [Option<Claim>; PIECES],
+    ) -> Self {
+        let mut held = Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_gone: false };
         for (place, claim) in held.claims.iter_mut().zip(claims.into_iter().flatten()) {
             *place = claim;
             held.count = held.count.saturating_add(1);
@@ -151,7 +157,7 @@ mod tests {
     use crate::passes::tests::{RULES, claim, time, window};
 
     fn station(id: u32, heard: u64) -> Station {
-        Station::new(id, 1, time(heard), Arrival(5), [None; PIECES])
+        Station::new(id, Movement::straight(1), time(heard), Arrival(5), [None; PIECES])
     }
 
     #[test]
@@ -176,7 +182,7 @@ mod tests {
     fn a_silent_vehicle_is_forgotten_after_its_windows() {
         let mut list = List::EMPTY;
         let claims = [Some(claim(1, window(1_100, 1_400), 7)), None];
-        list.hear(Station::new(7, 1, time(1_000), Arrival(5), claims)).unwrap();
+        list.hear(Station::new(7, Movement::straight(1), time(1_000), Arrival(5), claims)).unwrap();
         for (now, known) in [(1_301, 1), (1_402, 1), (1_403, 0)] {
             list.forget(&RULES, time(now));
             assert_eq!(list.iter().count(), known, "{now}");

@@ -74,7 +74,8 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         let Some(approach) = coordination.approach(index) else { continue };
         let Some((reading, rear)) = view.scene.rear(index, view.at) else { continue };
         let Some(entry) = view.scene.entry(index, approach) else { continue };
-        let is_on_lane = coordination.is_on_lane(approach);
+        let has_left = coordination.has_left(approach, rear);
+        let is_on_lane = coordination.is_on_lane(approach, has_left);
         let side = if reading.position > view.front { Side::Ahead } else { Side::Behind };
         if coordination.is_here(approach) {
             let takes_along = side == Side::Behind || !is_committed;
@@ -84,7 +85,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
                 index,
                 entry,
                 heard: approach.heard,
-                has_left: coordination.end_of(view.next).is_some_and(|end| rear >= end),
+                has_left,
                 is_far_behind: is_committed || view.is_far_behind(&reading),
                 is_announced: !is_passed && (followed == Some(index) || view.is_announced(approach)),
                 lane: (is_on_lane && takes_along).then_some(side),

@@ -16,7 +16,7 @@ use crate::estimator::End;
 use crate::model::Reading;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
-use crate::units::Distance;
+use crate::units::{Distance, Position};
 
 /// The order is reviewed in the horizon once in so many reviews: for a second, for four, and after that. Where the ego follows another
 /// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves. In the first
@@ -103,7 +103,10 @@ struct Minded {
     index: usize,
     /// Its crossing.
     crossing: usize,
-    is_on_lane: bool,
+    /// Whether it is on the ego's lane until it has left the conflict area there, and from then on.
+    is_on_lane: [bool; 2],
+    /// Where it has left that area.
+    left_at: Option<Position>,
     /// Its place in the order, and whether that is ahead of the ego's at the next crossing.
     entry: Option<Entry>,
     is_ahead: bool,
@@ -122,17 +125,21 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let step = scene.estimator.grid().at_or_before(now);
     for index in 0..PEERS {
         let Some(approach) = scene.coordination.approach(index) else { continue };
-        let is_on_lane = scene.coordination.is_on_lane(approach);
+        let is_on_lane = [false, true].map(|has_left| scene.coordination.is_on_lane(approach, has_left));
         let entry = scene.entry(index, approach);
         let is_ahead = entry.as_ref().is_some_and(|entry| is_ahead(scene, index, entry));
-        let is_minded = if is_on_lane {
-            scene.estimator.read_step(index, step).is_some_and(|reading| reading.position > own.position)
-        } else {
-            approach.crossing > next || approach.crossing == next && is_ahead
+        let comes = approach.crossing > next || approach.crossing == next && is_ahead;
+        let leads = || scene.estimator.read_step(index, step).is_some_and(|reading| reading.position > own.position);
+        let is_minded = match is_on_lane {
+            [true, _] => leads(),
+            [false, true] => comes || leads(),
+            [false, false] => comes,
         };
         if is_minded {
             let (crossing, length) = (approach.crossing, scene.peers.length_of(index));
-            let _ = minded.push(Minded { index, crossing, is_on_lane, entry, is_ahead, length }); // no more than slots
+            let left_at = scene.coordination.end_of(crossing).map(|end| end.ahead(approach.shift));
+            let one = Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, length };
+            let _ = minded.push(one); // no more than slots
         }
     }
     minded
@@ -148,25 +155,27 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     followed: Option<usize>,
 ) -> Option<Candidate> {
     let (scene, coordination) = (view.scene, &view.scene.coordination);
-    let end = coordination.end_of(view.next);
     let is_later = view.next != coordination.next();
     let (mut order, mut lane) = (None::<(Candidate, &Entry)>, None::<(Candidate, usize)>);
-    for Minded { index, crossing, is_on_lane, entry, is_ahead, length } in minded {
+    for Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, length } in minded {
         // The entry is asked for first, because it needs no horizon.
         let entry = entry.as_ref().filter(|entry| {
             let is_ahead = is_later || *is_ahead;
             is_ahead && *crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
         });
-        if !is_on_lane && entry.is_none() {
+        if *is_on_lane == [false; 2] && entry.is_none() {
             continue;
         }
         let Some(reading) = scene.estimator.read_step(*index, step) else { continue };
         let peer = Candidate { index: *index, reading, rear: reading.position.ahead(length.negated()) };
+        let has_left = left_at.is_some_and(|end| peer.rear >= end);
+        let [before, after] = *is_on_lane;
+        let is_on_lane = if has_left { after } else { before };
         let is_nearest = lane.is_none_or(|(nearest, _)| reading.position < nearest.reading.position);
-        if *is_on_lane && reading.position > view.front && is_nearest {
+        if is_on_lane && reading.position > view.front && is_nearest {
             lane = Some((peer, *crossing));
         }
-        let Some(entry) = entry.filter(|_| end.is_some_and(|end| peer.rear < end)) else { continue };
+        let Some(entry) = entry.filter(|_| left_at.is_some_and(|end| peer.rear < end)) else { continue };
         let is_announced = || coordination.approach(*index).is_some_and(|approach| view.is_announced(approach));
         if followed == Some(*index) || is_announced() {
             order = Some((peer, entry));

@@ -21,6 +21,8 @@ struct Certain {
     far: Position,
     /// The near end of its rear bumper.
     rear: Position,
+    /// How far it has come at least on the ego's way.
+    come: Position,
 }
 
 /// A silent vehicle that could not stand nearer than this is out of the radio's reach, even if it has braked at its hardest since it was
@@ -47,7 +49,7 @@ pub(super) fn note<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
         }
     }
     for one in &lane {
-        scene.coordination.note_passed(one.index, one.near);
+        scene.coordination.note_passed(one.index, one.come);
     }
     scene.coordination.note_leading(leading, beyond);
 }
@@ -58,9 +60,13 @@ fn certain<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     now: Instant,
 ) -> Vec<Certain, PEERS> {
     let certain = |index: usize| {
-        scene.coordination.approach(index).filter(|approach| scene.coordination.is_on_lane(approach))?;
+        let approach = scene.coordination.approach(index)?;
         let (rear, bound) = scene.near_rear(index, now)?;
-        Some(Certain { index, near: bound.lowest_position(), far: bound.highest_position(), rear })
+        let near = bound.lowest_position();
+        scene.coordination.is_on_lane(approach, scene.coordination.has_left(approach, rear)).then_some(())?;
+        // Where a vehicle that turns off has come in the conflict area says nothing of a vehicle ahead of it that does not.
+        let come = scene.coordination.turns_off_at(approach).map_or(near, |begins| near.min(begins));
+        Some(Certain { index, near, far: bound.highest_position(), rear, come })
     };
     let mut lane = Vec::new();
     for one in (0..PEERS).filter_map(certain) {
@@ -117,10 +123,24 @@ fn ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> impl Iterator<Item = usize> + use<'_, PEERS, SAMPLES, STEPS> {
     let choice = scene.coordination.choice();
     let leading = (0..PEERS).filter(|index| choice.leading.contains(*index) && !choice.beyond.contains(*index));
-    leading.chain(choice.lane.map(usize::from)).filter(move |index| !scene.is_seen_past(*index, now))
+    // A vehicle that joins, and is only estimated to have left the conflict area, is minded before that area.
+    let estimated = choice.lane.map(usize::from).filter(|index| !scene.joins(*index));
+    leading.chain(estimated).filter(move |index| !scene.is_seen_past(*index, now))
 }
 
-/// Whether no silent vehicle ahead on the same leg may have come to rest before a place, or may yet.
+/// The vehicles that may have gone ahead to the ego's exit by another leg, but not for certain.
+fn joining<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+) -> impl Iterator<Item = usize> + use<'_, PEERS, SAMPLES, STEPS> {
+    let choice = scene.coordination.choice();
+    let goes_ahead = |index: &usize| choice.ahead.contains(*index) || choice.lane.map(usize::from) == Some(*index);
+    let joining =
+        (0..PEERS).filter(move |index| goes_ahead(index) && !choice.leading.contains(*index) && scene.joins(*index));
+    joining.filter(move |index| !scene.is_seen_past(*index, now))
+}
+
+/// Whether no silent vehicle ahead on the same lane may have come to rest before a place, or may yet.
 pub(super) fn is_certain_to_leave<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -129,5 +149,8 @@ pub(super) fn is_certain_to_leave<const PEERS: usize, const SAMPLES: usize, cons
     let is_silent =
         |index: &usize| !scene.peers.get(*index).is_some_and(|track| track.link().is_on(now, &scene.config.link));
     let rests = |index: usize| stop_behind(scene, index).max(scene.coordination.passed(index));
-    ahead(scene, now).filter(is_silent).all(|index| rests(index).is_some_and(|rests| rests >= place))
+    ahead(scene, now)
+        .chain(joining(scene, now))
+        .filter(is_silent)
+        .all(|index| rests(index).is_some_and(|rests| rests >= place))
 }

@@ -285,7 +285,7 @@ fn route<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     Outbox::is_route_due(tag).then(|| Route {
         tag,
         intersection: crossing.intersection.id,
-        leg: crossing.leg,
+        movement: crossing.movement,
         distance: point.ahead_of(WirePosition::from_position(ego.position).nearest_to(ego.position)),
         stamp: ego.stamp,
         arrival: registration.arrival.0,

@@ -80,11 +80,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
             let Some(approach) = coordination.approach(index) else { return false };
             let is_inside = || {
                 coordination.is_here(approach)
-                    && self.scene.rear(index, self.at).is_some_and(|(reading, _)| reading.position > line)
+                    && self
+                        .scene
+                        .rear(index, self.at)
+                        .is_some_and(|(reading, _)| reading.position > line.ahead(approach.shift))
             };
-            crossing.intersection.conflict(crossing.leg, approach.leg)
+            crossing.intersection.conflict(crossing.movement, approach.movement)
                 && (coordination.choice().ahead.contains(index) || is_inside())
-                && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end)
+                && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end.ahead(approach.shift))
         };
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))
     }

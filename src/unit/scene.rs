@@ -315,7 +315,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// The entry of a peer in the order.
     pub fn entry(&self, index: usize, approach: &PeerApproach) -> Option<Entry> {
         let station = self.peers.get(index).and_then(Track::station)?;
-        Some(Entry { station, arrival: approach.arrival, claim: approach.claim, leg: approach.leg })
+        Some(Entry { station, arrival: approach.arrival, claim: approach.claim, leg: approach.movement.leg })
+    }
+
+    /// Whether a peer comes by another leg and takes the ego's exit.
+    pub fn joins(&self, index: usize) -> bool {
+        self.coordination.approach(index).is_some_and(|approach| self.coordination.joins(approach))
     }
 
     /// The standstill distance behind the vehicle that the ego follows.
@@ -331,7 +336,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let law = law.plus(QUEUE);
         match (itinerary.crossings.get(next), self.coordination.approach(index)) {
             (Some(crossing), Some(approach)) if approach.crossing == next => {
-                standstill_behind(law, crossing, approach.leg)
+                standstill_behind(law, crossing, approach.movement)
             }
             _ => law,
         }

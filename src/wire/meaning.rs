@@ -44,6 +44,7 @@ macro_rules! meaning {
     (heading) => { "Degrees clockwise from true north into which the vehicle points. A vehicle that is turned away from a street by more than 60 degrees is not on that street." };
     (route_distance) => { "Way of the front bumper to the crossing point of its leg at Stamp; negative beyond it." };
     (leg) => { "Leg of the intersection by which it comes, by the numbers of the route data." };
+    (turn) => { "Its exit there: the number of the exit less that of the leg, modulo 8; 0 is straight on." };
     (intersection) => { "Number of the intersection in the route data." };
     (arrival) => { "GNSS time at which it entered the intersection's zone, modulo 10485.76 s. It decides the order: earlier goes first." };
     (claim_kind) => { "Whether it takes a station (PredecessorStation) to be just ahead of it in the order, takes itself for the first, or does not say." };
@@ -180,6 +181,7 @@ fn field(content: Content, name: &str) -> &'static str {
             "Arrival" => meaning!(arrival),
             "Intersection" => meaning!(intersection),
             "Leg" => meaning!(leg),
+            "Turn" => meaning!(turn),
             "Left" => meaning!(left),
             "PassStamp" => meaning!(pass_stamp),
             "Claimed1" | "Claimed2" => meaning!(claimed),
@@ -235,6 +237,7 @@ fn said(speaker: Speaker, about: About, name: &str) -> &'static str {
         (About::Geo, "Heading") => meaning!(heading),
         (About::Route, "Distance") => meaning!(route_distance),
         (About::Route, "Leg") => meaning!(leg),
+        (About::Route, "Turn") => meaning!(turn),
         (About::Route, "Intersection") => meaning!(intersection),
         (About::Route, "Arrival") => meaning!(arrival),
         (About::Route, "PredecessorKind") => meaning!(claim_kind),

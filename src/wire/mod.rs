@@ -29,6 +29,7 @@ pub mod load;
 mod meaning;
 mod message_name;
 pub mod motion;
+pub mod movement;
 pub mod pass;
 mod predecessor;
 pub mod quantity;
@@ -46,6 +47,7 @@ pub use frame::{Data, Frame};
 pub use identifier::Identifier;
 pub use identifiers::{IdentifierError, Identifiers};
 pub use message_name::MessageName;
+pub use movement::Movement;
 pub use receiver::{Received, Receiver, Role};
 pub use sender::{Sender, Unsent};
 

@@ -4,6 +4,7 @@
 use super::bits::Payload;
 use super::field::{Field, TAG};
 use super::meaning::meaning;
+use super::movement::{self, Movement};
 use crate::time::{Duration, GnssTime};
 
 /// A time of a pass: GNSS time by 10 ms, modulo 2¹⁶ (655.36 s).
@@ -64,10 +65,8 @@ pub struct Pass {
     ///
     /// 0 to 255.
     pub intersection: u8,
-    #[doc = meaning!(leg)]
-    ///
-    /// 0 to 7.
-    pub leg: u8,
+    /// The way through it.
+    pub movement: Movement,
     #[doc = meaning!(left)]
     pub left: Option<u8>,
     #[doc = meaning!(pass_stamp)]
@@ -83,7 +82,7 @@ pub struct Pass {
 const PART: Field = Field::selector("Part", 14, 2, 4);
 const STATION_ID: Field = Field::unsigned("StationId", 16, 32).part(0);
 const INTERSECTION: Field = Field::unsigned("Intersection", 48, 8).part(0);
-const LEG: Field = Field::unsigned("Leg", 56, 3).part(0);
+const MOVEMENT: movement::Fields = movement::fields((56, 0), (59, 0));
 const STAMP: Field = time("PassStamp", 16).part(1);
 const ARRIVAL: Field = Field::unsigned("Arrival", 32, 20).steps(100, "s").part(1);
 const LEFT: Field = Field::unsigned("Left", 52, 9).or_none(&[(511, "none")]).limits(0, 255).part(1);
@@ -105,7 +104,8 @@ pub const FIELDS: &[Field] = &[
     PART,
     STATION_ID,
     INTERSECTION,
-    LEG,
+    MOVEMENT.leg(),
+    MOVEMENT.turn(),
     STAMP,
     ARRIVAL,
     LEFT,
@@ -123,7 +123,8 @@ impl Pass {
     pub fn encode(&self) -> [Payload; 4] {
         let begin = |part| PART.with_raw(TAG.with_raw(Payload::EMPTY, i64::from(self.tag & 3)), part);
         let a = STATION_ID.with_raw(begin(0), i64::from(self.station_id));
-        let a = LEG.with_raw(INTERSECTION.with_raw(a, i64::from(self.intersection)), i64::from(self.leg));
+        let a = MOVEMENT.with_leg(INTERSECTION.with_raw(a, i64::from(self.intersection)), self.movement);
+        let a = MOVEMENT.with_turn(a, self.movement);
         let b = STAMP.with_raw(begin(1), i64::from(self.stamp.0));
         let b = ARRIVAL.with_raw(b, i64::from(self.arrival & 0xF_FFFF));
         let b = LEFT.with_steps(b, self.left.map(i64::from));
@@ -145,7 +146,7 @@ impl Pass {
             tag: TAG.byte(*a),
             station_id: STATION_ID.word(*a),
             intersection: INTERSECTION.byte(*a),
-            leg: LEG.byte(*a),
+            movement: MOVEMENT.get(*a, *a),
             left: u8::try_from(left).ok(),
             stamp: time_of(*b, &STAMP),
             arrival: ARRIVAL.word(*b),

@@ -19,7 +19,7 @@ use holdover::wire::route::Route;
 use holdover::wire::status::Status;
 use holdover::wire::sync::{FollowUp, Sync};
 use holdover::wire::unserved::Unserved;
-use holdover::wire::{Message, Predecessor, Said, Slot, StationHash};
+use holdover::wire::{Message, Movement, Predecessor, Said, Slot, StationHash};
 use proptest::option;
 use proptest::prelude::*;
 
@@ -115,10 +115,10 @@ prop_compose! {
 
 prop_compose! {
     pub fn route()(
-        tag in 0u8..4, intersection: u8, leg in 0u8..8, distance in steps(-1_048_575..=1_048_575, 1000),
+        tag in 0u8..4, intersection: u8, leg in 0u8..8, exit in 0u8..8, distance in steps(-1_048_575..=1_048_575, 1000),
         stamp in stamp(), arrival in 0u32..1 << 20, predecessor in predecessor(),
     ) -> Route {
-        Route { tag, intersection, leg, distance, stamp, arrival, predecessor }
+        Route { tag, intersection, movement: Movement { leg, exit }, distance, stamp, arrival, predecessor }
     }
 }
 
@@ -205,10 +205,11 @@ prop_compose! {
 
 prop_compose! {
     pub fn pass()(
-        tag in 0u8..4, station_id: u32, intersection: u8, leg in 0u8..8, left in proptest::option::of(any::<u8>()), stamp: u16,
+        tag in 0u8..4, station_id: u32, intersection: u8, leg in 0u8..8, exit in 0u8..8, left in proptest::option::of(any::<u8>()), stamp: u16,
         arrival in 0u32..1 << 20, one in proptest::option::of(claimed()), other in proptest::option::of(claimed()),
     ) -> Pass {
-        Pass { tag, station_id, intersection, leg, left, stamp: PassTime(stamp), arrival, claims: [one, other] }
+        let movement = Movement { leg, exit };
+        Pass { tag, station_id, intersection, movement, left, stamp: PassTime(stamp), arrival, claims: [one, other] }
     }
 }
 

@@ -3,8 +3,9 @@
 //! street to the east, which begins 400 m before. Vehicles with a unit each drive on them, and hear one another without delay, if at all.
 
 use super::*;
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement, Path, Scale, Segment};
 use holdover::wire::geo::GeoPosition;
+use holdover::wire::pass::Pass;
 
 const CM: i32 = 687_194_767; // 0.01 · 2³⁶
 
@@ -45,38 +46,50 @@ static FIRST: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(200_000), conflicts: 0b110 },
-        Approach { leg: 1, path: &EASTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
-        Approach { leg: 2, path: &WESTWARD, crossing: Position::from_mm(200_000), conflicts: 0b01 },
+        Approach::straight(0, &NORTHWARD, Position::from_mm(200_000), 0b110),
+        Approach::straight(1, &EASTWARD, Position::from_mm(200_000), 0b01),
+        Approach::straight(2, &WESTWARD, Position::from_mm(200_000), 0b01),
     ],
 };
 static SECOND: Intersection = Intersection {
     id: 6,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(390_000), conflicts: 0b10 },
-        Approach { leg: 1, path: &FAR_EASTWARD, crossing: Position::from_mm(400_000), conflicts: 0b01 },
+        Approach::straight(0, &NORTHWARD, Position::from_mm(390_000), 0b10),
+        Approach::straight(1, &FAR_EASTWARD, Position::from_mm(400_000), 0b01),
     ],
 };
 pub static WAYS: [Itinerary; 4] = [
     Itinerary {
         path: &NORTHWARD,
         crossings: &[
-            Crossing { intersection: &FIRST, leg: 0, at: Position::from_mm(200_000) },
-            Crossing { intersection: &SECOND, leg: 0, at: Position::from_mm(390_000) },
+            Crossing { intersection: &FIRST, movement: Movement::straight(0), at: Position::from_mm(200_000) },
+            Crossing { intersection: &SECOND, movement: Movement::straight(0), at: Position::from_mm(390_000) },
         ],
     },
     Itinerary {
         path: &EASTWARD,
-        crossings: &[Crossing { intersection: &FIRST, leg: 1, at: Position::from_mm(200_000) }],
+        crossings: &[Crossing {
+            intersection: &FIRST,
+            movement: Movement::straight(1),
+            at: Position::from_mm(200_000),
+        }],
     },
     Itinerary {
         path: &FAR_EASTWARD,
-        crossings: &[Crossing { intersection: &SECOND, leg: 1, at: Position::from_mm(400_000) }],
+        crossings: &[Crossing {
+            intersection: &SECOND,
+            movement: Movement::straight(1),
+            at: Position::from_mm(400_000),
+        }],
     },
     Itinerary {
         path: &WESTWARD,
-        crossings: &[Crossing { intersection: &FIRST, leg: 2, at: Position::from_mm(200_000) }],
+        crossings: &[Crossing {
+            intersection: &FIRST,
+            movement: Movement::straight(2),
+            at: Position::from_mm(200_000),
+        }],
     },
 ];
 
@@ -126,6 +139,10 @@ pub struct Driver {
     /// Whether its driver's request comes.
     pub asks: bool,
     pub last: Option<Heard>,
+    /// The driver whom it does not hear.
+    pub deaf_to: Option<usize>,
+    /// Whether its modem repeats the passes that it hears, every half second.
+    pub repeats: bool,
 }
 
 impl Driver {
@@ -163,6 +180,8 @@ impl Driver {
             is_timed: true,
             asks: true,
             last: None,
+            deaf_to: None,
+            repeats: false,
         }
     }
 
@@ -182,6 +201,12 @@ impl Driver {
     pub fn follows(&self) -> Option<u8> {
         let index = self.rig.unit.coordination().choice().target?;
         Some(self.rig.unit.peers().get(index.into())?.station()?.0)
+    }
+
+    fn put_pass(&mut self, now: i64, pass: Pass) {
+        if self.hears {
+            let _ = self.rig.put(now + 1_000, &Message::PeerPass(pass));
+        }
     }
 
     /// Whether any of it is in the conflict area of the first crossing.
@@ -204,13 +229,15 @@ impl Driver {
 pub struct Junction {
     pub drivers: Vec<Driver>,
     pub now: i64,
+    /// What each has said of its passes last.
+    said: Vec<(usize, Pass)>,
 }
 
 pub const PERIOD: i64 = 10_000;
 
 impl Junction {
     pub fn new(drivers: Vec<Driver>) -> Self {
-        Self { drivers, now: 0 }
+        Self { drivers, now: 0, said: Vec::new() }
     }
 
     /// Drives four, of which two share a leg, for so many seconds. Leaves the least gap on a leg, whether two that cross were in the area at
@@ -307,15 +334,29 @@ impl Junction {
         }
         for (from, pass) in passes {
             for to in (0..self.drivers.len()).filter(|to| *to != from) {
-                if self.drivers[to].hears {
-                    let _ = self.drivers[to].rig.put(now + 1_000, &Message::PeerPass(pass));
+                if self.drivers[to].deaf_to != Some(from) {
+                    self.drivers[to].put_pass(now, pass);
+                }
+            }
+            self.said.retain(|(_, held)| held.station_id != pass.station_id);
+            self.said.push((from, pass));
+        }
+        if now % 500_000 == 0 {
+            let all = 0..self.drivers.len();
+            let repeaters: Vec<usize> = all.filter(|index| self.drivers[*index].repeats).collect();
+            for repeater in repeaters {
+                // It repeats nothing to whoever said it.
+                for (from, pass) in self.said.clone().into_iter().filter(|(from, _)| *from != repeater) {
+                    let others = (0..self.drivers.len()).filter(|to| ![from, repeater].contains(to));
+                    others.for_each(|to| self.drivers[to].put_pass(now, pass));
                 }
             }
         }
         for (from, own) in said {
             for to in 0..self.drivers.len() {
                 let is_silent = matches!(own, Said::Route(_)) && !self.drivers[from].says_route;
-                if to != from && self.drivers[to].hears && !is_silent {
+                let hears = self.drivers[to].hears && self.drivers[to].deaf_to != Some(from);
+                if to != from && hears && !is_silent {
                     let slot = Slot(from as u8);
                     let _ = self.drivers[to].rig.put(now + 1_000, &Message::Peer(slot, own));
                 }

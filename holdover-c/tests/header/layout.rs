@@ -70,9 +70,9 @@ pub fn layouts() -> Vec<Layout> {
         plain Scale "holdover_scale_t" { north, east }
         plain Segment "holdover_segment_t" { begins, length, latitude, longitude, along, across, heading }
         pointing Path "holdover_path_t" { segments, segment_count }
-        pointing Approach "holdover_approach_t" { crossing, path, leg, conflicts }
+        pointing Approach "holdover_approach_t" { crossing, exits, conflicts, path, leg, exit }
         pointing Intersection "holdover_intersection_t" { half, approaches, approach_count, id }
-        pointing Crossing "holdover_crossing_t" { at, intersection, leg }
+        pointing Crossing "holdover_crossing_t" { at, intersection, leg, exit }
         pointing Itinerary "holdover_itinerary_t" { path, crossings, crossing_count }
     }
 }

@@ -26,6 +26,8 @@ macro_rules! entries {
 pub const LIBRARY: &[Entry] = entries![
     "paper",
     "corridor",
+    "on-ramp",
+    "turns",
     "motorway",
     "merge",
     "stop-and-go",

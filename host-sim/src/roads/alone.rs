@@ -61,16 +61,18 @@ impl Lost {
 #[must_use]
 pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic, waits: bool) -> f64 {
     let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
-    let ahead = all.iter().filter(|other| other.road == own.road && other.way_m > own.way_m);
-    let ahead = ahead.min_by(|a, b| a.way_m.total_cmp(&b.way_m));
+    let on_road = |other: &Sighting| network.on_road(own.road, other.road, other.way_m, other.length_m);
+    let ahead = all.iter().filter(|other| other.trip != own.trip).filter_map(|other| Some((other, on_road(other)?)));
+    let ahead = ahead.filter(|(_, [_, front_m])| *front_m > own.way_m);
+    let ahead = ahead.min_by(|(_, [_, a]), (_, [_, b])| a.total_cmp(b));
     let behind = |gap_m: f64, speed_mps: f64, standstill_m: f64| {
         let closing = own.speed_mps * (own.speed_mps - speed_mps) / (2.0 * (ACCELERATION_MPS2 * BRAKING_MPS2).sqrt());
         let wanted_m = standstill_m + (own.speed_mps * traffic.time_gap_s + closing).max(0.0);
         (wanted_m / gap_m.max(0.1)).powi(2)
     };
     let mut presses: f64 = 0.0;
-    if let Some(ahead) = ahead {
-        let gap_m = ahead.way_m - ahead.length_m - own.way_m;
+    if let Some((ahead, [rear_m, _])) = ahead {
+        let gap_m = rear_m - own.way_m;
         presses = presses.max(behind(gap_m, ahead.speed_mps, traffic.standstill_m));
     }
     if let Some(gap_m) = to_stop_line(own, network).filter(|_| waits) {

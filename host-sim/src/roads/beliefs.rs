@@ -129,10 +129,18 @@ pub(crate) fn on_axis(network: &Network, own: &Sighting, target: &Sighting) -> O
     }
     let (own_stops, stops) = (&network.lanes[own.road].stops, &network.lanes[target.road].stops);
     // The two directions of a street share several intersections, so there are several virtual lanes. This is the
-    // virtual lane of the intersection that the ego's unit takes for its next.
-    let here = own_stops.iter().find(|stop| own.next == Some(stop.intersection))?;
+    // virtual lane of the intersection that the ego's unit takes for its next. Beyond its last one it has only those with
+    // it who have joined it there.
+    let next = own_stops.iter().find(|stop| own.next == Some(stop.intersection));
+    let here = next.or(own_stops.last().filter(|_| own.next.is_none()))?;
     let there = stops.iter().find(|stop| stop.intersection == here.intersection)?;
-    Some(here.at_m - there.at_m + target.way_m)
+    let [own_leg, leg] = [here, there].map(|stop| network.junctions[stop.intersection].legs[stop.leg]);
+    let joins = own_leg.movement.leg != leg.movement.leg && own_leg.movement.exit == leg.movement.exit;
+    if next.is_none() && !joins {
+        return None;
+    }
+    let shift_m = if joins { own_leg.exits_m - leg.exits_m } else { 0.0 };
+    Some(here.at_m - there.at_m + target.way_m + shift_m)
 }
 
 impl Watch for Beliefs<'_> {

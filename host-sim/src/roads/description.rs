@@ -117,6 +117,8 @@ pub struct Radio {
     /// Length of each vehicle's radio silence: it neither transmits nor receives. The silence begins at a random time
     /// on its way.
     pub dark_s: f64,
+    /// How often every vehicle repeats the passes that it hears; 0: it does not.
+    pub repeats_hz: f64,
 }
 
 impl Radio {
@@ -183,6 +185,8 @@ pub struct RoadPlan {
     pub points: Vec<Point>,
     /// Offset of the lane to the right of that line; negative: to the left.
     pub right_m: f64,
+    /// Radius of its corners; 0: it has none.
+    pub corner_m: f64,
     /// Mean rate of arrivals.
     pub vehicles_per_min: f64,
 }

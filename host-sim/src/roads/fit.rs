@@ -4,7 +4,8 @@
 use holdover::coordination::map::LEGS;
 
 use super::description::Corridor;
-use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, WIDTH_M, cross};
+use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, Stop, WIDTH_M, cross};
+use super::pavement::{CORNERS_M, same};
 use crate::sim::globe::Shift;
 
 /// Least distance between ways that do not cross, in metres.
@@ -51,7 +52,8 @@ pub fn check(corridor: &Corridor) -> Result<(), Misfit> {
     lanes().try_for_each(|(road, lane)| ends(corridor, road, lane))?;
     (0..network.junctions.len()).try_for_each(|place| intersection(corridor, &network, place))?;
     lanes().try_for_each(|(road, lane)| areas(corridor, road, lane))?;
-    lanes().try_for_each(|(road, lane)| lanes().take(road).try_for_each(|other| apart(corridor, (road, lane), other)))
+    let pairs = |road| lanes().take(road).map(|(other, _)| other);
+    lanes().try_for_each(|(road, _)| pairs(road).try_for_each(|other| apart(corridor, &network, road, other)))
 }
 
 fn ends(corridor: &Corridor, road: usize, lane: &Lane) -> Result<(), Misfit> {
@@ -77,8 +79,10 @@ fn intersection(corridor: &Corridor, network: &Network, place: usize) -> Result<
         let cause = format!("no road passes the intersection \"{}\" within {PASSES_WITHIN_M} m", plan.name);
         return Err(Misfit::new(part, cause, "move its `at`, or remove it"));
     }
-    if legs.len() > usize::from(LEGS) {
-        let cause = format!("{} roads pass the intersection \"{}\"", legs.len(), plan.name);
+    let most =
+        legs.iter().map(|leg| leg.movement.leg.max(leg.movement.exit)).max().map_or(0, |most| u16::from(most) + 1);
+    if most > u16::from(LEGS) {
+        let cause = format!("{most} roads pass the intersection \"{}\"", plan.name);
         return Err(Misfit::new(part, cause, format!("let at most {LEGS} pass it")));
     }
     for other in &corridor.intersections[..place] {
@@ -111,13 +115,18 @@ fn overlap(part: Part, [a, b]: [&String; 2], apart_m: f64, least_m: f64, along: 
     Misfit::new(part, cause, "move one of them, or give both a smaller `half_m`")
 }
 
-/// Checks that vehicles of two roads share ground only where the roads cross.
-fn apart(corridor: &Corridor, (road, lane): (usize, &Lane), (other, others): (usize, &Lane)) -> Result<(), Misfit> {
+/// Checks that vehicles of two roads share ground only where the roads cross, or are one.
+fn apart(corridor: &Corridor, network: &Network, road: usize, other: usize) -> Result<(), Misfit> {
+    let [lane, others] = [road, other].map(|road| &network.lanes[road]);
+    let meet = meetings(network, lane, others);
     let shared_m = |way_m: f64| {
         let (place, heading_deg) = lane.road.at(way_m);
         let (there_m, aside_m) = others.road.nearest(place);
         let is_beside = (others.entry_m..=others.exit_m + RUN_OUT_M).contains(&there_m);
-        (is_beside && aside_m < LEAST_APART_M && !cross(heading_deg, others.road.at(there_m).1)).then_some(aside_m)
+        let is_on_other = is_beside && aside_m < LEAST_APART_M && !cross(heading_deg, others.road.at(there_m).1);
+        let is_one =
+            || same(&lane.road, way_m, &others.road).is_some() || meet.iter().any(|meeting| meeting.is_at(way_m));
+        (is_on_other && !is_one()).then_some(aside_m)
     };
     let ways = std::iter::successors(Some(lane.entry_m), |way_m| Some(way_m + EVERY_M));
     let Some(aside_m) = ways.take_while(|way_m| *way_m <= lane.exit_m + RUN_OUT_M).find_map(shared_m) else {
@@ -127,6 +136,41 @@ fn apart(corridor: &Corridor, (road, lane): (usize, &Lane), (other, others): (us
     let cause = format!("the roads \"{name}\" and \"{others_name}\" lie on one another, {aside_m:.1} m apart");
     let remedy = format!("move one to the side (`right_m`) until they are {LEAST_APART_M} m apart, or remove one");
     Err(Misfit::new(Part::Road(road), cause, remedy))
+}
+
+/// An intersection that two roads pass.
+struct Meeting {
+    at_m: f64,
+    half_m: f64,
+    /// Whether the two are one before it, and behind it.
+    is_one: [bool; 2],
+    conflict: bool,
+}
+
+impl Meeting {
+    /// Whether the two may share ground there. A corner lies within [`CORNERS_M`].
+    fn is_at(&self, way_m: f64) -> bool {
+        let beyond_m = way_m - self.at_m;
+        let is_before = self.is_one[0] && (-CORNERS_M..=self.half_m).contains(&beyond_m);
+        let is_behind = self.is_one[1] && (-self.half_m..=CORNERS_M).contains(&beyond_m);
+        is_before || is_behind || self.conflict && beyond_m.abs() <= self.half_m
+    }
+}
+
+/// The intersections that two roads pass, along the first.
+fn meetings(network: &Network, lane: &Lane, others: &Lane) -> Vec<Meeting> {
+    let meeting = |stop: &Stop| {
+        let there = others.stops.iter().find(|there| there.intersection == stop.intersection)?;
+        let junction = &network.junctions[stop.intersection];
+        let [own, other] = [stop, there].map(|stop| junction.legs[stop.leg].movement);
+        Some(Meeting {
+            at_m: stop.at_m,
+            half_m: junction.half_m,
+            is_one: [own.leg == other.leg, own.exit == other.exit],
+            conflict: junction.conflict(stop.leg, there.leg),
+        })
+    };
+    lane.stops.iter().filter_map(meeting).collect()
 }
 
 #[cfg(test)]

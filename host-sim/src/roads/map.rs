@@ -1,7 +1,7 @@
 //! The map of every unit in a corridor: the network enters; for each road the core's itinerary leaves. It lives as long
 //! as the program.
 
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movements};
 
 use super::network::{Junction, Lane, Leg, Network};
 use crate::sim::quantities::{distance, metres};
@@ -17,7 +17,7 @@ pub fn itineraries(network: &Network) -> Vec<&'static Itinerary> {
             .iter()
             .map(|stop| Crossing {
                 intersection: intersections[stop.intersection],
-                leg: number(stop.leg),
+                movement: network.junctions[stop.intersection].legs[stop.leg].movement,
                 at: metres(stop.at_m),
             })
             .collect();
@@ -27,15 +27,21 @@ pub fn itineraries(network: &Network) -> Vec<&'static Itinerary> {
 }
 
 fn intersection(network: &Network, id: u8, junction: &Junction) -> &'static Intersection {
-    let legs = 0..junction.legs.len();
-    let conflicts = |a: usize| legs.clone().filter(|b| junction.conflict(a, *b)).fold(0, |bits, b| bits | 1 << b);
-    let approach = |(number_of, leg): (usize, &Leg)| Approach {
-        leg: number(number_of),
+    let conflicts = |a: usize| {
+        let others = junction.legs.iter().enumerate().filter(|(b, _)| junction.conflict(a, *b));
+        others.fold(Movements::NONE, |all, (_, other)| all.with(other.movement))
+    };
+    let approach = |(index, leg): (usize, &Leg)| Approach {
+        movement: leg.movement,
         path: network.lanes[leg.road].road.path,
         crossing: metres(leg.at_m),
-        conflicts: conflicts(number_of),
+        exits: distance(leg.exits_m),
+        conflicts: conflicts(index),
     };
-    let approaches: Vec<Approach> = junction.legs.iter().enumerate().map(approach).collect();
+    // Roads that differ elsewhere may have the same way here.
+    let is_first =
+        |(index, leg): &(usize, &Leg)| junction.legs[..*index].iter().all(|other| other.movement != leg.movement);
+    let approaches: Vec<Approach> = junction.legs.iter().enumerate().filter(is_first).map(approach).collect();
     let half = distance(junction.half_m);
     Box::leak(Box::new(Intersection { id, half, approaches: Box::leak(approaches.into_boxed_slice()) }))
 }

@@ -1,7 +1,11 @@
 //! The roads of a corridor and where they cross: a description enters; for every road its intersections leave, in the
 //! order of travel, with the distance along the road to each crossing point.
 
+use holdover::coordination::Movement;
+
 use super::description::Corridor;
+use super::movements;
+use super::pavement::{Shared, shared};
 use crate::sim::road::Road;
 
 /// A road is a leg of an intersection if it passes within this distance of its centre, in metres.
@@ -26,7 +30,7 @@ const BEYOND_M: f64 = 20.0 + RUN_OUT_M;
 pub struct Stop {
     /// The intersection.
     pub intersection: usize,
-    /// The road's number among the intersection's legs.
+    /// The road's number among the ways through the intersection.
     pub leg: usize,
     /// Distance along the road to the crossing point.
     pub at_m: f64,
@@ -45,24 +49,32 @@ pub struct Lane {
     pub exit_m: f64,
 }
 
-/// A leg of an intersection.
+/// The way of a road through an intersection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// The road of this leg.
+    /// The road.
     pub road: usize,
     /// Distance along that road to the crossing point.
     pub at_m: f64,
     /// Direction of travel at the crossing point, degrees clockwise from north.
     pub heading_deg: f64,
+    /// By how much it turns to the right there, in degrees.
+    pub turn_deg: f64,
+    /// The way from the crossing point to where the middle of the intersection is beside the lane of the exit.
+    pub exits_m: f64,
+    /// The leg by which it comes and the exit by which it leaves.
+    pub movement: Movement,
 }
 
-/// An intersection with its legs.
+/// An intersection with the ways through it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Junction {
     /// Half the length of the conflict area, along every road.
     pub half_m: f64,
     /// The roads through it, in the order of the description.
     pub legs: Vec<Leg>,
+    /// For each of them, whether it conflicts with each of them.
+    conflicts: Vec<Vec<bool>>,
 }
 
 /// All roads and intersections.
@@ -72,6 +84,8 @@ pub struct Network {
     pub lanes: Vec<Lane>,
     /// The intersections, in the order of the description.
     pub junctions: Vec<Junction>,
+    /// For each road, the stretches of it that lie on other roads.
+    pub(super) shared: Vec<Vec<Shared>>,
 }
 
 /// Whether two ways with these directions, in degrees, cross. Otherwise they run side by side, or on one another.
@@ -80,11 +94,28 @@ pub fn cross(a_deg: f64, b_deg: f64) -> bool {
     (LEAST_ANGLE_DEG..=180.0 - LEAST_ANGLE_DEG).contains(&(a_deg - b_deg).rem_euclid(180.0))
 }
 
+impl Leg {
+    /// Whether it goes straight on.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.turn_deg == 0.0
+    }
+}
+
 impl Junction {
-    /// Whether vehicles on these two legs can meet, because their ways cross.
+    /// Whether vehicles on these two ways can meet in the conflict area: they come by different legs, and their ways cross or
+    /// join.
     #[must_use]
     pub fn conflict(&self, a: usize, b: usize) -> bool {
-        a != b && cross(self.legs[a].heading_deg, self.legs[b].heading_deg)
+        self.conflicts[a][b]
+    }
+
+    /// Numbers its ways, and compares each with each.
+    fn compare(&mut self, lanes: &[Lane]) {
+        movements::numbered(&mut self.legs, lanes);
+        let (legs, half_m) = (&self.legs, self.half_m);
+        let conflicts = |a: &Leg| legs.iter().map(|b| movements::conflict(a, b, lanes, half_m)).collect();
+        self.conflicts = legs.iter().map(conflicts).collect();
     }
 }
 
@@ -94,16 +125,19 @@ impl Network {
     pub fn of(corridor: &Corridor) -> Self {
         let (appear_m, leave_m) = (corridor.traffic.appear_m, corridor.traffic.leave_m);
         let mut junctions: Vec<Junction> = Vec::new();
-        junctions.extend(corridor.intersections.iter().map(|plan| Junction { half_m: plan.half_m, legs: Vec::new() }));
+        let junction = |half_m| Junction { half_m, legs: Vec::new(), conflicts: Vec::new() };
+        junctions.extend(corridor.intersections.iter().map(|plan| junction(plan.half_m)));
         let mut lanes = Vec::new();
         for (index, plan) in corridor.roads.iter().enumerate() {
-            let road = Road::new(&plan.points, plan.right_m, appear_m + BEYOND_M, leave_m + BEYOND_M);
+            let ends_m = [appear_m + BEYOND_M, leave_m + BEYOND_M];
+            let road = Road::new(&plan.points, plan.right_m, plan.corner_m, ends_m);
             let mut stops = Vec::new();
             for (intersection, (place, junction)) in corridor.intersections.iter().zip(&mut junctions).enumerate() {
-                let (at_m, aside_m) = road.nearest(place.at);
+                let (nearest_m, aside_m) = road.nearest(place.at);
                 if aside_m <= PASSES_WITHIN_M {
-                    stops.push(Stop { intersection, leg: junction.legs.len(), at_m });
-                    junction.legs.push(Leg { road: index, at_m, heading_deg: road.at(at_m).1 });
+                    let leg = movements::leg(index, &road, place.at, nearest_m);
+                    stops.push(Stop { intersection, leg: junction.legs.len(), at_m: leg.at_m });
+                    junction.legs.push(leg);
                 }
             }
             stops.sort_by(|a, b| a.at_m.total_cmp(&b.at_m));
@@ -111,7 +145,9 @@ impl Network {
             let (first_m, last_m) = (first_m.map_or(0.0, |stop| stop.at_m), last_m.map_or(0.0, |stop| stop.at_m));
             lanes.push(Lane { road, stops, entry_m: first_m - appear_m, exit_m: last_m + leave_m });
         }
-        Self { lanes, junctions }
+        junctions.iter_mut().for_each(|junction| junction.compare(&lanes));
+        let shared = shared(&lanes);
+        Self { lanes, junctions, shared }
     }
 }
 

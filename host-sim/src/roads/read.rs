@@ -38,6 +38,7 @@ const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 
 const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, default: 0.1 };
 const RANGE: Number = Number { key: "range_m", unit: "metres", limits: 50.0..=5000.0, default: 400.0 };
 const DARK: Number = Number { key: "dark_s", unit: "seconds", limits: 0.0..=60.0, default: 4.0 };
+const REPEATS: Number = Number { key: "repeats_hz", unit: "Hz", limits: 0.0..=5.0, default: 0.0 };
 const MASS: Number = Number { key: "mass_scale", unit: "a factor", limits: 0.5..=2.0, default: 1.0 };
 const GRADE: Number = Number { key: "grade", unit: "a share of the way", limits: -0.15..=0.15, default: 0.0 };
 const WIND: Number = Number { key: "headwind_mps", unit: "m/s", limits: -30.0..=30.0, default: 0.0 };
@@ -46,6 +47,7 @@ const EMERGENCIES: Number = Number { key: "share", unit: "a share", limits: 0.0.
 const STANDS: Number = Number { key: "stands_s", unit: "seconds", limits: 0.0..=60.0, default: 10.0 };
 const FAULTS: Number = Number { key: "faults", unit: "a share", limits: 0.0..=1.0, default: 0.02 };
 const RIGHT: Number = Number { key: "right_m", unit: "metres", limits: -8.0..=8.0, default: 0.0 };
+const CORNER: Number = Number { key: "corner_m", unit: "metres", limits: 0.0..=50.0, default: 0.0 };
 const PER_MINUTE: Number =
     Number { key: "vehicles_per_min", unit: "vehicles a minute", limits: 0.0..=30.0, default: 3.0 };
 const HALF: Number = Number { key: "half_m", unit: "metres", limits: 1.0..=5.0, default: 3.5 };
@@ -186,6 +188,7 @@ fn radio(mut section: Section) -> Result<Radio, Error> {
         loss: section.number(&LOSS)?.value,
         range_m: section.number(&RANGE)?.value,
         dark_s: section.number(&DARK)?.value,
+        repeats_hz: section.number(&REPEATS)?.value,
     };
     section.finish()?;
     Ok(radio)
@@ -233,6 +236,7 @@ fn roads(document: &Document, sections: Vec<Section>, traffic: &Traffic) -> Resu
         let points = section.pairs(&DEGREES)?.ok_or_else(|| missing(document, line, "points"))?;
         let (at, points) = (points.line, points.value.iter().map(|pair| point(pair.value)).collect::<Vec<_>>());
         let right_m = section.number(&RIGHT)?.value;
+        let corner_m = section.number(&CORNER)?.value;
         let rate = section.number(&PER_MINUTE)?;
         section.finish()?;
         if roads.iter().any(|road| road.name == name) {
@@ -250,7 +254,7 @@ fn roads(document: &Document, sections: Vec<Section>, traffic: &Traffic) -> Resu
             let cause = format!("{} vehicles a minute do not fit a `headway_s` of {}", rate.value, traffic.headway_s);
             return Err(document.error_at(rate.line.or(line), cause, format!("give less than {most:.1}")));
         }
-        roads.push(RoadPlan { name, points, right_m, vehicles_per_min: rate.value });
+        roads.push(RoadPlan { name, points, right_m, corner_m, vehicles_per_min: rate.value });
     }
     Ok(roads)
 }

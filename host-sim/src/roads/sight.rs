@@ -8,8 +8,15 @@
 //! Where roads cross without an intersection one passes over the other, and they do not see one another. A sensor sees
 //! vehicles without V2X, and vehicles that have left, as any others.
 
+use super::movements::along;
 use super::network::{Lane, Leg, Network, Stop, WIDTH_M};
 use crate::sim::globe::Shift;
+
+/// Distance between the places at which ways that turn are compared, in metres.
+const EVERY_M: f64 = 0.25;
+
+/// Sine of the angle from which on two ways cross; below it they touch.
+const LEAST_SINE: f64 = 0.3;
 
 /// A vehicle on the roads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,8 +66,18 @@ impl Sights {
     pub fn of(network: &Network) -> Self {
         let of_stop = |lane: &Lane, stop: &Stop| {
             let junction = &network.junctions[stop.intersection];
+            let own = &junction.legs[stop.leg];
             let legs = junction.legs.iter().enumerate().filter(|(leg, _)| junction.conflict(stop.leg, *leg));
-            legs.map(|(_, leg)| crossing(network, lane, &junction.legs[stop.leg], leg, junction.half_m))
+            // A vehicle that joins is on the own way where the roads are one.
+            let crossing_ones = legs.filter(|(_, leg)| leg.movement.exit != own.movement.exit);
+            crossing_ones
+                .map(|(_, leg)| {
+                    if own.is_straight() && leg.is_straight() {
+                        crossing(network, lane, own, leg, junction.half_m)
+                    } else {
+                        bent_crossing(network, lane, own, leg, junction.half_m)
+                    }
+                })
                 .collect::<Vec<_>>()
         };
         let of_lane = |lane: &Lane| lane.stops.iter().flat_map(|stop| of_stop(lane, stop)).collect();
@@ -69,9 +86,11 @@ impl Sights {
 
     /// What a sensor at the front of `own` sees of the nearest of `all` on its way, within `range_m`.
     #[must_use]
-    pub fn nearest(&self, own: &Body, all: &[Body], range_m: f64) -> Option<Seen> {
-        let along = all.iter().filter(|other| other.road == own.road && other.front_m > own.front_m).map(|other| {
-            Seen { gap_m: (other.front_m - other.length_m - own.front_m).max(0.0), speed_mps: other.speed_mps }
+    pub fn nearest(&self, network: &Network, own: &Body, all: &[Body], range_m: f64) -> Option<Seen> {
+        let along = all.iter().filter(|other| *other != own).filter_map(|other| {
+            let [rear_m, front_m] = network.on_road(own.road, other.road, other.front_m, other.length_m)?;
+            let seen = Seen { gap_m: (rear_m - own.front_m).max(0.0), speed_mps: other.speed_mps };
+            (front_m > own.front_m).then_some(seen)
         });
         let is_near =
             |place: &&Crossing| (own.front_m - WIDTH_M..=own.front_m + 2.0 * range_m).contains(&place.at_m[0]);
@@ -88,10 +107,6 @@ impl Sights {
 fn crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg, half_m: f64) -> Crossing {
     let own_point = lane.road.at(own.at_m).0;
     let between = Shift::between(own_point, network.lanes[other.road].road.at(other.at_m).0);
-    let along = |heading_deg: f64| {
-        let (sine, cosine) = heading_deg.to_radians().sin_cos();
-        Shift { north_m: cosine, east_m: sine }
-    };
     let (sine, cosine) = (other.heading_deg - own.heading_deg).to_radians().sin_cos();
     let (ahead_m, right_m) = (between.along(along(own.heading_deg)), between.along(along(own.heading_deg).right()));
     // From its place on, the other lane is at `right + t sin` to the right of the own one: on it at `t = -right / sin`.
@@ -101,13 +116,31 @@ fn crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg, half_m: f64)
     Crossing { other: other.road, at_m, area_m, angle: (sine, cosine) }
 }
 
+/// The same where one of them turns: where they are nearest to one another in the conflict area.
+fn bent_crossing(network: &Network, lane: &Lane, own: &Leg, other: &Leg, half_m: f64) -> Crossing {
+    let road = &network.lanes[other.road].road;
+    let steps = |leg: &Leg| {
+        let from_m = leg.at_m - half_m;
+        (0..=(2.0 * half_m / EVERY_M) as u32).map(move |step| from_m + f64::from(step) * EVERY_M)
+    };
+    let pairs = steps(own).flat_map(|own_m| steps(other).map(move |other_m| [own_m, other_m]));
+    let apart_m = |[own_m, other_m]: &[f64; 2]| Shift::between(lane.road.at(*own_m).0, road.at(*other_m).0).length_m();
+    let at_m = pairs.min_by(|a, b| apart_m(a).total_cmp(&apart_m(b))).unwrap_or([own.at_m, other.at_m]);
+    let angle = (road.at(at_m[1]).1 - lane.road.at(at_m[0]).1).to_radians().sin_cos();
+    Crossing { other: other.road, at_m, area_m: [other.at_m - half_m, other.at_m + half_m], angle }
+}
+
 impl Crossing {
     /// What `own` sees of `other`, if a part of the other's body is on the own way and ahead.
     fn seen(&self, own: &Body, other: &Body) -> Option<Seen> {
         let front_m = other.front_m - self.at_m[1];
         let is_in_area = other.front_m > self.area_m[0] && other.front_m - other.length_m < self.area_m[1];
-        let beside = || self.covered(-WIDTH_M, WIDTH_M).filter(|_| is_in_area);
-        let (begins_m, ends_m) = self.covered(front_m - other.length_m, front_m).or_else(beside)?;
+        let (begins_m, ends_m) = if self.angle.0.abs() < LEAST_SINE {
+            Some((-WIDTH_M, WIDTH_M)).filter(|_| is_in_area)
+        } else {
+            let beside = || self.covered(-WIDTH_M, WIDTH_M).filter(|_| is_in_area);
+            self.covered(front_m - other.length_m, front_m).or_else(beside)
+        }?;
         let gap_m = self.at_m[0] + begins_m - own.front_m;
         let is_ahead = self.at_m[0] + ends_m > own.front_m;
         is_ahead.then(|| Seen { gap_m: gap_m.max(0.0), speed_mps: other.speed_mps * self.angle.1 })

@@ -49,7 +49,23 @@ pub fn gaps(network: &Network, sightings: &[Sighting], beyond: &[Sighting]) -> V
         trips: sorted(pair[0].trip, pair[1].trip),
         gap_m: pair[0].way_m - pair[0].length_m - pair[1].way_m,
     };
-    pairs.map(gap).collect()
+    pairs.map(gap).chain(on_shared_pavement(network, sightings, beyond)).collect()
+}
+
+/// The same from a vehicle to those on other roads that are ahead of it on pavement which the roads share.
+fn on_shared_pavement<'a>(
+    network: &'a Network,
+    sightings: &'a [Sighting],
+    beyond: &'a [Sighting],
+) -> impl Iterator<Item = Gap> + 'a {
+    let sharing = sightings.iter().filter(|own| !network.shared[own.road].is_empty());
+    let pairs = sharing.flat_map(move |own| sightings.iter().chain(beyond).map(move |other| (own, other)));
+    pairs.filter(|(own, other)| own.road != other.road).filter_map(|(own, other)| {
+        let [rear_m, front_m] = network.on_road(own.road, other.road, other.way_m, other.length_m)?;
+        let is_ahead = front_m >= own.way_m;
+        let (place, trips) = (Place::Road(own.road), sorted(own.trip, other.trip));
+        is_ahead.then_some(Gap { place, trips, gap_m: rear_m - own.way_m })
+    })
 }
 
 /// The vehicles in conflict areas.

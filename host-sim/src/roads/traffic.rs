@@ -263,13 +263,14 @@ impl<'a> Traffic<'a> {
         let bodies: Vec<Body> =
             self.travellers.values().map(|traveller| traveller.body(self.trips[traveller.trip].road)).collect();
         for (traveller, own) in self.travellers.values_mut().zip(&bodies) {
-            let ahead = traveller.sees_at(at_s).then(|| match self.sights.nearest(own, &bodies, range_m) {
-                None => Ahead::NOBODY,
-                Some(seen) => {
-                    let rear_m = traveller.vehicle.plant.position_m + seen.gap_m;
-                    Ahead { rear_m, speed_mps: seen.speed_mps }
-                }
-            });
+            let ahead =
+                traveller.sees_at(at_s).then(|| match self.sights.nearest(self.network, own, &bodies, range_m) {
+                    None => Ahead::NOBODY,
+                    Some(seen) => {
+                        let rear_m = traveller.vehicle.plant.position_m + seen.gap_m;
+                        Ahead { rear_m, speed_mps: seen.speed_mps }
+                    }
+                });
             traveller.vehicle.speak(at_s, period_s, ahead)?;
         }
         Ok(())

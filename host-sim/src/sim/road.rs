@@ -26,9 +26,10 @@ pub struct Ground {
 
 impl Road {
     /// A lane that lies `right_m` to the right of a line through `points`. There are at least two points, all
-    /// different. The lane begins `before_m` before the first point and ends `beyond_m` beyond the last.
+    /// different. Its corners have the radius `corner_m`. The lane begins `before_m` before the first point and ends
+    /// `beyond_m` beyond the last.
     #[must_use]
-    pub fn new(line: &[Point], right_m: f64, before_m: f64, beyond_m: f64) -> Self {
+    pub fn new(line: &[Point], right_m: f64, corner_m: f64, [before_m, beyond_m]: [f64; 2]) -> Self {
         let mut corners = offset(line, right_m);
         let last = corners.len() - 1;
         let [begin, end] = [(1, 0, before_m), (last - 1, last, beyond_m)].map(|(from, to, by_m)| {
@@ -36,7 +37,7 @@ impl Road {
             way.times(by_m / way.length_m()).from(corners[to])
         });
         (corners[0], corners[last]) = (begin, end);
-        Self { path: path(&corners) }
+        Self { path: path(&rounded(&corners, corner_m)) }
     }
 
     /// Length from end to end.
@@ -76,6 +77,41 @@ impl Road {
     }
 }
 
+/// The line with its corners rounded to arcs of this radius, in pieces that turn by 10° at most. An arc takes no more than half of
+/// the way to the next corner.
+fn rounded(line: &[Point], radius_m: f64) -> Vec<Point> {
+    const PIECE: f64 = std::f64::consts::PI / 18.0;
+    let mut round = vec![line[0]];
+    for corner in line.windows(3) {
+        let [back, on] = [corner[0], corner[2]].map(|next| Shift::between(corner[1], next));
+        let across = (back.along(on) / back.length_m()).clamp(-1.0, 1.0).acos();
+        let turn = std::f64::consts::PI - across;
+        let most_m = 0.5 * back.length_m().min(on.length_m());
+        let tangent_m = (radius_m * (0.5 * turn).tan()).min(most_m);
+        if tangent_m < 0.1 {
+            round.push(corner[1]);
+            continue;
+        }
+        let [begin, end] = [back, on].map(|way| way.times(tangent_m / way.length_m()));
+        let radius_m = tangent_m / (0.5 * turn).tan();
+        let right = if back.right().along(on) < 0.0 { 1.0 } else { -1.0 };
+        let inward = back.times(-right * radius_m / back.length_m()).right();
+        let pieces = (turn / PIECE).ceil().max(1.0) as u32;
+        let begin_point = begin.from(corner[1]);
+        for piece in 0..pieces {
+            let (sine, cosine) = (turn * f64::from(piece) / f64::from(pieces)).sin_cos();
+            // From the beginning of the arc: on along the way so far, and inward.
+            let way = begin.times(-radius_m * sine / tangent_m);
+            let aside = inward.times(1.0 - cosine);
+            let shift = Shift { north_m: way.north_m + aside.north_m, east_m: way.east_m + aside.east_m };
+            round.push(shift.from(begin_point));
+        }
+        round.push(end.from(corner[1]));
+    }
+    round.push(line[line.len() - 1]);
+    round
+}
+
 /// The line, moved to the right. Each corner moves along the bisector.
 fn offset(line: &[Point], right_m: f64) -> Vec<Point> {
     let unit = |from: Point, to: Point| {
@@ -105,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_lane_lies_beside_its_line_and_reaches_beyond_it() {
-        let road = Road::new(&[point(0.0, 0.0), point(600.0, 0.0)], 2.0, 100.0, 50.0);
+        let road = Road::new(&[point(0.0, 0.0), point(600.0, 0.0)], 2.0, 0.0, [100.0, 50.0]);
         assert!((road.length_m() - 750.0).abs() < 0.05, "{}", road.length_m());
         let (place, heading_deg) = road.at(400.0);
         let off_m = Shift::between(point(300.0, 2.0), place).length_m();
@@ -116,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_lane_keeps_its_distance_around_a_corner() {
-        let road = Road::new(&[point(0.0, 0.0), point(100.0, 0.0), point(100.0, 100.0)], 3.0, 0.0, 0.0);
+        let road = Road::new(&[point(0.0, 0.0), point(100.0, 0.0), point(100.0, 100.0)], 3.0, 0.0, [0.0, 0.0]);
         // The lane lies to the right of both pieces, so it cuts the corner.
         assert!((road.length_m() - 194.0).abs() < 0.05, "{}", road.length_m());
         let (_, aside_m) = road.nearest(point(100.0, 50.0));

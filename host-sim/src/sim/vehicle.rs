@@ -174,6 +174,11 @@ impl Vehicle {
         self.relay.limit(slots);
     }
 
+    /// Lets the modem repeat the passes that it hears so often; 0: not at all.
+    pub fn repeat_passes(&mut self, hz: f64) {
+        self.relay.repeat_passes(hz);
+    }
+
     /// Changes the target speed in the driver's request.
     pub fn want(&mut self, target_speed_mps: f64) {
         self.request.target_speed = speed(target_speed_mps);
@@ -277,10 +282,16 @@ impl Vehicle {
                     self.transmitter.take(&said);
                     self.relay.take(&said);
                 }
-                Ok(Received::Whole(Message::OwnPass(pass))) => self.transmitter.take_pass(&pass),
+                Ok(Received::Whole(Message::OwnPass(pass))) => {
+                    self.transmitter.take_pass(&pass);
+                    self.relay.take_pass(&pass);
+                }
                 // The last of what the unit sends at a time.
                 Ok(Received::Whole(Message::Status(_))) => {
-                    let message = self.transmitter.broadcast().map(|message| self.alias.of_message(&message));
+                    let message = self
+                        .transmitter
+                        .broadcast(|| self.relay.repeats(at_s))
+                        .map(|message| self.alias.of_message(&message));
                     self.broadcasts.extend(message.map(|message| (at_s, message)));
                 }
                 Ok(Received::Whole(Message::Estimate(estimate))) if is_outside => {

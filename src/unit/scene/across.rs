@@ -5,7 +5,7 @@ use super::Scene;
 use crate::envelope;
 use crate::model::bound::Bound;
 use crate::time::{Duration, Instant};
-use crate::units::Position;
+use crate::units::{Distance, Position};
 
 /// A peer that was heard no longer ago than this says where it is itself.
 const JUST_NOW: Duration = Duration::from_millis(500);
@@ -17,24 +17,30 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     pub fn stop_before_area(&self, index: usize, now: Instant, rearmost: Position) -> Option<Position> {
         let (approach, crossing) = (self.coordination.approach(index)?, self.coordination.crossing()?);
         let intersection = crossing.intersection;
-        let point = self.coordination.crossing_point(crossing)?;
         let area_begins = self.area_begins()?;
-        if rearmost > area_begins || !intersection.conflict(crossing.leg, approach.leg) {
+        if rearmost > area_begins || !intersection.conflict(crossing.movement, approach.movement) {
             return None;
         }
         let near_end = self.bound(index, now)?.lowest_position();
-        let is_inside = near_end >= area_begins && self.coordination.is_here(approach);
+        let [begins, ends] = self.area_of(index)?;
+        let is_inside = near_end >= begins && self.coordination.is_here(approach);
         if !is_inside && !self.coordination.choice().ahead.contains(index) {
             return None;
         }
         let length = self.peers.length_of(index);
-        envelope::stop_before_conflict(area_begins, near_end, length, point.ahead(intersection.half))
+        envelope::stop_before_conflict(area_begins, near_end, length, ends)
+    }
+
+    /// Where the next conflict area begins and ends for a peer, on the ego's axis.
+    fn area_of(&self, index: usize) -> Option<[Position; 2]> {
+        let shift = self.coordination.approach(index).map_or(Distance::ZERO, |approach| approach.shift);
+        let ends = self.coordination.end_of(self.coordination.next())?;
+        Some([self.area_begins()?.ahead(shift), ends.ahead(shift)])
     }
 
     /// Whether a peer that was heard just now is in the next conflict area, and may still be there at `then`.
     pub fn is_in_area_until(&self, index: usize, now: Instant, then: Instant) -> bool {
-        let area = self.area_begins().zip(self.coordination.end_of(self.coordination.next()));
-        let Some(((begins, ends), bound)) = area.zip(self.bound(index, now)) else { return false };
+        let Some(([begins, ends], bound)) = self.area_of(index).zip(self.bound(index, now)) else { return false };
         let is_inside = bound.lowest_position() >= begins && self.was_heard(index, now);
         is_inside && self.near_rear(index, then).is_none_or(|(rear, _)| rear < ends)
     }
@@ -43,8 +49,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// that may be waiting at its line does not.
     pub fn is_crossing_heard(&self, now: Instant) -> bool {
         let is_inside = |index| {
-            let ends = self.area_begins().zip(self.bound(index, now));
-            ends.is_some_and(|(begins, bound)| bound.lowest_position() >= begins)
+            let area = self.area_of(index).zip(self.bound(index, now));
+            area.is_some_and(|([begins, _], bound)| bound.lowest_position() >= begins)
         };
         (0..PEERS).any(|index| self.was_heard(index, now) && is_inside(index) && self.may_be_in_area(index, now))
     }
@@ -56,15 +62,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Whether a peer whose way crosses the ego's may be in the next conflict area.
     fn may_be_in_area(&self, index: usize, at: Instant) -> bool {
-        let begins_and_ends = self.area_begins().zip(self.coordination.end_of(self.coordination.next()));
-        let is_there = |((begins, ends), (rear, bound)): ((Position, Position), (Position, Bound))| {
+        let is_there = |([begins, ends], (rear, bound)): ([Position; 2], (Position, Bound))| {
             rear <= ends && bound.highest_position() >= begins
         };
-        let crosses =
-            self.coordination.approach(index).zip(self.coordination.crossing()).is_some_and(|(peer, own)| {
-                self.coordination.is_here(peer) && own.intersection.conflict(own.leg, peer.leg)
-            });
-        crosses && begins_and_ends.zip(self.near_rear(index, at)).is_some_and(is_there)
+        let crosses = self.coordination.approach(index).zip(self.coordination.crossing()).is_some_and(|(peer, own)| {
+            self.coordination.is_here(peer) && own.intersection.conflict(own.movement, peer.movement)
+        });
+        crosses && self.area_of(index).zip(self.near_rear(index, at)).is_some_and(is_there)
     }
 
     /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, and the ego has to be able to

@@ -239,8 +239,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// crossing by another leg. Places on different legs are not to be compared.
     fn is_namesake(&self, other: usize, sample: &Sample, approach: Option<&PeerApproach>) -> bool {
         let held = self.coordination.itinerary().and_then(|_| self.coordination.approach(other));
-        let is_by_another_leg =
-            |(one, other): (&PeerApproach, &PeerApproach)| one.crossing == other.crossing && one.leg != other.leg;
+        let is_by_another_leg = |(one, other): (&PeerApproach, &PeerApproach)| {
+            one.crossing == other.crossing && one.movement.leg != other.movement.leg
+        };
         if approach.zip(held).is_some_and(is_by_another_leg) {
             return true;
         }

@@ -92,9 +92,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let intersection = crossing.intersection;
         if pass.left == Some(intersection.id) {
             self.passes.known.leave(pass.station_id, stamp);
-        } else if pass.intersection == intersection.id && intersection.conflict(crossing.leg, pass.leg) {
+        } else if pass.intersection == intersection.id && intersection.conflict(crossing.movement, pass.movement) {
             let claims = pass.claims.map(|claimed| claimed.map(|claimed| claim(&claimed, pass.station_id, now)));
-            let station = Station::new(pass.station_id, pass.leg, stamp, Arrival(pass.arrival), claims);
+            let station = Station::new(pass.station_id, pass.movement, stamp, Arrival(pass.arrival), claims);
             if self.passes.known.hear(station).is_err() {
                 health.count(Cause::PassesFull);
             }
@@ -115,7 +115,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         else {
             return false;
         };
-        self.passes.known.on_record().any(|known| known.station() == station && known.leg == approach.leg)
+        self.passes.known.on_record().any(|known| known.station() == station && known.movement == approach.movement)
     }
 
     /// Whether firm claims cover a stay in the next conflict area, in GNSS time.
@@ -133,7 +133,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     fn order_of(&self, other: &Station) -> Order {
         let Some(own) = self.coordination.registration() else { return Order::Unknown };
         let entry = |station, arrival, leg| Entry { station, arrival: Some(arrival), claim: Predecessor::Unknown, leg };
-        let other = entry(other.station(), other.arrival, other.leg);
+        let other = entry(other.station(), other.arrival, other.movement.leg);
         if other.is_before(&entry(self.config.station, own.arrival, self.coordination.leg())) {
             Order::Ahead
         } else {
@@ -161,7 +161,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             tag,
             station_id: self.config.station_id,
             intersection: named.intersection.id,
-            leg: named.leg,
+            movement: named.movement,
             left: left.map(|crossing| crossing.intersection.id),
             stamp: PassTime::down(stamp),
             arrival: registration.arrival.0,

@@ -9,7 +9,7 @@ use crate::time::{Duration, Instant, Stamp};
 use crate::units::Distance;
 use crate::wire::geo::GeoPosition;
 use crate::wire::route::Route;
-use crate::wire::{Predecessor, Slot};
+use crate::wire::{Movement, Predecessor, Slot};
 
 /// A peer that told its route less than this ago is not placed by its position on the globe.
 const SAYS_MORE: Duration = Duration::from_millis(2_000);
@@ -46,7 +46,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return self.leave(at, slot);
         };
         let (arrival, claim) = (Some(Arrival(route.arrival)), route.predecessor);
-        let approach = PeerApproach { crossing: place, leg: route.leg, arrival, claim, heard: at, since: at };
+        let movement = route.movement;
+        let shift = crossing.intersection.shift(crossing.movement, movement);
+        let approach = PeerApproach { crossing: place, movement, shift, arrival, claim, heard: at, since: at };
         self.take_approach(slot, route.stamp, crossing, route.distance, approach);
     }
 
@@ -57,16 +59,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if self.coordination.itinerary().is_none() || self.coordination.approach(index).is_some_and(says_more) {
             return;
         }
-        let Some((place, crossing, leg, distance)) = self.approached(index, geo) else { return self.leave(at, slot) };
-        let approach =
-            PeerApproach { crossing: place, leg, arrival: None, claim: Predecessor::Unknown, heard: at, since: at };
+        let Some((place, crossing, movement, distance)) = self.approached(index, geo) else {
+            return self.leave(at, slot);
+        };
+        let shift = crossing.intersection.shift(crossing.movement, movement);
+        let (arrival, claim) = (None, Predecessor::Unknown);
+        let approach = PeerApproach { crossing: place, movement, shift, arrival, claim, heard: at, since: at };
         self.take_approach(slot, geo.stamp, crossing, distance, approach);
     }
 
-    /// The crossing of the ego's way that a vehicle at this place comes to next, with its index, and the vehicle's leg and way to the
-    /// crossing point.
-    fn approached(&self, index: usize, geo: &GeoPosition) -> Option<(usize, &'static Crossing, u8, Distance)> {
-        let mut next: Option<(usize, &'static Crossing, u8, Distance)> = None;
+    /// The crossing of the ego's way that a vehicle at this place comes to next, with its index, and the vehicle's movement and way to
+    /// the crossing point. Where several movements have the same way, the first on the map is taken.
+    fn approached(&self, index: usize, geo: &GeoPosition) -> Option<(usize, &'static Crossing, Movement, Distance)> {
+        let mut next: Option<(usize, &'static Crossing, Movement, Distance)> = None;
         for (place, crossing) in self.coordination.itinerary()?.crossings.iter().enumerate() {
             let intersection = crossing.intersection;
             for approach in intersection.approaches {
@@ -74,7 +79,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 let distance = approach.crossing.ahead_of(found.along);
                 let has_left = distance < intersection.half.plus(self.peers.length_of(index)).negated();
                 if !has_left && next.is_none_or(|(.., nearest)| distance < nearest) {
-                    next = Some((place, crossing, approach.leg, distance));
+                    next = Some((place, crossing, approach.movement, distance));
                 }
             }
         }
@@ -93,7 +98,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let Some(point) = self.coordination.crossing_point(crossing) else { return };
         let before = self.coordination.approach(index).copied();
         let Some(axis) = self.coordination.axis_mut(index) else { return };
-        let moved = axis.place(stamp, point, distance, approach);
+        let moved = axis.place(stamp, point.ahead(approach.shift), distance, approach);
         let is_placed = axis.approach().is_some();
         if before.is_none() && is_placed && self.is_placed_before(index) {
             self.forget_place(index);

@@ -35,7 +35,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Whether an unknown vehicle is in the next conflict area, or comes into it as the first vehicle of its leg.
     pub fn is_crossed_by_unknown(&self, now: Instant) -> bool {
         let (Some(crossing), Some(told)) = (self.coordination.crossing(), self.unknown.told(now)) else { return false };
-        let crosses = |leg: &u8| told.legs & (1 << leg) != 0 && crossing.intersection.conflict(crossing.leg, *leg);
+        let crosses = |leg: &u8| told.legs & (1 << leg) != 0 && crossing.intersection.crosses(crossing.movement, *leg);
         told.intersection == crossing.intersection.id && (0..8).any(|leg| crosses(&leg))
     }
 

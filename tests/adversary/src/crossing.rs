@@ -2,7 +2,7 @@
 //! cross 400 m from where each begins. Every vehicle has its own unit and hears the others over the radio, unless it is
 //! deaf. A vehicle that drives straight on while another vehicle is in its place has collided.
 
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement, Path, Scale, Segment};
 use holdover::units::{Distance, Position};
 use serde::{Deserialize, Serialize};
 
@@ -74,14 +74,17 @@ const AT: Position = Position::from_mm(400_000);
 static CORNER: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
-    approaches: &[
-        Approach { leg: 0, path: &NORTH, crossing: AT, conflicts: 0b10 },
-        Approach { leg: 1, path: &EAST, crossing: AT, conflicts: 0b01 },
-    ],
+    approaches: &[Approach::straight(0, &NORTH, AT, 0b10), Approach::straight(1, &EAST, AT, 0b01)],
 };
 static WAYS: [Itinerary; 2] = [
-    Itinerary { path: &NORTH, crossings: &[Crossing { intersection: &CORNER, leg: 0, at: AT }] },
-    Itinerary { path: &EAST, crossings: &[Crossing { intersection: &CORNER, leg: 1, at: AT }] },
+    Itinerary {
+        path: &NORTH,
+        crossings: &[Crossing { intersection: &CORNER, movement: Movement::straight(0), at: AT }],
+    },
+    Itinerary {
+        path: &EAST,
+        crossings: &[Crossing { intersection: &CORNER, movement: Movement::straight(1), at: AT }],
+    },
 ];
 
 /// Draws the vehicles.

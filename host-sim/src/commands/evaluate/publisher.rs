@@ -16,7 +16,7 @@ use super::options::Recording;
 use super::timeline::{Timeline, seconds};
 use crate::input::recording::Motion;
 use crate::measure::heard::HeardParameters;
-use crate::sim::modem::V2xMessage;
+use crate::sim::modem::{REPEATED, V2xMessage};
 use crate::sim::quantities::{acceleration, metres, speed};
 use crate::sim::station::station;
 use crate::sim::time::gnss;
@@ -135,7 +135,14 @@ impl<'a> Publisher<'a> {
         });
         Some(Published {
             sampled_us,
-            message: V2xMessage { motion, parameters, horizon: None, route: None, pass: None },
+            message: V2xMessage {
+                motion,
+                parameters,
+                horizon: None,
+                route: None,
+                pass: None,
+                repeated: [None; REPEATED],
+            },
         })
     }
 }

@@ -35,7 +35,7 @@ impl Street {
     fn sees(&self, front_m: f64) -> Option<Seen> {
         let [own_m, other_m] = self.places();
         let own = body(NORTHWEST, own_m - 50.0);
-        self.sights.nearest(&own, &[own, body(HARRISON, other_m + front_m)], RANGE_M)
+        self.sights.nearest(&self.network, &own, &[own, body(HARRISON, other_m + front_m)], RANGE_M)
     }
 }
 
@@ -75,7 +75,7 @@ fn one_beyond_the_range_is_not_seen_and_one_behind_is_not() {
     let street = Street::new();
     let [own_m, other_m] = street.places();
     let others = [body(HARRISON, other_m + 2.0)];
-    let sees = |front_m: f64| street.sights.nearest(&body(NORTHWEST, front_m), &others, RANGE_M);
+    let sees = |front_m: f64| street.sights.nearest(&street.network, &body(NORTHWEST, front_m), &others, RANGE_M);
     assert_eq!(sees(own_m - RANGE_M - 0.5 * WIDTH_M - 0.2), None);
     assert!(sees(own_m - RANGE_M).is_some());
     // The ego's front is beside the other's body, and then beyond it.
@@ -87,7 +87,7 @@ fn one_beyond_the_range_is_not_seen_and_one_behind_is_not() {
 fn on_the_own_road_the_nearest_vehicle_ahead_is_seen_by_its_rear_bumper() {
     let street = Street::new();
     let own = body(NORTHWEST, 100.0);
-    let see = |others: &[Body]| street.sights.nearest(&own, others, RANGE_M);
+    let see = |others: &[Body]| street.sights.nearest(&street.network, &own, others, RANGE_M);
     let ahead = [body(NORTHWEST, 160.0), body(NORTHWEST, 140.0), body(NORTHWEST, 90.0), body(SOUTHEAST, 120.0), own];
     assert_eq!(see(&ahead), Some(Seen { gap_m: 35.0, speed_mps: 8.0 }));
     assert_eq!(see(&[body(NORTHWEST, 200.0 + LENGTH_M + 0.1)]), None);
@@ -101,7 +101,7 @@ fn of_a_vehicle_on_the_own_road_and_one_that_crosses_the_nearer_one_is_seen() {
     let (own, across) = (body(NORTHWEST, own_m - 50.0), body(HARRISON, other_m + 2.0));
     let gap_m = |ahead_m: f64| {
         let ahead = body(NORTHWEST, own_m + ahead_m + LENGTH_M);
-        street.sights.nearest(&own, &[ahead, across], RANGE_M).unwrap().gap_m
+        street.sights.nearest(&street.network, &own, &[ahead, across], RANGE_M).unwrap().gap_m
     };
     assert!((gap_m(-10.0) - 40.0).abs() < 1e-9 && (gap_m(20.0) - 48.75).abs() < 0.1);
 }

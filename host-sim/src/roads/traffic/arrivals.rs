@@ -13,7 +13,6 @@ use super::{Traffic, Traveller};
 use crate::input::kind::Difference;
 use crate::input::scenario::Accuracy;
 use crate::roads::conditions::{Identity, config};
-use crate::roads::map::number;
 use crate::roads::trips::{HEARD_S, Trip};
 use crate::sim::air::Arrived;
 use crate::sim::globe::Shift;
@@ -65,9 +64,13 @@ impl Traffic<'_> {
     /// but a newcomer that has just appeared has not.
     fn has_room(&self, at_s: f64, trip: &Trip) -> bool {
         let entry_m = self.network.lanes[trip.road].entry_m;
-        let last = self.travellers.values().filter(|other| self.trips[other.trip].road == trip.road);
-        let Some(last) = last.min_by(|a, b| a.way_m().total_cmp(&b.way_m())) else { return true };
-        let gap_m = last.way_m() - last.vehicle.length_m - entry_m;
+        let on_road = |other: &&Traveller| {
+            let (road, length_m) = (self.trips[other.trip].road, other.vehicle.length_m);
+            self.network.on_road(trip.road, road, other.way_m(), length_m)
+        };
+        let last = self.travellers.values().filter_map(|other| Some((other, on_road(&other)?)));
+        let Some((last, [rear_m, _])) = last.min_by(|(_, [_, a]), (_, [_, b])| a.total_cmp(b)) else { return true };
+        let gap_m = rear_m - entry_m;
         let is_dark = last.dark.from_s <= at_s + HEARD_S && last.dark.to_s > at_s - LISTENING_S;
         let is_unheard = is_dark || last.is_mute(at_s + HEARD_S);
         if is_unheard && gap_m < UNHEARD_M {
@@ -123,22 +126,19 @@ impl Traffic<'_> {
             vehicle.mistake_time(ahead_s);
         }
         vehicle.limit_slots(self.conditions.slots);
+        vehicle.repeat_passes(self.conditions.radio.repeats_hz);
         self.prepare(index, &mut vehicle).map_err(|cause| refused(&cause))?;
         vehicle.acknowledge(self.corridor.bus.actuator_state);
         let ground = Ground { road: lane.road, odometer_m };
-        let crossings = lane.stops.iter().map(|stop| {
-            let junction = &self.network.junctions[stop.intersection];
-            let crossed = (0..junction.legs.len()).filter(|leg| junction.conflict(stop.leg, *leg));
-            Ahead {
-                id: number(stop.intersection),
-                leg: number(stop.leg),
-                crossed: crossed.fold(0, |crossed, leg| crossed | 1 << leg),
-                at_m: stop.at_m - lane.entry_m,
-            }
+        let itinerary = self.itineraries[trip.road];
+        let crossings = lane.stops.iter().zip(itinerary.crossings).map(|(stop, crossing)| Ahead {
+            intersection: crossing.intersection,
+            movement: crossing.movement,
+            at_m: stop.at_m - lane.entry_m,
         });
-        vehicle.set_out(ground, self.itineraries[trip.road], Course::through(crossings.collect())).map_err(
-            |cause| io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}")),
-        )?;
+        vehicle.set_out(ground, itinerary, Course::through(crossings.collect())).map_err(|cause| {
+            io::Error::new(io::ErrorKind::InvalidInput, format!("the units refuse the map: {cause:?}"))
+        })?;
         let period_s = self.corridor.period_s;
         let log = (self.logged == Some(index)).then(|| vehicle.listen());
         self.overhear(at_s, index, ground.road.at(lane.entry_m).0);

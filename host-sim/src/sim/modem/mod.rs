@@ -27,11 +27,14 @@ use holdover::wire::{Frame, Identifiers, Message, Predecessor, Said, Sender, Slo
 
 mod front;
 mod relevance;
+mod repeater;
 mod transmitter;
 mod unserved;
 
 use front::Front;
 pub use relevance::{Across, Ahead, Course, Foremost, LEADERS, Rank};
+pub use repeater::REPEATED;
+use repeater::Repeater;
 pub use transmitter::{Transmitter, V2xMessage};
 pub use unserved::UNSERVED_EVERY_S;
 
@@ -96,15 +99,15 @@ struct Placed {
     speed_mps: f64,
     length_m: f64,
     at_s: f64,
-    /// Whether the station was ahead of the unit on the unit's leg at that time. It still is, because vehicles do not
+    /// Whether the station was ahead of the unit on the unit's lane at that time. It still is, because vehicles do not
     /// overtake there, even if the unit has driven past that place since.
     is_ahead: bool,
 }
 
 impl Placed {
-    /// Distance by which that place is ahead of the unit on the unit's leg; `None` if the station is not ahead.
+    /// Distance by which that place is ahead of the unit on the unit's lane; `None` if the station is not ahead.
     fn ahead_m(&self, course: &Course) -> Option<f64> {
-        course.on_leg(&self.route).filter(|_| self.is_ahead)
+        course.on_lane(&self.route).filter(|_| self.is_ahead)
     }
 }
 
@@ -121,6 +124,7 @@ pub struct Relay {
     is_begun: Vec<bool>,
     places: Vec<Placed>,
     course: Course,
+    repeater: Repeater,
     turned_away: u64,
     /// Time of the first message that the modem heard.
     begun_s: Option<f64>,
@@ -133,7 +137,8 @@ impl Relay {
         let (slots, rested_s, places) = (vec![None; PEERS], vec![f64::NEG_INFINITY; PEERS], Vec::new());
         let (left, is_begun) = (vec![None; PEERS], vec![false; PEERS]);
         let (sender, course) = (Sender::new(identifiers), Course::default());
-        Self { sender, slots, left, rested_s, is_begun, places, course, turned_away: 0, begun_s: None }
+        let repeater = Repeater::default();
+        Self { sender, slots, left, rested_s, is_begun, places, course, repeater, turned_away: 0, begun_s: None }
     }
 
     /// On a bus with these frames.
@@ -169,7 +174,7 @@ impl Relay {
         let station = message.motion.station;
         self.begun_s.get_or_insert(at_s);
         self.place(at_s, message);
-        self.relay_pass(message, frames);
+        self.relay_passes(at_s, message, frames);
         let front = Front::of(&self.course, &self.places);
         let rank = self.rank(station, at_s, &front);
         if rank == Rank::Irrelevant && !self.has_to_say_so(station) {
@@ -205,15 +210,6 @@ impl Relay {
         }
     }
 
-    /// Relays what a station says of its passes, if it comes to the unit's next intersection or has just left it. It needs no slot.
-    fn relay_pass(&mut self, message: &V2xMessage, frames: &mut Vec<Frame>) {
-        let Some((pass, next)) = message.pass.zip(self.course.next()) else { return };
-        if pass.intersection == next.id || pass.left == Some(next.id) {
-            let sent = self.sender.send(&Message::PeerPass(pass), &mut |frame| frames.push(frame));
-            sent.expect("the catalogue has a line for passes");
-        }
-    }
-
     /// Whether an irrelevant station has a slot, and the unit has not yet heard that the station has left. Otherwise
     /// the unit would wait for a station that was silent while it left, because the unit last heard of it on its way.
     fn has_to_say_so(&self, station: StationHash) -> bool {
@@ -240,7 +236,7 @@ impl Relay {
         self.places.retain(|placed| placed.station != station && is_known(placed));
         let speed_mps = message.motion.speed.get().to_num();
         let length_m = message.parameters.map_or(LONGEST_M, |parameters| parameters.length.get().to_num());
-        let is_ahead = self.course.on_leg(&route).is_some_and(|ahead_m| ahead_m > 0.0);
+        let is_ahead = self.course.on_lane(&route).is_some_and(|ahead_m| ahead_m > 0.0);
         self.places.push(Placed { station, route, speed_mps, length_m, at_s, is_ahead });
     }
 

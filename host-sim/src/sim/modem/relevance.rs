@@ -20,7 +20,7 @@
 //! For a unit on a route, some stations are irrelevant: those that name no intersection on the unit's remaining way,
 //! and those that crossed long ago and do not lead. The unit could not tell where on its lane they are.
 
-use holdover::coordination::Arrival;
+use holdover::coordination::{Arrival, Intersection, Movement};
 use holdover::wire::fd::State;
 use holdover::wire::route::Route;
 use holdover::wire::{Predecessor, Said, StationHash};
@@ -143,12 +143,10 @@ impl Rank {
 /// An intersection ahead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ahead {
-    /// Number of the intersection in messages.
-    pub id: u8,
-    /// Leg of the unit there.
-    pub leg: u8,
-    /// The legs whose ways cross the unit's: bit `n` is leg `n`.
-    pub crossed: u8,
+    /// The intersection.
+    pub intersection: &'static Intersection,
+    /// The unit's way through it.
+    pub movement: Movement,
     /// Distance to it from where the unit sets out, in metres.
     pub at_m: f64,
 }
@@ -238,10 +236,10 @@ impl Course {
     #[must_use]
     pub fn across(&self, other: &Route) -> Option<Across> {
         let next = self.next()?;
-        let across = Across { leg: other.leg, way_m: other.distance.get().to_num() };
-        let is_crossing = other.intersection == next.id
+        let across = Across { leg: other.movement.leg, way_m: other.distance.get().to_num() };
+        let is_crossing = other.intersection == next.intersection.id
             && self.comes_before(other)
-            && next.crossed & 1u8.checked_shl(other.leg.into())? != 0;
+            && next.intersection.conflict(next.movement, other.movement);
         (is_crossing && across.way_m > -LEFT_M).then_some(across)
     }
 
@@ -266,12 +264,18 @@ impl Course {
         Some(self.route?.distance.get().to_num())
     }
 
-    /// Distance by which the last place of a station is ahead of the unit's last place, on the unit's own leg, in
-    /// metres. Negative if the unit has driven past that place since.
+    /// Distance by which the last place of a station is ahead of the unit's last place, on the unit's own lane, in
+    /// metres. Negative if the unit has driven past that place since. Until a station has left the conflict area it is
+    /// on the lane of its leg, and then on that of its exit.
     #[must_use]
-    pub fn on_leg(&self, other: &Route) -> Option<f64> {
+    pub fn on_lane(&self, other: &Route) -> Option<f64> {
         let (there, own_m) = self.way_to(other.intersection)?;
-        (self.crossings[there].leg == other.leg).then(|| own_m - other.distance.get().to_num::<f64>())
+        let Ahead { intersection, movement, .. } = self.crossings[there];
+        let way_m = other.distance.get().to_num::<f64>();
+        let is_on_lane =
+            if way_m > -LEFT_M { movement.leg == other.movement.leg } else { movement.exit == other.movement.exit };
+        let shift_m = || intersection.shift(movement, other.movement).get().to_num::<f64>();
+        is_on_lane.then(|| own_m + shift_m() - way_m)
     }
 
     /// An intersection that the unit has still to cross: its index on the unit's way, and the distance to it.
@@ -283,7 +287,7 @@ impl Course {
     }
 
     fn place(&self, id: u8) -> Option<usize> {
-        self.crossings.iter().position(|named| named.id == id)
+        self.crossings.iter().position(|named| named.intersection.id == id)
     }
 
     /// Index of the intersection that the unit reaches next. Before the unit has published its place, it is at the
@@ -295,7 +299,7 @@ impl Course {
     fn meets(&self, other: &Route, way_m: f64) -> Option<Rank> {
         let here = self.here()?;
         let (there, own_m) = self.way_to(other.intersection)?;
-        let is_on_lane = there == here && self.route.is_none_or(|own| own.leg == other.leg);
+        let is_on_lane = there == here && self.route.is_none_or(|own| own.movement.leg == other.movement.leg);
         // By its last message, because the unit waits for a silent station, wherever that station has gone since. On
         // its own leg the unit waits for no station: one beyond the crossing point matters only if it leads.
         let has_gone = other.distance.get().to_num::<f64>() < -CLEAR_M;

@@ -20,7 +20,7 @@ fn message(station: u8, parameters: Option<DrivingParameters>) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(station),
     };
-    V2xMessage { motion, parameters, horizon: None, route: None, pass: None }
+    V2xMessage { motion, parameters, horizon: None, route: None, pass: None, repeated: [None; REPEATED] }
 }
 
 fn parameters(target_speed: i32) -> DrivingParameters {
@@ -132,12 +132,12 @@ fn a_horizon_is_broadcast_only_with_the_motion_it_was_computed_from() {
     let knots = |tag| Knots { tag, ..Knots { tag: 0, knots: Default::default() } };
     let mut transmitter = Transmitter::default();
     transmitter.take(&Said::Horizon(knots(1)));
-    assert_eq!(transmitter.broadcast(), None);
+    assert_eq!(transmitter.broadcast(|| [None; REPEATED]), None);
     transmitter.take(&Said::Motion(message(1, None).motion));
     transmitter.take(&Said::Horizon(knots(2)));
-    assert_eq!(transmitter.broadcast().unwrap().horizon, None);
+    assert_eq!(transmitter.broadcast(|| [None; REPEATED]).unwrap().horizon, None);
     transmitter.take(&Said::Motion(message(1, None).motion));
     transmitter.take(&Said::Horizon(knots(1)));
-    assert_eq!(transmitter.broadcast().unwrap().horizon, Some(knots(1)));
-    assert_eq!(transmitter.broadcast(), None);
+    assert_eq!(transmitter.broadcast(|| [None; REPEATED]).unwrap().horizon, Some(knots(1)));
+    assert_eq!(transmitter.broadcast(|| [None; REPEATED]), None);
 }

@@ -8,6 +8,8 @@ use holdover::wire::motion::Motion;
 use holdover::wire::pass::Pass;
 use holdover::wire::route::Route;
 
+use super::REPEATED;
+
 /// One broadcast of a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct V2xMessage {
@@ -21,6 +23,8 @@ pub struct V2xMessage {
     pub route: Option<Route>,
     /// Its passes, if it said any.
     pub pass: Option<Pass>,
+    /// Passes of others that it heard.
+    pub repeated: [Option<Pass>; REPEATED],
 }
 
 /// The messages that the unit sent since the last broadcast.
@@ -56,11 +60,12 @@ impl Transmitter {
     }
 
     /// The message to broadcast now; `None` if the unit has not sent its motion. Driving parameters hold until the next
-    /// ones.
-    pub fn broadcast(&mut self) -> Option<V2xMessage> {
+    /// ones. `repeated` are the passes of others to go with it.
+    pub fn broadcast(&mut self, repeated: impl FnOnce() -> [Option<Pass>; REPEATED]) -> Option<V2xMessage> {
         let motion = self.motion.take()?;
         let horizon = self.horizon.take().filter(|knots| knots.tag == motion.tag);
         let route = self.route.take().filter(|route| route.stamp == motion.stamp);
-        Some(V2xMessage { motion, parameters: self.parameters, horizon, route, pass: self.pass.take() })
+        let (parameters, pass, repeated) = (self.parameters, self.pass.take(), repeated());
+        Some(V2xMessage { motion, parameters, horizon, route, pass, repeated })
     }
 }

@@ -18,11 +18,12 @@ impl Relay {
         let front = Front::of(&self.course, &self.places);
         let unserved: Vec<&Placed> =
             self.places.iter().filter(|placed| self.is_unserved(placed, at_s, &front)).collect();
-        let legs = unserved.iter().filter(|placed| self.is_in_the_way(placed, &front)).map(|placed| placed.route.leg);
+        let legs =
+            unserved.iter().filter(|placed| self.is_in_the_way(placed, &front)).map(|placed| placed.route.movement.leg);
         let ahead_m = unserved.iter().filter_map(|placed| Some(placed.ahead_m(&self.course)? - placed.length_m));
         let ahead_m = ahead_m.reduce(f64::min).zip(self.course.way_m()).map(|(ahead_m, way_m)| way_m - ahead_m);
         Some(Unserved {
-            intersection: next.id,
+            intersection: next.intersection.id,
             legs: legs.fold(0, |legs, leg| legs | 1u8.checked_shl(leg.into()).unwrap_or(0)),
             ahead: ahead_m.map(|way_m| Distance::from_mm((way_m * 1e3) as i32)),
             stations: u8::try_from(unserved.len()).unwrap_or(u8::MAX).min(63),

@@ -44,7 +44,7 @@ impl Alias {
         if let Some(parameters) = &mut renamed.parameters {
             parameters.predecessor = self.of_predecessor(parameters.predecessor);
         }
-        if let Some(pass) = &mut renamed.pass {
+        for pass in renamed.pass.iter_mut().chain(renamed.repeated.iter_mut().flatten()) {
             let station = self.of(StationHash(pass.station_id as u8));
             pass.station_id = pass.station_id & !0xFF | u32::from(station.0);
         }

@@ -185,7 +185,7 @@ impl Vehicle {
         let coordination = self.unit.coordination();
         let target = coordination.choice().target.and_then(|slot| coordination.approach(slot.into()));
         if let (Some(crossing), Some(target)) = (coordination.crossing(), target) {
-            config.law.standstill = standstill_behind(config.law.standstill, crossing, target.leg);
+            config.law.standstill = standstill_behind(config.law.standstill, crossing, target.movement);
         }
         let desired_mps2 = desired(&config, length_m, (self.plant.position_m, self.plant.speed_mps), Some(newest));
         let wanted_mps2 = limited(&config, desired_mps2, last_mps2, period_s);

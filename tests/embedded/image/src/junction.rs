@@ -2,7 +2,7 @@
 //! on and how far along enter; its place on the globe, its route and its passes leave. 190 m after the first intersection the street to the
 //! north has a second one.
 
-use holdover::coordination::{Approach, Arrival, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Arrival, Crossing, Intersection, Itinerary, Movement, Path, Scale, Segment};
 use holdover::time::{GnssTime, Stamp};
 use holdover::units::{Distance, Position};
 use holdover::wire::geo::GeoPosition;
@@ -41,22 +41,22 @@ static FIRST: Intersection = Intersection {
     id: 5,
     half: Distance::from_mm(4_000),
     approaches: &[
-        Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(AT[0]), conflicts: 0b10 },
-        Approach { leg: 1, path: &EASTWARD, crossing: Position::from_mm(AT[0]), conflicts: 0b01 },
+        Approach::straight(0, &NORTHWARD, Position::from_mm(AT[0]), 0b10),
+        Approach::straight(1, &EASTWARD, Position::from_mm(AT[0]), 0b01),
     ],
 };
 static SECOND: Intersection = Intersection {
     id: 6,
     half: Distance::from_mm(4_000),
-    approaches: &[Approach { leg: 0, path: &NORTHWARD, crossing: Position::from_mm(AT[1]), conflicts: 0b10 }],
+    approaches: &[Approach::straight(0, &NORTHWARD, Position::from_mm(AT[1]), 0b10)],
 };
 
 /// The ego's way, to the north.
 pub static WAY: Itinerary = Itinerary {
     path: &NORTHWARD,
     crossings: &[
-        Crossing { intersection: &FIRST, leg: 0, at: Position::from_mm(AT[0]) },
-        Crossing { intersection: &SECOND, leg: 0, at: Position::from_mm(AT[1]) },
+        Crossing { intersection: &FIRST, movement: Movement::straight(0), at: Position::from_mm(AT[0]) },
+        Crossing { intersection: &SECOND, movement: Movement::straight(0), at: Position::from_mm(AT[1]) },
     ],
 };
 
@@ -91,7 +91,7 @@ impl Place {
         Route {
             tag,
             intersection,
-            leg: self.leg,
+            movement: Movement::straight(self.leg),
             distance: Distance::from_mm((at - self.along) as i32),
             stamp,
             arrival: arrival.0,
@@ -111,7 +111,7 @@ impl Place {
             tag,
             station_id: station,
             intersection,
-            leg: self.leg,
+            movement: Movement::straight(self.leg),
             left: (self.leg == 0 && intersection == SECOND.id).then_some(FIRST.id),
             stamp,
             arrival: arrival.0,

@@ -3,7 +3,7 @@
 
 use core::mem;
 
-use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Path, Scale, Segment};
+use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement, Movements, Path, Scale, Segment};
 use holdover::units::{Distance, Position};
 
 use crate::words::{Put, Take, number};
@@ -36,9 +36,9 @@ impl Room {
         Self {
             segments: [SEGMENT; 80],
             paths: [PATH; 20],
-            approaches: [Approach { leg: 0, path: &PATH, crossing: Position::ZERO, conflicts: 0 }; 16],
+            approaches: [Approach::straight(0, &PATH, Position::ZERO, 0); 16],
             intersections: [INTERSECTION; 4],
-            crossings: [Crossing { intersection: &INTERSECTION, leg: 0, at: Position::ZERO }; 4],
+            crossings: [Crossing { intersection: &INTERSECTION, movement: Movement::straight(0), at: Position::ZERO }; 4],
             itinerary: Itinerary { path: &PATH, crossings: &[] },
         }
     }
@@ -54,18 +54,24 @@ pub fn put(itinerary: &Itinerary, put: Put) {
     put_path(itinerary.path, put);
     put(itinerary.crossings.len() as i64);
     for crossing in itinerary.crossings {
-        put(crossing.leg.into());
+        put_movement(crossing.movement, put);
         put(crossing.at.to_bits());
         put(crossing.intersection.id.into());
         put(crossing.intersection.half.to_bits().into());
         put(crossing.intersection.approaches.len() as i64);
         for approach in crossing.intersection.approaches {
-            put(approach.leg.into());
+            put_movement(approach.movement, put);
             put_path(approach.path, put);
             put(approach.crossing.to_bits());
-            put(approach.conflicts.into());
+            put(approach.exits.to_bits().into());
+            put(approach.conflicts.0 as i64);
         }
     }
+}
+
+fn put_movement(movement: Movement, put: Put) {
+    put(movement.leg.into());
+    put(movement.exit.into());
 }
 
 fn put_path(path: &Path, put: Put) {
@@ -119,16 +125,17 @@ fn kept<T>(left: &mut &'static mut [T], value: T) -> Option<&'static T> {
 
 impl Left {
     fn crossing(&mut self, take: Take) -> Option<Crossing> {
-        let (leg, at) = (number(take)?, Position::from_bits(take()?));
+        let (movement, at) = (movement(take)?, Position::from_bits(take()?));
         let (id, half) = (number(take)?, Distance::from_bits(number(take)?));
         let approaches = part(&mut self.approaches, number(take)?)?;
         for place in &mut *approaches {
-            let (leg, path) = (number(take)?, self.path(take)?);
-            let (crossing, conflicts) = (Position::from_bits(take()?), number(take)?);
-            *place = Approach { leg, path, crossing, conflicts };
+            let (movement, path) = (movement(take)?, self.path(take)?);
+            let (crossing, exits) = (Position::from_bits(take()?), Distance::from_bits(number(take)?));
+            let conflicts = Movements(take()? as u64);
+            *place = Approach { movement, path, crossing, exits, conflicts };
         }
         let intersection = kept(&mut self.intersections, Intersection { id, half, approaches })?;
-        Some(Crossing { intersection, leg, at })
+        Some(Crossing { intersection, movement, at })
     }
 
     fn path(&mut self, take: Take) -> Option<&'static Path> {
@@ -138,6 +145,10 @@ impl Left {
         }
         kept(&mut self.paths, Path { segments })
     }
+}
+
+fn movement(take: Take) -> Option<Movement> {
+    Some(Movement { leg: number(take)?, exit: number(take)? })
 }
 
 fn segment(take: Take) -> Option<Segment> {

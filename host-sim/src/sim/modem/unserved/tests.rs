@@ -1,12 +1,25 @@
 //! What a modem with too few slots reports of the stations without a slot, on two streets that cross.
 
 use super::*;
-use crate::sim::modem::{Ahead, Course, V2xMessage};
+use crate::sim::modem::{Ahead, Course, REPEATED, V2xMessage};
+use holdover::coordination::{Approach, Intersection, Movement, Path};
 use holdover::time::Stamp;
-use holdover::units::{Acceleration, Speed};
+use holdover::units::{Acceleration, Position, Speed};
 use holdover::wire::motion::{Motion, WirePosition};
 use holdover::wire::route::Route;
 use holdover::wire::{Identifiers, Predecessor, Said, StationHash};
+
+static PATH: Path = Path { segments: &[] };
+/// Leg 1 crosses leg 0, and leg 2 does not.
+static CORNER: Intersection = Intersection {
+    id: 5,
+    half: Distance::ZERO,
+    approaches: &[
+        Approach::straight(0, &PATH, Position::ZERO, 0b010),
+        Approach::straight(1, &PATH, Position::ZERO, 0b001),
+        Approach::straight(2, &PATH, Position::ZERO, 0),
+    ],
+};
 
 /// The unit's own number, leg, distance to the crossing point, and arrival.
 const OWN: (u8, u8, i32, u32) = (1, 0, 100, 1_000);
@@ -15,7 +28,7 @@ fn route((_, leg, metres, arrival): (u8, u8, i32, u32)) -> Route {
     Route {
         tag: 1,
         intersection: 5,
-        leg,
+        movement: Movement::straight(leg),
         distance: Distance::from_mm(metres * 1_000),
         stamp: Stamp::from_raw(7),
         arrival,
@@ -35,7 +48,14 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
         speed_accuracy: None,
         station: StationHash(said.0),
     };
-    V2xMessage { motion, parameters: None, horizon: None, route: Some(route(said)), pass: None }
+    V2xMessage {
+        motion,
+        parameters: None,
+        horizon: None,
+        route: Some(route(said)),
+        pass: None,
+        repeated: [None; REPEATED],
+    }
 }
 
 /// A modem with this many slots, one of them in reserve, that has heard those stations for a second. Each station has
@@ -43,7 +63,8 @@ fn message(said: (u8, u8, i32, u32)) -> V2xMessage {
 fn heard(slots: usize, stations: &[(u8, u8, i32, u32)]) -> Relay {
     let mut relay = Relay::new(Identifiers::DEFAULT);
     relay.limit(slots);
-    relay.set_out(Course::through(vec![Ahead { id: 5, leg: 0, crossed: 0b10, at_m: 200.0 }]));
+    let movement = Movement::straight(0);
+    relay.set_out(Course::through(vec![Ahead { intersection: &CORNER, movement, at_m: 200.0 }]));
     relay.take(&Said::Route(route(OWN)));
     for fifth in 0..6 {
         for station in stations {
