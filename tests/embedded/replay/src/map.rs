@@ -38,7 +38,8 @@ impl Room {
             paths: [PATH; 20],
             approaches: [Approach::straight(0, &PATH, Position::ZERO, 0); 16],
             intersections: [INTERSECTION; 4],
-            crossings: [Crossing { intersection: &INTERSECTION, movement: Movement::straight(0), at: Position::ZERO }; 4],
+            crossings: [Crossing { intersection: &INTERSECTION, movement: Movement::straight(0), at: Position::ZERO };
+                4],
             itinerary: Itinerary { path: &PATH, crossings: &[] },
         }
     }
