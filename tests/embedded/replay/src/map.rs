@@ -126,11 +126,11 @@ fn kept<T>(left: &mut &'static mut [T], value: T) -> Option<&'static T> {
 
 impl Left {
     fn crossing(&mut self, take: Take) -> Option<Crossing> {
-        let (movement, at) = (movement(take)?, Position::from_bits(take()?));
+        let (movement, at) = (movement_of(take)?, Position::from_bits(take()?));
         let (id, half) = (number(take)?, Distance::from_bits(number(take)?));
         let approaches = part(&mut self.approaches, number(take)?)?;
         for place in &mut *approaches {
-            let (movement, path) = (movement(take)?, self.path(take)?);
+            let (movement, path) = (movement_of(take)?, self.path(take)?);
             let (crossing, exits) = (Position::from_bits(take()?), Distance::from_bits(number(take)?));
             let conflicts = Movements(take()? as u64);
             *place = Approach { movement, path, crossing, exits, conflicts };
@@ -148,7 +148,7 @@ impl Left {
     }
 }
 
-fn movement(take: Take) -> Option<Movement> {
+fn movement_of(take: Take) -> Option<Movement> {
     Some(Movement { leg: number(take)?, exit: number(take)? })
 }
 
