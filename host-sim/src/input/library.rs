@@ -26,8 +26,6 @@ macro_rules! entries {
 pub const LIBRARY: &[Entry] = entries![
     "paper",
     "corridor",
-    "on-ramp",
-    "turns",
     "motorway",
     "merge",
     "stop-and-go",
@@ -39,6 +37,8 @@ pub const LIBRARY: &[Entry] = entries![
     "wrong",
     "vans",
     "buses",
+    "on-ramp",
+    "turns",
 ];
 
 /// The kind of a scenario.

@@ -4,7 +4,8 @@
 use holdover::coordination::map::LEGS;
 
 use super::description::Corridor;
-use super::network::{Lane, Network, PASSES_WITHIN_M, RUN_OUT_M, Stop, WIDTH_M, cross};
+use super::lane::{Lane, Stop, WIDTH_M, cross};
+use super::network::{Network, PASSES_WITHIN_M, RUN_OUT_M};
 use super::pavement::{CORNERS_M, same};
 use crate::sim::globe::Shift;
 
@@ -119,13 +120,17 @@ fn overlap(part: Part, [a, b]: [&String; 2], apart_m: f64, least_m: f64, along: 
 fn apart(corridor: &Corridor, network: &Network, road: usize, other: usize) -> Result<(), Misfit> {
     let [lane, others] = [road, other].map(|road| &network.lanes[road]);
     let meet = meetings(network, lane, others);
+    // Roads that neither join nor part are one road, told twice.
+    let is_twice = meet.iter().all(|meeting| meeting.is_one == [true; 2]);
     let shared_m = |way_m: f64| {
         let (place, heading_deg) = lane.road.at(way_m);
         let (there_m, aside_m) = others.road.nearest(place);
         let is_beside = (others.entry_m..=others.exit_m + RUN_OUT_M).contains(&there_m);
         let is_on_other = is_beside && aside_m < LEAST_APART_M && !cross(heading_deg, others.road.at(there_m).1);
-        let is_one =
-            || same(&lane.road, way_m, &others.road).is_some() || meet.iter().any(|meeting| meeting.is_at(way_m));
+        let is_one = || {
+            !is_twice && same(&lane.road, way_m, &others.road).is_some()
+                || meet.iter().any(|meeting| meeting.is_at(way_m))
+        };
         (is_on_other && !is_one()).then_some(aside_m)
     };
     let ways = std::iter::successors(Some(lane.entry_m), |way_m| Some(way_m + EVERY_M));

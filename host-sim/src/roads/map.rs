@@ -3,7 +3,8 @@
 
 use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movements};
 
-use super::network::{Junction, Lane, Leg, Network};
+use super::lane::{Lane, Leg};
+use super::network::{Junction, Network};
 use crate::sim::quantities::{distance, metres};
 
 /// The itineraries of the roads, in the order of the description.
@@ -44,9 +45,4 @@ fn intersection(network: &Network, id: u8, junction: &Junction) -> &'static Inte
     let approaches: Vec<Approach> = junction.legs.iter().enumerate().filter(is_first).map(approach).collect();
     let half = distance(junction.half_m);
     Box::leak(Box::new(Intersection { id, half, approaches: Box::leak(approaches.into_boxed_slice()) }))
-}
-
-/// An index of an intersection or of a leg; both are few.
-pub(super) fn number(index: usize) -> u8 {
-    u8::try_from(index).unwrap_or(u8::MAX)
 }

@@ -17,6 +17,7 @@ pub mod experiment;
 pub mod figures;
 pub mod fit;
 pub mod journal;
+pub mod lane;
 pub mod map;
 pub mod movements;
 pub mod network;

@@ -5,8 +5,7 @@
 
 use holdover::coordination::Movement;
 
-use super::map::number;
-use super::network::{Lane, Leg, WIDTH_M, cross};
+use super::lane::{Lane, Leg, WIDTH_M, cross};
 use super::pavement::{CORNERS_M, same};
 use crate::sim::globe::Shift;
 use crate::sim::ground::Point;
@@ -36,6 +35,11 @@ pub(super) fn leg(road: usize, way: &Road, middle: Point, nearest_m: f64) -> Leg
         (entry_m, exit_m - entry_m)
     };
     Leg { road, at_m, heading_deg: way.at(at_m).1, turn_deg, exits_m, movement: Movement::default() }
+}
+
+/// An index of an intersection or of a leg; both are few.
+pub(super) fn number(index: usize) -> u8 {
+    u8::try_from(index).unwrap_or(u8::MAX)
 }
 
 /// Numbers the legs and the exits of an intersection, in the order of the roads.

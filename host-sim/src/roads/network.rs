@@ -1,9 +1,8 @@
 //! The roads of a corridor and where they cross: a description enters; for every road its intersections leave, in the
 //! order of travel, with the distance along the road to each crossing point.
 
-use holdover::coordination::Movement;
-
 use super::description::Corridor;
+use super::lane::{Lane, Leg, Stop};
 use super::movements;
 use super::pavement::{Shared, shared};
 use crate::sim::road::Road;
@@ -11,60 +10,12 @@ use crate::sim::road::Road;
 /// A road is a leg of an intersection if it passes within this distance of its centre, in metres.
 pub const PASSES_WITHIN_M: f64 = 12.0;
 
-/// Two ways whose directions differ by less than this, in degrees, do not cross: they share their pavement, or are the
-/// two directions of one street.
-const LEAST_ANGLE_DEG: f64 = 20.0;
-
-/// Width of the widest vehicle, a bus, in metres. The way of every vehicle is as wide.
-pub const WIDTH_M: f64 = 2.5;
-
 /// Vehicles drive on for this distance beyond the end of their way, in metres. When they vanish there, no vehicle on
 /// its way depends on them.
 pub const RUN_OUT_M: f64 = 60.0;
 
 /// The roads extend this far beyond the places where vehicles appear and vanish, in metres.
 const BEYOND_M: f64 = 20.0 + RUN_OUT_M;
-
-/// An intersection on a road.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
-    /// The intersection.
-    pub intersection: usize,
-    /// The road's number among the ways through the intersection.
-    pub leg: usize,
-    /// Distance along the road to the crossing point.
-    pub at_m: f64,
-}
-
-/// A road with its intersections.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Lane {
-    /// Its geometry.
-    pub road: Road,
-    /// Its intersections in the order of travel; at least one.
-    pub stops: Vec<Stop>,
-    /// Distance along it to the place where vehicles appear.
-    pub entry_m: f64,
-    /// Distance along it to the place where their way ends.
-    pub exit_m: f64,
-}
-
-/// The way of a road through an intersection.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg {
-    /// The road.
-    pub road: usize,
-    /// Distance along that road to the crossing point.
-    pub at_m: f64,
-    /// Direction of travel at the crossing point, degrees clockwise from north.
-    pub heading_deg: f64,
-    /// By how much it turns to the right there, in degrees.
-    pub turn_deg: f64,
-    /// The way from the crossing point to where the middle of the intersection is beside the lane of the exit.
-    pub exits_m: f64,
-    /// The leg by which it comes and the exit by which it leaves.
-    pub movement: Movement,
-}
 
 /// An intersection with the ways through it.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,20 +37,6 @@ pub struct Network {
     pub junctions: Vec<Junction>,
     /// For each road, the stretches of it that lie on other roads.
     pub(super) shared: Vec<Vec<Shared>>,
-}
-
-/// Whether two ways with these directions, in degrees, cross. Otherwise they run side by side, or on one another.
-#[must_use]
-pub fn cross(a_deg: f64, b_deg: f64) -> bool {
-    (LEAST_ANGLE_DEG..=180.0 - LEAST_ANGLE_DEG).contains(&(a_deg - b_deg).rem_euclid(180.0))
-}
-
-impl Leg {
-    /// Whether it goes straight on.
-    #[must_use]
-    pub fn is_straight(&self) -> bool {
-        self.turn_deg == 0.0
-    }
 }
 
 impl Junction {
@@ -149,6 +86,19 @@ impl Network {
         let shared = shared(&lanes);
         Self { lanes, junctions, shared }
     }
+
+    /// Where the rear and the front of a vehicle are along a road, as far as it is on that road. It drives on the road `other`,
+    /// with its front at `front_m`.
+    #[must_use]
+    pub fn on_road(&self, road: usize, other: usize, front_m: f64, length_m: f64) -> Option<[f64; 2]> {
+        let rear_m = front_m - length_m;
+        if road == other {
+            return Some([rear_m, front_m]);
+        }
+        let touches = |one: &&Shared| one.other == other && rear_m <= one.to_m && front_m >= one.from_m;
+        let one = self.shared[road].iter().find(touches)?;
+        Some([rear_m.max(one.from_m), front_m.min(one.to_m)].map(|way_m| way_m - one.ahead_m))
+    }
 }
 
 #[cfg(test)]
@@ -196,11 +146,5 @@ mod tests {
         // 2nd Street is roads 0 and 1, Folsom Street 3 and 4.
         assert!([(0, 3), (3, 0), (0, 4), (1, 3), (4, 1)].into_iter().all(|(a, b)| conflict(a, b)));
         assert!(![(0, 0), (0, 1), (1, 0), (3, 4)].into_iter().any(|(a, b)| conflict(a, b)));
-    }
-
-    #[test]
-    fn ways_cross_at_20_degrees_and_more() {
-        assert!(cross(0.0, 20.0) && cross(350.0, 10.0) && cross(0.0, 160.0) && cross(90.0, 270.0 - 20.0));
-        assert!(!cross(0.0, 19.9) && !cross(0.0, 160.1) && !cross(359.0, 1.0) && !cross(10.0, 190.0));
     }
 }

@@ -1,7 +1,7 @@
 //! Pavement that two roads share: before an intersection, where vehicles of one leg turn to different exits, and behind
 //! it, where ways join. The bodies of vehicles on one road enter; the parts of them that are on another road leave.
 
-use super::network::{Lane, Network, WIDTH_M};
+use super::lane::{Lane, WIDTH_M};
 use crate::sim::globe::Shift;
 use crate::sim::road::Road;
 
@@ -79,19 +79,4 @@ pub(super) fn shared(lanes: &[Lane]) -> Vec<Vec<Shared>> {
         (0..lanes.len()).filter(|other| *other != road).flat_map(|other| of_pair(own, other)).collect()
     };
     lanes.iter().enumerate().map(of_lane).collect()
-}
-
-impl Network {
-    /// Where the rear and the front of a vehicle are along a road, as far as it is on that road. It drives on the road `other`,
-    /// with its front at `front_m`.
-    #[must_use]
-    pub fn on_road(&self, road: usize, other: usize, front_m: f64, length_m: f64) -> Option<[f64; 2]> {
-        let rear_m = front_m - length_m;
-        if road == other {
-            return Some([rear_m, front_m]);
-        }
-        let touches = |one: &&Shared| one.other == other && rear_m <= one.to_m && front_m >= one.from_m;
-        let one = self.shared[road].iter().find(touches)?;
-        Some([rear_m.max(one.from_m), front_m.min(one.to_m)].map(|way_m| way_m - one.ahead_m))
-    }
 }

@@ -8,8 +8,9 @@
 //! Where roads cross without an intersection one passes over the other, and they do not see one another. A sensor sees
 //! vehicles without V2X, and vehicles that have left, as any others.
 
+use super::lane::{Lane, Leg, Stop, WIDTH_M};
 use super::movements::along;
-use super::network::{Lane, Leg, Network, Stop, WIDTH_M};
+use super::network::Network;
 use crate::sim::globe::Shift;
 
 /// Distance between the places at which ways that turn are compared, in metres.

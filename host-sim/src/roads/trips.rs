@@ -4,7 +4,8 @@
 use rand_chacha::ChaCha8Rng;
 
 use super::description::{Corridor, Radio};
-use super::network::{Lane, Network};
+use super::lane::Lane;
+use super::network::Network;
 use crate::input::impairment::Window;
 use crate::input::kind::Kind;
 use crate::streams::{Purpose, stream, unit};

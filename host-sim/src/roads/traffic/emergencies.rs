@@ -6,7 +6,7 @@
 
 use super::Traffic;
 use crate::roads::description::Emergencies;
-use crate::roads::network::Lane;
+use crate::roads::lane::Lane;
 use crate::streams::{Purpose, stream, unit};
 
 /// No vehicle brakes on the first metres of its way, where a newcomer behind it has not heard it for long.

@@ -5,7 +5,7 @@
 //! what does not.
 
 use super::Traffic;
-use crate::roads::network::Lane;
+use crate::roads::lane::Lane;
 use crate::roads::trips::{HEARD_S, moment_s};
 use crate::streams::{Purpose, stream, unit};
 
