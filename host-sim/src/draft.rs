@@ -164,14 +164,18 @@ mod nameless {
 
     use nix::fcntl::{AT_FDCWD, AtFlags, OFlag};
 
-    /// A file in a folder. Not every file system has such files.
+    /// The open files of this process, by number.
+    const OPEN: &str = "/proc/self/fd";
+
+    /// A file in a folder. Not every file system has such files, and none can be named where `/proc` is not mounted.
     pub fn in_folder(folder: &Path) -> io::Result<File> {
+        Path::new(OPEN).metadata()?;
         OpenOptions::new().write(true).custom_flags(OFlag::O_TMPFILE.bits()).open(folder)
     }
 
     /// Gives it a name that no other file has.
     pub fn name(file: &File, name: &Path) -> io::Result<()> {
-        let itself = format!("/proc/self/fd/{}", file.as_raw_fd());
+        let itself = format!("{OPEN}/{}", file.as_raw_fd());
         nix::unistd::linkat(AT_FDCWD, itself.as_str(), AT_FDCWD, name, AtFlags::AT_SYMLINK_FOLLOW)
             .map_err(io::Error::from)
     }

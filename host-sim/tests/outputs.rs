@@ -117,7 +117,8 @@ fn a_kill_in_the_middle_leaves_the_old_file() {
     let file = folder.path().join("ticks.csv");
     fs::write(&file, "old").unwrap();
     let arguments = "run --set duration_s=86400 --no-report --trace ticks.csv";
-    for signal in ["INT", "KILL"] {
+    // Not INT, which a shell lets its jobs in the background ignore.
+    for signal in ["TERM", "KILL"] {
         let mut program = Command::new(env!("CARGO_BIN_EXE_holdover-sim"));
         program.current_dir(folder.path()).args(arguments.split_whitespace()).stderr(Stdio::null());
         let mut child = program.stdout(Stdio::null()).spawn().unwrap();
