@@ -7,7 +7,7 @@ mod check;
 pub use crate::model::Model;
 pub use check::ConfigError;
 
-use crate::model::{Aim, Body, VehicleModel};
+use crate::model::{Aim, Body, Consensus, VehicleModel};
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
@@ -34,13 +34,19 @@ pub struct Law {
     pub time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
-    /// Whether the gains come from the table of eq. 6, which is proved at time gaps of 1 s and 1.6 s, with lags up to 0.5 s;
+    /// Whether the gains come from the table of eq. 6, which is proved at time gaps of 1 s and 1.6 s, with lags up to 0.5 s, and at 1 s
+    /// with feed-forward too;
     /// otherwise they are the following two. Where there is no association the two are what is published.
     pub table: bool,
     /// Gain `k`; 0.01 to 3.999 /s².
     pub gain: Gain,
     /// Damping `γ`; 0 to 3.999 s.
     pub damping: Seconds,
+    /// Share of the predecessor's acceleration that is passed on, `φ`: 0 or 0.5. The latter needs a step and a period of at least
+    /// 7.813 ms ([`FEED_FORWARD_STEP`]).
+    ///
+    /// [`FEED_FORWARD_STEP`]: crate::model::follower::FEED_FORWARD_STEP
+    pub feed_forward: Fraction,
     /// Largest acceleration on a free road, `a_max` of eq. 8.
     pub free_road_acceleration: Acceleration,
     /// Speed wanted on a free road until `DriverRequest` says otherwise, `v_∞`.
@@ -50,6 +56,15 @@ pub struct Law {
     pub catch_up: Fraction,
     /// Speed never demanded beyond.
     pub max_speed: Speed,
+}
+
+impl Law {
+    /// The law of eq. 5 with the two gains that are configured.
+    #[must_use]
+    pub const fn consensus(&self) -> Consensus {
+        let Self { gain, damping, time_gap, feed_forward, .. } = *self;
+        Consensus { gain, damping, time_gap, feed_forward }
+    }
 }
 
 /// What counts as a link.
@@ -180,6 +195,7 @@ impl Config {
             table: false,
             gain: Gain::ZERO,
             damping: Seconds::ZERO,
+            feed_forward: Fraction::ZERO,
             free_road_acceleration: Acceleration::ZERO,
             target_speed: Speed::ZERO,
             catch_up: Fraction::ZERO,
@@ -231,6 +247,7 @@ impl Config {
                 table: true,
                 gain: parameters::GAIN,
                 damping: parameters::DAMPING,
+                feed_forward: Fraction::ZERO,
                 free_road_acceleration: parameters::FREE_ROAD_ACCELERATION,
                 target_speed: Speed::from_mm_per_s(13_400),
                 catch_up: Fraction::ZERO,
@@ -260,11 +277,13 @@ impl Config {
         }
     }
 
-    /// The same vehicle with a range sensor, at the time gap that a sensor allows: [`parameters::TIME_GAP_WITH_SENSOR`].
+    /// The same vehicle with a range sensor, at the time gap that a sensor allows: [`parameters::TIME_GAP_WITH_SENSOR`], with
+    /// [`parameters::FEED_FORWARD`].
     #[must_use]
     pub const fn with_range_sensor(mut self) -> Self {
         self.range_sensor = true;
         self.law.time_gap = parameters::TIME_GAP_WITH_SENSOR;
+        self.law.feed_forward = parameters::FEED_FORWARD;
         self
     }
 

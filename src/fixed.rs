@@ -18,7 +18,7 @@
 //! |---|---|---|
 //! | speed × seconds = distance | F23 × F29 → F20 | to nearest |
 //! | acceleration × fine seconds = speed | F25 × F30 → F23 | to nearest |
-//! | distance × gain = acceleration | F20 × F29 → F49, `>> 24` → F25 | to nearest, saturating |
+//! | distance × gain + gained speed × rate = acceleration | F20 × F29 + F24 × F25 → F49, each `>> 32` → F17, `<< 8` → F25 | each to nearest of F17, saturating |
 //! | acceleration × share = acceleration | F25 × F30 → F55, `>> 30` → F25 | to nearest, saturating |
 //!
 //! Hundreds of products are summed up in the speed and the position of a horizon. There the sum is kept with the 32 bits below its word
@@ -141,6 +141,16 @@ pub const fn mul_shl_down<const BITS: u32>(a: i32, b: i32) -> i32 {
     let product = a as i64 * b as i64;
     let above = limited::<BITS>((product >> 32) as i32);
     ((((above as u32 as u64) << 32) | product as u32 as u64) >> (32 - BITS)) as i32
+}
+
+/// `(a·b + c·d) / 2^(32-BITS)`, each product rounded to nearest of `2^BITS`, saturating to within `2^BITS` of the ends. It is for results
+/// that are much finer than they need to be: on a Cortex-M4 the products and the sum are two instructions (`SMMULR`, `SMMLAR`). `d` is not
+/// negative.
+#[inline(always)]
+#[must_use]
+pub const fn mul_sum_shl<const BITS: u32>((a, b): (i32, i32), (c, d): (i32, i32)) -> i32 {
+    // Each is at most 2³⁰ in magnitude, and the second is less than 2³⁰: the sum is a word.
+    shl_saturating::<BITS>(mul_hi(a, b).wrapping_add(mul_hi(c, d)))
 }
 
 /// The exact product of two words.

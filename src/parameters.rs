@@ -2,7 +2,7 @@
 //! compile time.
 
 use crate::time::{Duration, Stamp};
-use crate::units::{Acceleration, Distance, Gain, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Gain, Seconds, Speed};
 
 /// Largest acceleration of Algorithm 2 (eq. 8), `a_max` = 0.73 m/s².
 pub const FREE_ROAD_ACCELERATION: Acceleration = Acceleration::from_mm_per_s2(730);
@@ -87,7 +87,10 @@ pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 
 /// The same for a vehicle with a range sensor, which sees the braking ahead before it is heard: `holdover-sim string --range-sensors on`. The
 /// sensor there looks 50 times a second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
-pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(1_200);
+pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(1_000);
+
+/// The share of the predecessor's acceleration that a vehicle with a range sensor passes on, `φ`. A message carries whether it does.
+pub const FEED_FORWARD: Fraction = Fraction::from_milli(500);
 
 const _: () = {
     // A stamp that is used must unwrap to its time, with 1 s to spare for the clocks.

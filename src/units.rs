@@ -5,7 +5,7 @@
 
 use crate::fixed::{
     AccelerationFormat, DistanceFormat, FineSecondsFormat, FractionFormat, GainFormat, PositionFormat, Rest,
-    SecondsFormat, SpeedFormat, mul_hi, mul_shl, mul_shl_down, quotient, ratio, saturate_i32, sum_around, unratio,
+    SecondsFormat, SpeedFormat, mul_hi, mul_shl, quotient, ratio, saturate_i32, sum_around, unratio,
 };
 
 macro_rules! quantity {
@@ -196,15 +196,6 @@ impl Jerk {
     #[must_use]
     pub const fn over(self, time: FineSeconds) -> Acceleration {
         Acceleration::from_bits(mul_shl::<2>(self.to_bits(), time.to_bits()))
-    }
-}
-
-impl Distance {
-    /// The acceleration that the gain makes of this distance, saturating at ±64 m/s².
-    #[inline(always)]
-    #[must_use]
-    pub const fn times(self, gain: Gain) -> Acceleration {
-        Acceleration::from_bits(mul_shl_down::<8>(self.to_bits(), gain.to_bits()))
     }
 }
 

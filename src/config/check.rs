@@ -2,6 +2,7 @@
 //! leaves.
 
 use super::{Config, Prediction};
+use crate::model::follower::FEED_FORWARD_STEP;
 use crate::parameters;
 use crate::time::Duration;
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
@@ -34,6 +35,8 @@ pub enum ConfigError {
     Standstill,
     /// A gain is out of range.
     Gain,
+    /// `feed_forward` is neither 0 nor 0.5, or is 0.5 with a step or a period below 7.813 ms.
+    FeedForward,
     /// The semi-implicit step is unstable: `k δt² >= 4 + 2 k δt (t_g + γ)`.
     Unstable,
     /// A speed is outside 0 to 65.534 m/s.
@@ -68,6 +71,7 @@ impl core::fmt::Display for ConfigError {
             Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
             Self::Standstill => "standstill is outside 0 to 10.23 m",
             Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
+            Self::FeedForward => "feed_forward is neither 0 nor 0.5, or is 0.5 with a step or a period below 7.813 ms",
             Self::Unstable => "the prediction is unstable with this gain at this step; lower the gain or the step",
             Self::Speed => "a speed is outside 0 to 65.534 m/s",
             Self::CatchUp => "catch_up is outside 0 to 0.75, or no multiple of 0.05, in which it is published",
@@ -168,6 +172,9 @@ impl Config {
         let gains = Gain::from_milli(10)..=Gain::from_milli(3999);
         let dampings = Seconds::ZERO..=Seconds::from_millis(3999);
         ensure(gains.contains(&law.gain) && dampings.contains(&law.damping), ConfigError::Gain)?;
+        let shortest = self.prediction.step.min(self.period);
+        let is_fed = law.feed_forward == parameters::FEED_FORWARD && shortest >= FEED_FORWARD_STEP;
+        ensure(law.feed_forward == Fraction::ZERO || is_fed, ConfigError::FeedForward)?;
         let speeds = Speed::ZERO..=WIRE_SPEED_MAX;
         ensure(speeds.contains(&law.target_speed) && speeds.contains(&law.max_speed), ConfigError::Speed)?;
         let is_told_exactly = Fraction::from_steps(law.catch_up.to_steps(20), 20) == law.catch_up;

@@ -15,7 +15,7 @@ pub use mode::{Facts, FallbackCause, FaultCause, Mode, TargetFact};
 
 use crate::config::Config;
 use crate::held::Held;
-use crate::model::{Follower, Leader, Reading, State, Stride, VehicleModel};
+use crate::model::{Consensus, Follower, Leader, Reading, State, Stride, TargetStep, VehicleModel};
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, FineSeconds, Fraction, Gain, Jerk, Seconds, Speed};
 
@@ -26,8 +26,8 @@ pub enum Course {
     Law {
         /// How the ego drives.
         vehicle: VehicleModel,
-        /// The target's reading and length.
-        target: Option<(Reading, Distance)>,
+        /// The target.
+        target: Option<Target>,
         /// No more acceleration than this, whatever the law asks for.
         cap: Acceleration,
     },
@@ -56,6 +56,17 @@ pub enum Course {
     },
 }
 
+/// The target as the law sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Where it is one period from now.
+    pub reading: Reading,
+    /// By how much its speed grows until then.
+    pub gained: Speed,
+    /// Its length.
+    pub length: Distance,
+}
+
 /// The controller's memory: the last demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -74,17 +85,14 @@ pub struct Controller {
 /// one that is not costs comfort first.
 const BRAKING_GROWTH: Jerk = Jerk::from_mm_per_s3(500);
 
-/// Gains of the cruise control.
-struct Seen {
-    gain: Gain,
-    damping: Seconds,
-    time_gap: Seconds,
-}
-
-/// Softer than the cooperative law and with a longer time gap, because nothing is known of what the vehicle ahead
+/// The cruise control. Softer than the cooperative law and with a longer time gap, because nothing is known of what the vehicle ahead
 /// intends: overdamped (poles at -0.23 and -0.65 /s).
-const CRUISE: Seen =
-    Seen { gain: Gain::from_milli(150), damping: Seconds::from_millis(3_999), time_gap: Seconds::from_millis(1_800) };
+const CRUISE: Consensus = Consensus {
+    gain: Gain::from_milli(150),
+    damping: Seconds::from_millis(3_999),
+    time_gap: Seconds::from_millis(1_800),
+    feed_forward: Fraction::ZERO,
+};
 
 /// Within this time a vehicle at its speed limit closes on it.
 const SPEED_LIMIT_TIME: i64 = 2;
@@ -155,16 +163,19 @@ impl Controller {
         config: &Config,
         vehicle: &VehicleModel,
         ego: &State,
-        target: Option<(Reading, Distance)>,
+        target: Option<Target>,
         cap: Acceleration,
     ) -> Acceleration {
-        let length = target.map_or(Distance::ZERO, |(_, length)| length);
+        let length = target.map_or(Distance::ZERO, |target| target.length);
         let is_same = |(same, same_length, _): &(_, _, _)| same == vehicle && *same_length == length;
         if !self.stride.as_ref().is_some_and(is_same) {
             self.stride.set((*vehicle, length, vehicle.over(config.period, length, &config.prediction.model)));
         }
         let Held::Value((_, _, stride)) = &self.stride else { return Acceleration::ZERO };
-        let ahead = target.map(|(reading, _)| self.blend.apply(reading)).map(|seen| (seen.position.ring(), seen.speed));
+        let ahead = target.map(|Target { reading, gained, .. }| {
+            let seen = self.blend.apply(reading);
+            TargetStep { position: seen.position.ring(), speed: seen.speed, gained }
+        });
         let demand = stride.demand(ego, ahead, speed_cap(config.law.max_speed, ego.speed)).min(cap);
         if !config.prediction.model.limits {
             return demand;
@@ -197,10 +208,10 @@ impl Controller {
 
 /// What the law of the cruise control asks for behind this rear bumper, within the limits of normal driving.
 fn behind(config: &Config, ego: &State, ahead: &Reading) -> Acceleration {
-    let Seen { gain, damping, time_gap } = CRUISE;
-    let time_gap = time_gap.max(config.law.time_gap);
-    let law = Follower::over(config.period, gain, damping, time_gap, config.law.standstill, None);
-    let desired = law.desired(ego, ahead.position.ring(), ahead.speed);
+    let consensus = Consensus { time_gap: CRUISE.time_gap.max(config.law.time_gap), ..CRUISE };
+    let law = Follower::over(config.period, &consensus, config.law.standstill, None);
+    let ahead = TargetStep { position: ahead.position.ring(), speed: ahead.speed, gained: Speed::ZERO };
+    let desired = law.desired(ego, &ahead);
     desired.limited(config.limits.braking.negated(), config.limits.acceleration)
 }
 

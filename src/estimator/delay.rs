@@ -7,11 +7,11 @@
 
 use crate::model::Step;
 use crate::time::Duration;
-use crate::units::{RingPosition, Speed};
+use crate::units::Speed;
 
 /// The predecessor's state at `t+k`, from its step at `t+k-τ` and the step after that. Delays beyond 4 s saturate.
 #[must_use]
-pub fn adjusted(earlier: Step, next: Step, delay: Duration, step: Duration) -> (RingPosition, Speed) {
+pub fn adjusted(earlier: Step, next: Step, delay: Duration, step: Duration) -> Step {
     let tau = delay.max(Duration::ZERO);
     let speed = if tau < step {
         earlier.speed
@@ -20,7 +20,7 @@ pub fn adjusted(earlier: Step, next: Step, delay: Duration, step: Duration) -> (
         let gained = change.saturating_mul(tau.as_micros()).checked_div(step.as_micros()).unwrap_or(0);
         earlier.speed.plus(Speed::from_bits(crate::fixed::saturate_i32(gained)))
     };
-    (earlier.position.ahead(speed.over(tau.seconds())), speed)
+    Step { position: earlier.position.ahead(speed.over(tau.seconds())), speed }
 }
 
 #[cfg(test)]
@@ -32,7 +32,7 @@ mod tests {
 
     fn after(delay: i64) -> (f64, i32) {
         let at = |mm_per_s| Step { position: Position::ZERO.ring(), speed: Speed::from_mm_per_s(mm_per_s) };
-        let (position, speed) = adjusted(at(10_000), at(10_010), Duration::from_millis(delay), STEP);
+        let Step { position, speed } = adjusted(at(10_000), at(10_010), Duration::from_millis(delay), STEP);
         (position.ahead_of(Position::ZERO.ring()).get().to_num(), speed.to_mm_per_s())
     }
 

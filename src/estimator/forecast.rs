@@ -5,10 +5,10 @@ use super::delay::adjusted;
 use super::horizon::{Anchor, Grid, Horizon};
 use super::interpolation::Approach;
 use crate::fixed::quotient;
-use crate::model::{Model, Remainders, State, Step, Stride, VehicleModel};
+use crate::model::{Model, Remainders, State, Step, Stride, TargetStep, VehicleModel};
 use crate::peers::Sample;
-use crate::time::Duration;
-use crate::units::{Distance, Position, RingPosition, Speed};
+use crate::time::{Duration, Instant};
+use crate::units::{Distance, Position, Speed};
 use crate::wire::curve::Curve;
 use crate::wire::driving_parameters::DrivingParameters;
 use crate::wire::horizon::{Knot, Knots};
@@ -79,8 +79,9 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         }
         if horizon.len() == self.length && self.length > 1 && present.wrapping_sub(horizon.first()) == 1 {
             // The usual case of a tick without news.
-            let end = horizon.last().wrapping_add(1);
-            return horizon.turn(self.stride.take(horizon.tip(), self.ahead_at(end)));
+            let last = horizon.last();
+            let ahead = between(self.ahead_at(last), self.ahead_at(last.wrapping_add(1)));
+            return horizon.turn(self.stride.take(horizon.tip(), ahead));
         }
         let (last, state) = (horizon.last(), horizon.tip());
         let end = present.saturating_add(steps(self.length)).saturating_sub(1);
@@ -126,7 +127,8 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
             let part = self.grid.time_of(index).since(sample.at);
             if part > Duration::ZERO {
                 let stride = news.vehicle.over(part, news.length_ahead, self.model);
-                state = stride.take(state, self.ahead_at(index));
+                let ahead = between(self.ahead_when(sample.at), self.ahead_at(index));
+                state = stride.take(state, ahead);
             }
         } else {
             index = self.grid.nearest(sample.at);
@@ -147,9 +149,11 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
         let each = quotient(late, steps(LATE)).saturating_add(1);
         let stride = news.vehicle.over(self.grid.step.times(each), news.length_ahead, self.model);
         let approach = self.approach(index);
+        let mut ahead = self.ahead_before(approach.as_ref(), index);
         while index.saturating_add(each) <= present {
             index = index.saturating_add(each);
-            state = stride.take(state, self.ahead_before(approach.as_ref(), index));
+            let before = core::mem::replace(&mut ahead, self.ahead_before(approach.as_ref(), index));
+            state = stride.take(state, between(before, ahead));
         }
         (index, state)
     }
@@ -205,6 +209,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     fn carry_on(&self, filling: &mut Filling<'_, STEPS>, from: i64, mut state: State, end: i64) {
         let mut index = from;
         let approach = self.approach(from);
+        let mut step_ahead = self.ahead_before(approach.as_ref(), index);
         while index < end {
             let next = index.saturating_add(1);
             let left = usize::try_from(end.saturating_sub(index)).unwrap_or(0);
@@ -212,23 +217,28 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
                 (None, _) => Some(filling.horizon.run(left, |tip, out| self.stride.run_alone(tip, out))),
                 (Some(ahead), None) => ahead.from(next).map(|(near, far)| {
                     filling.horizon.run(left, |tip, out| {
-                        let (tip, done) = self.stride.run(tip, near, out);
-                        let (tip, more) = self.stride.run(tip, far, out.get_mut(done..).unwrap_or_default());
+                        let before = step_ahead.map_or(Speed::ZERO, |step| step.speed);
+                        let (tip, done) = self.stride.run(tip, before, near, out);
+                        let before = near.last().map_or(before, |step| step.speed);
+                        let (tip, more) = self.stride.run(tip, before, far, out.get_mut(done..).unwrap_or_default());
                         (tip, done.saturating_add(more))
                     })
                 }),
                 (Some(_), Some(_)) => None,
             };
             match run {
-                Some(done) if done > 0 => index = index.saturating_add(steps(done)),
+                Some(done) if done > 0 => {
+                    index = index.saturating_add(steps(done));
+                    state = filling.horizon.tip();
+                    step_ahead = self.ahead_at(index);
+                }
                 _ => {
                     index = next;
-                    state = self.stride.take(state, self.ahead_before(approach.as_ref(), index));
+                    let before = core::mem::replace(&mut step_ahead, self.ahead_before(approach.as_ref(), index));
+                    state = self.stride.take(state, between(before, step_ahead));
                     filling.put(index, state);
-                    continue;
                 }
             }
-            state = filling.horizon.tip();
         }
     }
 
@@ -239,7 +249,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// The predecessor at a step, by that curve up to its end.
-    fn ahead_before(&self, approach: Option<&Approach>, index: i64) -> Option<(RingPosition, Speed)> {
+    fn ahead_before(&self, approach: Option<&Approach>, index: i64) -> Option<Step> {
         match approach.zip(self.ahead) {
             Some((approach, ahead)) if index < ahead.first() => Some(approach.at_step(index, self.grid)),
             _ => self.ahead_at(index),
@@ -248,25 +258,36 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
 
     /// The predecessor at a step; `None` if its horizon does not reach it.
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]
-    fn ahead_at(&self, index: i64) -> Option<(RingPosition, Speed)> {
+    fn ahead_at(&self, index: i64) -> Option<Step> {
         let ahead = self.ahead?;
         if let Some(delay) = self.delay {
             return self.ahead_delayed(ahead, index, delay);
         }
         // Beyond its end the last step is held, as where it is read.
         if let Some(step) = ahead.at(index.min(ahead.last())) {
-            return Some((step.position, step.speed));
+            return Some(step);
         }
-        let reading = ahead.read(self.grid.time_of(index), self.grid, true)?;
-        Some((reading.position.ring(), reading.speed))
+        self.ahead_when(self.grid.time_of(index))
     }
 
-    fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<(RingPosition, Speed)> {
+    /// The predecessor at an instant between steps, or before its first step.
+    fn ahead_when(&self, at: Instant) -> Option<Step> {
+        let reading = self.ahead?.read(at, self.grid, true)?;
+        Some(Step { position: reading.position.ring(), speed: reading.speed })
+    }
+
+    fn ahead_delayed(&self, ahead: &Horizon<STEPS>, index: i64, delay: Duration) -> Option<Step> {
         // Before its first step the first one is held, and after its last step the last one.
         let behind = self.grid.nearest(self.grid.time_of(index).minus(delay)).min(ahead.last()).max(ahead.first());
         let after = behind.saturating_add(1).min(ahead.last());
         Some(adjusted(ahead.at(behind)?, ahead.at(after)?, delay, self.grid.step))
     }
+}
+
+/// The predecessor over a step, from where it is before and after. Where it is not known before, it keeps its speed.
+fn between(before: Option<Step>, after: Option<Step>) -> Option<TargetStep> {
+    let after = after?;
+    Some(TargetStep::between(before.unwrap_or(after).speed, &after))
 }
 
 /// A horizon that is being filled. Steps before the present are only passed through.

@@ -3,9 +3,9 @@
 
 use super::horizon::Grid;
 use crate::fixed::{divide, mul_hi, ratio, saturate_i32, shl_saturating};
-use crate::model::Reading;
+use crate::model::{Reading, Step};
 use crate::time::{Duration, Instant};
-use crate::units::{Distance, RingPosition, Speed};
+use crate::units::{Distance, Speed};
 
 /// The cubic Hermite curve of an interval, ready to be read many times.
 ///
@@ -125,9 +125,9 @@ impl Approach {
 
     /// The same at a step of the grid, as a follower's prediction takes it.
     #[must_use]
-    pub fn at_step(&self, index: i64, grid: &Grid) -> (RingPosition, Speed) {
+    pub fn at_step(&self, index: i64, grid: &Grid) -> Step {
         let (way, speed) = self.after(grid.since(index, self.start));
-        (self.curve.from.position.ring().ahead(way), speed)
+        Step { position: self.curve.from.position.ring().ahead(way), speed }
     }
 
     /// The way and the speed after this time.

@@ -20,8 +20,10 @@ pub struct Actuator {
     /// `e^(-δt/T)` with 31 fraction bits, so that its product needs only a doubling.
     keep: i32,
     slip: FineSeconds,
-    floor: Acceleration,
-    ceiling: Acceleration,
+    /// How much room the format has above the largest acceleration, and below the hardest braking. What is added and taken away again
+    /// saturates just there, which takes fewer registers than a comparison.
+    above: Acceleration,
+    below: Acceleration,
     slew: Acceleration,
 }
 
@@ -37,8 +39,8 @@ impl Actuator {
             step: step.fine_seconds(),
             keep: keep.to_bits().saturating_mul(2).max(0),
             slip,
-            floor: if unlimited { Acceleration::MIN } else { limits.braking.negated() },
-            ceiling: if unlimited { Acceleration::MAX } else { limits.acceleration },
+            above: if unlimited { Acceleration::ZERO } else { Acceleration::MAX.minus(limits.acceleration) },
+            below: if unlimited { Acceleration::ZERO } else { limits.braking.negated().minus(Acceleration::MIN) },
             slew: if unlimited { Acceleration::MAX } else { slew(limits.jerk, step) },
         }
     }
@@ -48,9 +50,9 @@ impl Actuator {
     #[inline(always)]
     #[must_use]
     pub fn limit(&self, desired: Acceleration, last: Acceleration) -> Acceleration {
-        let low = last.minus(self.slew).max(self.floor);
-        let high = last.plus(self.slew).min(self.ceiling);
-        desired.min(high).max(low)
+        let (low, high) = (last.minus(self.slew), last.plus(self.slew));
+        let below_ceiling = desired.plus(self.above).minus(self.above);
+        below_ceiling.min(high).max(low).minus(self.below).plus(self.below)
     }
 
     /// The gain in speed over the step at this acceleration.
@@ -99,17 +101,17 @@ impl Actuator {
         self.path.is_trapezoid()
     }
 
-    /// Steps by a law. Each step writes its end into its element of `steps`, and the law gets what is beside that. Returns the state at
+    /// Steps by a law. The law gets what is in its element of `steps`, and the end of the step is written there. Returns the state at
     /// the last step.
     #[inline(always)]
-    pub(super) fn run<'a, A>(
+    pub(super) fn run(
         &self,
         mut state: State,
-        steps: impl Iterator<Item = (&'a mut Step, A)>,
-        desired: impl Fn(&State, A) -> Acceleration,
+        steps: &mut [Step],
+        mut desired: impl FnMut(&State, &Step) -> Acceleration,
     ) -> State {
-        for (out, beside) in steps {
-            state = self.go::<true>(state, self.limit(desired(&state, beside), state.demand));
+        for out in steps {
+            state = self.go::<true>(state, self.limit(desired(&state, out), state.demand));
             *out = Step { position: state.position, speed: state.speed };
         }
         state
@@ -117,7 +119,7 @@ impl Actuator {
 
     /// Steps without any demand.
     #[inline(always)]
-    pub(super) fn coast<'a>(&self, mut state: State, steps: impl Iterator<Item = &'a mut Step>) -> State {
+    pub(super) fn coast(&self, mut state: State, steps: &mut [Step]) -> State {
         for out in steps {
             state = self.go::<true>(state, Acceleration::ZERO);
             *out = Step { position: state.position, speed: state.speed };

@@ -13,7 +13,18 @@
 //! u = -K [ (r - r_p) + (l + s_0) + (t_g + δt) v + γ (v - v_p) ],   K = k / [ 1 + κ (t_g + γ) ]
 //! ```
 //!
-//! so that no division is left in the step. Eq. 5 has no free road: a follower that is far behind would accelerate without end. So the
+//! so that no division is left in the step.
+//!
+//! *Feed-forward:* a follower that gets the share `φ` of its predecessor's acceleration as well need not wait until the gap has changed,
+//!
+//! ```text
+//! u = -K [ ... ] + φ [ v_p(t+k) - v_p(t+k-1) ] / δt
+//! ```
+//!
+//! The predecessor's speeds are those of its horizon. So the term looks as far ahead as the step does, and it fades out with the
+//! acceleration of a predecessor of which nothing else is known. `φ` is 0 in the paper's law.
+//!
+//! Eq. 5 has no free road: a follower that is far behind would accelerate without end. So the
 //! terms other than `(t_g + δt) v` have a lower limit, with which the follower keeps to `v_c`, the speed with which it catches up,
 //!
 //! ```text
@@ -22,10 +33,10 @@
 //!
 //! Stable iff `k δt² < 4 + 2 k δt (t_g + γ)` ([`is_stable`]).
 
-use super::state::State;
-use crate::fixed::saturate_i32;
+use super::state::{State, TargetStep};
+use crate::fixed::{mul_sum_shl, quotient, saturate_i32};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Gain, RingPosition, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Gain, Seconds, Speed};
 
 /// The law of one follower over steps of one length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,20 +52,31 @@ pub struct Follower {
     saturation_offset: Distance,
     /// `l + s_0`, less the offset.
     spacing: Distance,
+    /// `φ/δt` with 25 fraction bits: at most 64 /s.
+    feed: i32,
+}
+
+/// The constants of the law of eq. 5.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Consensus {
+    /// `k`.
+    pub gain: Gain,
+    /// `γ`.
+    pub damping: Seconds,
+    /// `t_g`.
+    pub time_gap: Seconds,
+    /// `φ`.
+    pub feed_forward: Fraction,
 }
 
 impl Follower {
-    /// With gains `k` and `γ`, time gap `t_g`, and spacing `l + s_0` (the length of the predecessor and the follower's own standstill
-    /// distance), over steps of this length. The follower catches up with at most `catch_up`, if that is given.
+    /// With these constants and the spacing `l + s_0` (the length of the predecessor and the follower's own standstill distance), over
+    /// steps of this length. The follower catches up with at most `catch_up`, if that is given. A step shorter than
+    /// [`FEED_FORWARD_STEP`] passes on less of the predecessor's acceleration than `φ` asks for.
     #[must_use]
-    pub fn over(
-        step: Duration,
-        gain: Gain,
-        damping: Seconds,
-        time_gap: Seconds,
-        spacing: Distance,
-        catch_up: Option<Speed>,
-    ) -> Self {
+    pub fn over(step: Duration, law: &Consensus, spacing: Distance, catch_up: Option<Speed>) -> Self {
+        let Consensus { gain, damping, time_gap, feed_forward } = *law;
         let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
         let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
         let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
@@ -65,19 +87,32 @@ impl Follower {
             damping,
             saturation_offset,
             spacing: spacing.minus(saturation_offset),
+            feed: feed(feed_forward, step),
         }
     }
 
     /// Eq. 13 as an acceleration, before the limits.
     #[inline(always)]
     #[must_use]
-    pub fn desired(&self, state: &State, ahead: RingPosition, ahead_speed: Speed) -> Acceleration {
+    pub fn desired(&self, state: &State, ahead: &TargetStep) -> Acceleration {
         let half = state.speed.over(self.half_gap);
-        let closing = state.speed.minus(ahead_speed).over(self.damping);
-        let behind = state.position.ahead_of(ahead).plus(closing).plus(self.spacing);
+        let closing = state.speed.minus(ahead.speed).over(self.damping);
+        let behind = state.position.ahead_of(ahead.position).plus(closing).plus(self.spacing);
         let error = behind.plus(self.saturation_offset).plus(half.plus(half)); // `QDADD`
-        error.times(self.gain)
+        // 20 and 29 bits, and 24 and 25: both products have 49, and the result has 25.
+        let gained = ahead.gained.plus(ahead.gained);
+        let by_gap = (error.to_bits(), self.gain.to_bits());
+        Acceleration::from_bits(mul_sum_shl::<8>(by_gap, (gained.to_bits(), self.feed)))
     }
+}
+
+/// The shortest step that passes on half of the predecessor's acceleration: `0.5/64` s, rounded up to a microsecond.
+pub const FEED_FORWARD_STEP: Duration = Duration::from_micros(7_813);
+
+/// `φ/δt` with 25 fraction bits, from `φ` with 30.
+fn feed(share: Fraction, step: Duration) -> i32 {
+    let per_second = quotient(i64::from(share.to_bits()).saturating_mul(1_000_000), step.as_micros());
+    saturate_i32(per_second >> 5)
 }
 
 /// `K = k / (1 + k δt (t_g + γ))`.
@@ -122,6 +157,35 @@ mod tests {
         .to_num()
     }
 
+    /// `k` = 0.5 /s² and `t_g` = 1 s, with this damping in ms and this share of feed-forward in thousandths.
+    fn law(damping: i32, feed_forward: i32) -> Consensus {
+        Consensus {
+            gain: Gain::from_milli(500),
+            damping: Seconds::from_millis(damping),
+            time_gap: Seconds::from_millis(1_000),
+            feed_forward: Fraction::from_milli(feed_forward),
+        }
+    }
+
+    #[test]
+    fn half_of_the_acceleration_ahead_is_added_to_the_wish() {
+        for micros in [7_813, 10_000, 20_000, 30_000, 100_000, 1_000_000] {
+            let step = Duration::from_micros(micros);
+            let over = |share| Follower::over(step, &law(2_000, share), Distance::from_mm(6_800), None);
+            for mm_per_s2 in [-8_000, -2_500, -20, 0, 20, 3_000] {
+                let gained = Acceleration::from_mm_per_s2(mm_per_s2).over(step.fine_seconds());
+                let speed = Speed::from_mm_per_s(11_000);
+                let state = State { speed, ..State::default() };
+                let ahead = TargetStep { position: Position::from_mm(20_000).ring(), speed, gained };
+                let added = over(500).desired(&state, &ahead).minus(over(0).desired(&state, &ahead));
+                let exact = f64::from(mm_per_s2) / 2_000.0;
+                // The gained speed has a resolution of 2⁻²³ m/s, and each of the two sums one of 2⁻¹⁷ m/s².
+                let tolerance = 2f64.powi(-24) / (micros as f64 * 1e-6) + 2f64.powi(-17);
+                assert!((added.get().to_num::<f64>() - exact).abs() <= tolerance, "{micros} {mm_per_s2} {added:?}");
+            }
+        }
+    }
+
     #[test]
     fn the_gain_is_divided_by_the_implicit_term() {
         for k in [0.01, 0.2, 0.5, 1.0, 3.999] {
@@ -145,46 +209,42 @@ mod tests {
     fn at_the_desired_gap_and_the_same_speed_there_is_nothing_to_wish() {
         let step = Duration::from_millis(10);
         let (time_gap, spacing) = (Seconds::from_millis(1000), Distance::from_mm(6800));
-        let law = Follower::over(step, Gain::from_milli(500), Seconds::from_millis(2000), time_gap, spacing, None);
+        let law = Follower::over(step, &law(2_000, 0), spacing, None);
         let speed = Speed::from_mm_per_s(11_000);
         let state = State { speed, ..State::default() };
         // At the end of the step the predecessor is a step further.
         let ahead = Position::ZERO.ring().ahead(spacing).ahead(speed.over(time_gap)).ahead(speed.over(step.seconds()));
-        assert!(law.desired(&state, ahead, speed).to_bits().abs() < 1 << 10);
+        let ahead = TargetStep { position: ahead, speed, gained: Speed::ZERO };
+        assert!(law.desired(&state, &ahead).to_bits().abs() < 1 << 10);
     }
 
     #[test]
     fn far_behind_it_catches_up_and_no_faster() {
-        let (step, time_gap, spacing) =
-            (Duration::from_millis(10), Seconds::from_millis(1000), Distance::from_mm(6_800));
-        let (gain, damping) = (Gain::from_milli(500), Seconds::from_millis(2000));
+        let (step, spacing) = (Duration::from_millis(10), Distance::from_mm(6_800));
         let catch_up = Speed::from_mm_per_s(13_000);
-        let over = |catch_up| Follower::over(step, gain, damping, time_gap, spacing, catch_up);
+        let over = |catch_up| Follower::over(step, &law(2_000, 0), spacing, catch_up);
         for (mm_per_s, is_faster) in [(12_900, true), (13_000, false), (13_100, false)] {
             let state = State { speed: Speed::from_mm_per_s(mm_per_s), ..State::default() };
-            let ahead = Position::from_mm(400_000).ring();
-            let desired = over(Some(catch_up)).desired(&state, ahead, Speed::from_mm_per_s(11_000));
+            let ahead = |mm_per_s| TargetStep {
+                position: Position::from_mm(400_000).ring(),
+                speed: Speed::from_mm_per_s(mm_per_s),
+                gained: Speed::ZERO,
+            };
+            let desired = over(Some(catch_up)).desired(&state, &ahead(11_000));
             // K = 0.5/1.015 and t_g + δt = 1.01.
             let exact = 0.5 / 1.015 * 1.01 * f64::from(13_000 - mm_per_s);
             assert!((f64::from(desired.to_mm_per_s2()) - exact).abs() < 1.0, "{mm_per_s} {desired:?}");
             assert_eq!(desired > Acceleration::ZERO, is_faster);
-            assert!(over(None).desired(&state, ahead, state.speed) > Acceleration::from_mm_per_s2(60_000));
+            assert!(over(None).desired(&state, &ahead(mm_per_s)) > Acceleration::from_mm_per_s2(60_000));
         }
     }
 
     #[test]
     fn the_limit_by_saturation_is_the_larger_of_the_two() {
-        let (step, time_gap) = (Duration::from_millis(10), Seconds::from_millis(1_000));
+        let step = Duration::from_millis(10);
         for catch_up in [0, 13_000, 80_000] {
             let catch_up = Speed::from_mm_per_s(catch_up);
-            let law = Follower::over(
-                step,
-                Gain::from_milli(500),
-                Seconds::ZERO,
-                time_gap,
-                Distance::from_mm(6_800),
-                Some(catch_up),
-            );
+            let law = Follower::over(step, &law(0, 0), Distance::from_mm(6_800), Some(catch_up));
             let half = catch_up.over(law.half_gap);
             for mm in (-1_000_000..1_000_000).step_by(997).chain([-13_130, -13_131, -6_800, 0]) {
                 let behind =

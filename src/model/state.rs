@@ -44,6 +44,27 @@ pub struct Step {
     pub speed: Speed,
 }
 
+/// The predecessor over one step of its follower.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TargetStep {
+    /// Its front bumper at the end of the step.
+    pub position: RingPosition,
+    /// Its speed at the end of the step.
+    pub speed: Speed,
+    /// By how much its speed grew over the step.
+    pub gained: Speed,
+}
+
+impl TargetStep {
+    /// From its speed at the beginning of the step, and its state at the end.
+    #[inline(always)]
+    #[must_use]
+    pub const fn between(before: Speed, end: &Step) -> Self {
+        Self { position: end.position, speed: end.speed, gained: end.speed.minus(before) }
+    }
+}
+
 /// Where a vehicle is at one instant, as read from its horizon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -2,13 +2,13 @@
 //! prediction step leave.
 
 use super::actuator::Actuator;
-use super::follower::Follower;
+use super::follower::{Consensus, Follower};
 use super::leader::Leader;
-use super::state::{State, Step};
+use super::state::{State, Step, TargetStep};
 use super::switches::Model;
 use crate::parameters::{FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Fraction, Gain, Jerk, RingPosition, Seconds, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Jerk, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
@@ -27,12 +27,8 @@ pub enum Aim {
     },
     /// It follows its predecessor (Algorithm 4).
     Follow {
-        /// `k`.
-        gain: Gain,
-        /// `γ`.
-        damping: Seconds,
-        /// `t_g`.
-        time_gap: Seconds,
+        /// The law of eq. 5.
+        law: Consensus,
         /// `s_0`.
         standstill: Distance,
         /// Never faster than this, `v_c` ([`catch_up`]).
@@ -72,9 +68,12 @@ impl VehicleModel {
             Predecessor::Unknown => Aim::Fade,
             Predecessor::None => Aim::Lead { largest: FREE_ROAD_ACCELERATION, target_speed: parameters.target_speed },
             Predecessor::Station(_) => Aim::Follow {
-                gain: parameters.gain,
-                damping: parameters.damping,
-                time_gap: parameters.time_gap,
+                law: Consensus {
+                    gain: parameters.gain,
+                    damping: parameters.damping,
+                    time_gap: parameters.time_gap,
+                    feed_forward: parameters.feed_forward,
+                },
                 standstill: if model.standstill { parameters.standstill } else { Distance::ZERO },
                 catch_up: catch_up(parameters.target_speed, parameters.catch_up),
             },
@@ -94,10 +93,10 @@ impl VehicleModel {
         let course = match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
-            Aim::Follow { gain, damping, time_gap, standstill, catch_up } => {
+            Aim::Follow { law, standstill, catch_up } => {
                 let spacing = length_ahead.plus(standstill);
                 let catch_up = model.limits.then_some(catch_up);
-                Course::Follow(Follower::over(step, gain, damping, time_gap, spacing, catch_up))
+                Course::Follow(Follower::over(step, &law, spacing, catch_up))
             }
         };
         let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
@@ -134,34 +133,35 @@ impl Stride {
     /// a follower without a predecessor fades out.
     #[inline(always)]
     #[must_use]
-    pub fn demand(&self, state: &State, ahead: Option<(RingPosition, Speed)>, cap: Acceleration) -> Acceleration {
+    pub fn demand(&self, state: &State, ahead: Option<TargetStep>, cap: Acceleration) -> Acceleration {
         let desired = match (&self.course, ahead) {
             (Course::Lead(leader), _) => leader.desired(state.speed),
-            (Course::Follow(follower), Some((position, speed))) => follower.desired(state, position, speed),
+            (Course::Follow(follower), Some(ahead)) => follower.desired(state, &ahead),
             (Course::Follow(_), None) | (Course::Fade, _) => return Acceleration::ZERO,
         };
         self.actuator.limit(desired.min(cap), state.demand)
     }
 
-    /// Takes as many steps as `out` has room for, behind a predecessor with these steps. Returns the state at the last step, and how many
-    /// steps were taken. The kind of law is asked for once for all steps, not in each.
+    /// Takes as many steps as `out` has room for, behind a predecessor with these steps, and with this speed at the step before. Returns the
+    /// state at the last step, and how many steps were taken. The kind of law is asked for once for all steps, not in each.
     ///
     /// No step is taken if positions are not by the trapezoid. That is for reproducing the paper, and need not be fast on an ECU.
-    pub fn run(&self, state: State, ahead: &[Step], out: &mut [Step]) -> (State, usize) {
-        if !self.actuator.can_run() {
-            return (state, 0);
-        }
+    pub fn run(&self, state: State, before: Speed, ahead: &[Step], out: &mut [Step]) -> (State, usize) {
+        let done = out.len().min(ahead.len());
+        let (Some(ahead), Some(steps)) = (ahead.get(..done), out.get_mut(..done)) else { return (state, 0) };
         match &self.course {
-            Course::Follow(follower) => {
-                let steps = out.iter_mut().zip(ahead);
-                let done = steps.len();
-                let desired = |state: &State, ahead: &Step| follower.desired(state, ahead.position, ahead.speed);
+            Course::Follow(follower) if self.actuator.can_run() => {
+                // Where each step is written, the predecessor's is read: one place to keep in the loop, not two.
+                steps.copy_from_slice(ahead);
+                let mut before = before;
+                let desired = |state: &State, ahead: &Step| {
+                    let ahead = TargetStep::between(core::mem::replace(&mut before, ahead.speed), ahead);
+                    follower.desired(state, &ahead)
+                };
                 (self.actuator.run(state, steps, desired), done)
             }
-            Course::Lead(_) | Course::Fade => {
-                let done = out.len().min(ahead.len());
-                self.run_alone(state, out.get_mut(..done).unwrap_or_default())
-            }
+            Course::Follow(_) => (state, 0),
+            Course::Lead(_) | Course::Fade => self.run_alone(state, steps),
         }
     }
 
@@ -171,10 +171,9 @@ impl Stride {
             return (state, 0);
         }
         let done = out.len();
-        let steps = out.iter_mut().map(|out| (out, ()));
         let state = match &self.course {
-            Course::Lead(leader) => self.actuator.run(state, steps, |state, ()| leader.desired(state.speed)),
-            Course::Follow(_) | Course::Fade => self.actuator.coast(state, steps.map(|(out, ())| out)),
+            Course::Lead(leader) => self.actuator.run(state, out, |state, _| leader.desired(state.speed)),
+            Course::Follow(_) | Course::Fade => self.actuator.coast(state, out),
         };
         (state, done)
     }
@@ -182,7 +181,7 @@ impl Stride {
     /// The state at the end of the step.
     #[inline(never)] // where there are many steps, `run` takes them
     #[must_use]
-    pub fn take(&self, state: State, ahead: Option<(RingPosition, Speed)>) -> State {
+    pub fn take(&self, state: State, ahead: Option<TargetStep>) -> State {
         self.actuator.drive(state, self.demand(&state, ahead, Acceleration::MAX))
     }
 }

@@ -3,7 +3,7 @@
 
 use super::room;
 use super::scene::Scene;
-use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact, slowing};
+use crate::controller::{Course, Target, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact, slowing};
 use crate::model::bound::AccelerationRange;
 use crate::model::{Reading, State};
 use crate::parameters::FARTHEST_PEER;
@@ -83,7 +83,10 @@ fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     cap: Acceleration,
 ) -> Course {
     let next = now.plus(scene.config.period);
-    let target = target.and_then(|index| Some((scene.estimated(index, next)?, scene.peers.length_of(index))));
+    let target = target.and_then(|index| {
+        let (before, reading) = (scene.estimated(index, now)?, scene.estimated(index, next)?);
+        Some(Target { reading, gained: reading.speed.minus(before.speed), length: scene.peers.length_of(index) })
+    });
     let cap = ego.map_or(cap, |ego| room::careful(scene, now, ego).min(cap));
     Course::Law { vehicle: scene.ego_model_now(gains), target, cap }
 }

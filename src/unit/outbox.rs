@@ -311,9 +311,9 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> DrivingParameters {
     let (config, law) = (&scene.config, &scene.config.law);
     let VehicleModel { aim, limits, .. } = scene.ego_model_now(report.gains);
-    let (gain, damping, time_gap) = match aim {
-        Aim::Follow { gain, damping, time_gap, .. } => (gain, damping, time_gap),
-        Aim::Lead { .. } | Aim::Fade => (law.gain, law.damping, law.time_gap),
+    let consensus = match aim {
+        Aim::Follow { law, .. } => law,
+        Aim::Lead { .. } | Aim::Fade => law.consensus(),
     };
     DrivingParameters {
         length: config.length,
@@ -324,9 +324,10 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         },
         target_speed: scene.target_speed(),
         catch_up: law.catch_up,
-        time_gap,
-        gain,
-        damping,
+        time_gap: consensus.time_gap,
+        gain: consensus.gain,
+        damping: consensus.damping,
+        feed_forward: consensus.feed_forward,
         lag: config.lag,
         limits,
         horizon_tenths: horizon_tenths(scene),

@@ -25,7 +25,7 @@ use crate::envelope::Obstacle;
 use crate::estimator::Estimator;
 use crate::held::Held;
 use crate::model::bound::Bound;
-use crate::model::{Aim, Reading, Remainders, State, VehicleModel, catch_up};
+use crate::model::{Aim, Consensus, Reading, Remainders, State, VehicleModel, catch_up};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
@@ -194,9 +194,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let (law, target_speed) = (&self.config.law, self.target_speed());
         let aim = match behind {
             Some((gains, standstill)) => Aim::Follow {
-                gain: gains.gain,
-                damping: gains.damping,
-                time_gap: self.time_gap(),
+                law: Consensus {
+                    gain: gains.gain,
+                    damping: gains.damping,
+                    time_gap: self.time_gap(),
+                    feed_forward: law.feed_forward,
+                },
                 standstill: if self.config.prediction.model.standstill { standstill } else { Distance::ZERO },
                 catch_up: catch_up(target_speed, law.catch_up),
             },

@@ -64,6 +64,10 @@ pub struct DrivingParameters {
     ///
     /// `γ`; 0 to 3.999 s by 0.001 s.
     pub damping: Seconds,
+    #[doc = meaning!(feed_forward)]
+    ///
+    /// `φ`; 0 or 0.5.
+    pub feed_forward: Fraction,
     #[doc = meaning!(lag)]
     ///
     /// `T`; 0 to 1.998 s by 2 ms.
@@ -81,6 +85,7 @@ const LENGTH: Field = Field::unsigned("Length", 16, 12).limits(50, 4095).initial
 const STANDSTILL: Field = Field::unsigned("Standstill", 28, 10).steps(100, "m").part(0);
 const PREDECESSOR: predecessor::Fields = predecessor::fields(38).part(0);
 const TARGET_SPEED: Field = speed("TargetSpeed", 48).part(0);
+const FEED_FORWARD: Field = Field::unsigned("FeedForward", 63, 1).steps(2, "").part(0);
 const TIME_GAP: Field = time_gap(16).part(1);
 const GAIN: Field = Field::unsigned("Gain", 26, 12).limits(0, 3999).steps(1000, "1/s2").part(1);
 const DAMPING: Field = Field::unsigned("Damping", 38, 12).limits(0, 3999).steps(1000, "s").part(1);
@@ -112,6 +117,7 @@ pub const FIELDS: &[Field] = &[
     PREDECESSOR.kind(),
     PREDECESSOR.station(),
     TARGET_SPEED,
+    FEED_FORWARD,
     TIME_GAP,
     GAIN,
     DAMPING,
@@ -133,6 +139,7 @@ impl DrivingParameters {
         let a = STANDSTILL.with(a, self.standstill);
         let a = PREDECESSOR.with(a, self.predecessor);
         let a = TARGET_SPEED.with(a, self.target_speed);
+        let a = FEED_FORWARD.with(a, self.feed_forward);
         let b = TIME_GAP.with(begin(1), self.time_gap);
         let b = GAIN.with(b, self.gain);
         let b = DAMPING.with(b, self.damping);
@@ -154,6 +161,7 @@ impl DrivingParameters {
             standstill: STANDSTILL.get(*a),
             predecessor: PREDECESSOR.get(*a),
             target_speed: TARGET_SPEED.get(*a),
+            feed_forward: FEED_FORWARD.get(*a),
             catch_up: CATCH_UP.get(*b),
             time_gap: TIME_GAP.get(*b),
             gain: GAIN.get(*b),

@@ -32,6 +32,7 @@ macro_rules! meaning {
     (catch_up) => { "Share of TargetSpeed by which it exceeds that speed, at most, to catch up with the vehicle that it follows." };
     (time_gap) => { "Time gap that it keeps to the rear bumper ahead, beside Standstill. Less than 0.1 s is reserved: 0 is not a value." };
     (gain) => { "Gain k of the law u = -k (gap error + Damping times the speed difference)." };
+    (feed_forward) => { "Share of the predecessor's acceleration that the law adds to what gap and speeds ask for." };
     (damping) => { "Weight of the speed difference in the law, in seconds." };
     (lag) => { "Time constant of its actuators: how its acceleration follows the demand." };
     (acceleration_limit) => { "Largest acceleration that it demands; also the hardest that it is capable of, which others' safety rests on. Publish a harder one 10 s before it is used." };
@@ -257,6 +258,7 @@ fn parameters(name: &str) -> &'static str {
         "TimeGap" => meaning!(time_gap),
         "Gain" => meaning!(gain),
         "Damping" => meaning!(damping),
+        "FeedForward" => meaning!(feed_forward),
         "Lag" => meaning!(lag),
         "CatchUp" => meaning!(catch_up),
         "AccelerationLimit" => meaning!(acceleration_limit),
