@@ -56,6 +56,7 @@ fn parameters() -> Said {
         time_gap: Seconds::from_millis(1_000),
         gain: Gain::from_milli(450),
         damping: Seconds::from_millis(1_250),
+        feed_forward: Fraction::from_milli(500),
         lag: FineSeconds::from_millis(300),
         limits: Limits {
             acceleration: a(2_500),

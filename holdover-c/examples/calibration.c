@@ -32,6 +32,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
         .gain_table = 1,
         .gain_milli = 500,
         .damping_ms = 2000,
+        .feed_forward_milli = 0,
         .free_road_acceleration_mm_s2 = 730,
         .target_speed_mm_s = 13400,
         .catch_up_milli = 0,

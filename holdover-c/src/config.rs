@@ -79,7 +79,7 @@ pub struct Body {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// Desired time gap in ms; 1600 by default. With a range sensor 1200 will do (`range_sensor`).
+    /// Desired time gap in ms; 1600 by default. With a range sensor 1000 will do (`range_sensor`, and `feed_forward_milli` of 500).
     pub time_gap_ms: u32,
     /// Distance kept at standstill in mm.
     pub standstill_mm: u32,
@@ -89,6 +89,9 @@ pub struct Law {
     pub gain_milli: u32,
     /// Damping in ms.
     pub damping_ms: u32,
+    /// Share of the predecessor's acceleration that is passed on, in thousandths: 0 or 500. The latter needs a step and a period of at
+    /// least 7.813 ms.
+    pub feed_forward_milli: u32,
     /// Largest acceleration on a free road in mm/s2.
     pub free_road_acceleration_mm_s2: u32,
     /// Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.

@@ -103,6 +103,8 @@ pub enum Status {
     ConfigIdentifierRange = -51,
     /// Two messages have the same identifier, all 16 slots counted. `holdover-sim dbc --place` names them.
     ConfigIdentifierShared = -52,
+    /// `feed_forward_milli` is neither 0 nor 500, or is 500 with a step or a period below 7.813 ms.
+    ConfigFeedForward = -53,
     /// A frame of ours that is not exactly 8 data bytes long, or a remote frame.
     RefusedLength = -64,
     /// The E2E checksum does not fit.
@@ -197,6 +199,7 @@ impl From<ConfigError> for Status {
             ConfigError::TimeGap => Self::ConfigTimeGap,
             ConfigError::Standstill => Self::ConfigStandstill,
             ConfigError::Gain => Self::ConfigGain,
+            ConfigError::FeedForward => Self::ConfigFeedForward,
             ConfigError::Unstable => Self::ConfigUnstable,
             ConfigError::Speed => Self::ConfigSpeed,
             ConfigError::CatchUp => Self::ConfigCatchUp,
@@ -313,6 +316,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::ConfigTransport, c"configuration: transport"),
     (Status::ConfigIdentifierRange, c"configuration: an identifier has more bits than its kind, or no kind"),
     (Status::ConfigIdentifierShared, c"configuration: two messages have the same identifier"),
+    (Status::ConfigFeedForward, c"configuration: feed_forward"),
     (Status::RefusedLength, c"refused: length"),
     (Status::RefusedChecksum, c"refused: checksum"),
     (Status::RefusedRepeated, c"refused: repeated"),

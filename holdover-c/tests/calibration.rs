@@ -47,6 +47,7 @@ fn fields() -> Vec<Field> {
         law.gain_table,
         law.gain_milli,
         law.damping_ms,
+        law.feed_forward_milli,
         law.free_road_acceleration_mm_s2,
         law.target_speed_mm_s,
         law.catch_up_milli,

@@ -100,6 +100,7 @@ fn parameters(vehicle: usize) -> DrivingParameters {
         time_gap: Seconds::from_millis(1_000 + 200 * vehicle as i32),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2_000),
+        feed_forward: Fraction::ZERO,
         lag: FineSeconds::from_millis(300),
         limits: Limits {
             acceleration: Acceleration::from_mm_per_s2(1_000),

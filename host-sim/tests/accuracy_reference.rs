@@ -72,12 +72,12 @@ prop_compose! {
         length in steps::<Distance>(0..=4095, 100), standstill in steps(0..=1023, 100),
         target_speed in prop_oneof![6 => steps::<Speed>(0..=30_000, 500), 1 => steps(0..=100, 500)],
         catch_up in steps::<Fraction>(0..=15, 20), time_gap in steps(20..=799, 200),
-        gain in steps::<Gain>(10..=3999, 1000), damping in steps(0..=3999, 1000),
+        gain in steps::<Gain>(10..=3999, 1000), damping in steps(0..=3999, 1000), feed_forward in steps::<Fraction>(0..=1, 2),
         lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
     ) -> DrivingParameters {
         let predecessor = Predecessor::Unknown;
         DrivingParameters {
-            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, lag, limits, horizon_tenths: 0,
+            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, feed_forward, lag, limits, horizon_tenths: 0,
         }
     }
 }
@@ -167,17 +167,27 @@ fn unit(chain: &[Vehicle]) -> Unit {
 }
 
 /// The reference's state one step of that length later.
-fn advance(state: State, vehicle: &Vehicle, law: &Parameters, ahead: Option<(&State, f64)>, step_s: f64) -> State {
+fn advance(state: State, vehicle: &Vehicle, law: &Parameters, ahead: Option<Ahead>, step_s: f64) -> State {
     let demand = match (vehicle.kind, ahead) {
         (Kind::Leads, _) => demand_lead(&state, law),
-        (Kind::Follows, Some((ahead, length_m))) => {
-            let State { position_m, speed_mps, .. } = *ahead;
-            demand_follow(&state, &Ahead { position_m, speed_mps, length_m }, law, step_s)
-        }
+        (Kind::Follows, Some(ahead)) => demand_follow(&state, &ahead, law, step_s),
         _ => return faded(&state, step_s, PositionRule::Trapezoid),
     };
     let demand = limited(demand, state.demand_mps2, law, step_s);
     actuated(&state, demand, law.lag_s, step_s, PositionRule::Trapezoid)
+}
+
+/// The speed of a vehicle so long before step 0, on the cubic from its sample to its state at step 0; before the sample, its speed.
+fn speed_before(vehicle: &Vehicle, end: &State, before: Duration) -> f64 {
+    let (speed, position): (f64, f64) =
+        (vehicle.motion.speed.get().to_num(), vehicle.motion.position.face_value().get().to_num());
+    if before >= vehicle.age {
+        return speed;
+    }
+    let whole_s = vehicle.age.as_micros() as f64 * 1e-6;
+    let s = 1.0 - before.as_micros() as f64 * 1e-6 / whole_s;
+    let mean = (end.position_m - position) / whole_s;
+    6.0 * s * (1.0 - s) * mean + (1.0 - s) * (1.0 - 3.0 * s) * speed + s * (3.0 * s - 2.0) * end.speed_mps
 }
 
 /// The reference's states at the grid's steps 0 to 400, front vehicle first; each vehicle starts as far from its sample (m
@@ -187,14 +197,17 @@ fn reference(chain: &[Vehicle], disturbance: impl Fn(usize) -> (f64, f64)) -> Ve
     for (place, vehicle) in chain.iter().enumerate() {
         let law = Parameters::from(&HeardParameters::from_parameters(&vehicle.parameters, None));
         let heard = Heard::from_motion(0.0, 0.0, place, vehicle.motion.position.face_value(), &vehicle.motion);
-        let ahead_at = |k: usize| {
+        // The predecessor at step k, and what it gained since its speed was this.
+        let ahead_from = |k: usize, before: Option<f64>| {
             let ahead = place.checked_sub(1)?;
             let length_m = match chain[ahead].kind {
                 Kind::Silent => LENGTH_UNPUBLISHED_M,
                 _ => chain[ahead].parameters.length.get().to_num(),
             };
-            Some((&horizons[ahead][k], length_m))
+            let State { position_m, speed_mps, .. } = horizons[ahead][k];
+            Some(Ahead { position_m, speed_mps, gained_mps: speed_mps - before.unwrap_or(speed_mps), length_m })
         };
+        let ahead_at = |k: usize| ahead_from(k, Some(horizons.get(place.wrapping_sub(1))?.get(k - 1)?.speed_mps));
         // Whole steps before the first tick, and before them the part that leads onto the grid.
         let step = Duration::from_millis(10).as_micros();
         let (whole, part) = (vehicle.age.as_micros() / step, vehicle.age.as_micros() % step);
@@ -202,10 +215,13 @@ fn reference(chain: &[Vehicle], disturbance: impl Fn(usize) -> (f64, f64)) -> Ve
         state.position_m += disturbance(place).0;
         state.speed_mps += disturbance(place).1;
         if part > 0 {
-            state = advance(state, vehicle, &law, ahead_at(0), part as f64 * 1e-6);
+            let before = place
+                .checked_sub(1)
+                .map(|ahead| speed_before(&chain[ahead], &horizons[ahead][0], Duration::from_micros(part)));
+            state = advance(state, vehicle, &law, ahead_from(0, before), part as f64 * 1e-6);
         }
         for _ in 0..whole {
-            state = advance(state, vehicle, &law, ahead_at(0), STEP_S);
+            state = advance(state, vehicle, &law, ahead_from(0, None), STEP_S);
         }
         let mut states = vec![state];
         for k in 1..=HORIZON {

@@ -45,6 +45,7 @@ impl Message {
             time_gap_s: self.time_gap_s.unwrap(),
             gain: self.gain.unwrap(),
             damping_s: self.damping_s.unwrap(),
+            feed_forward: 0.0,
             lag_s: 0.3,
             acceleration_mps2: 1.0,
             braking_mps2: 1.0,

@@ -156,6 +156,7 @@ fn expected_of_said(said: &Said) -> Expected {
             .value("TimeGap", si!(i.time_gap))
             .value("Gain", si!(i.gain))
             .value("Damping", si!(i.damping))
+            .value("FeedForward", si!(i.feed_forward))
             .value("Lag", si!(i.lag))
             .value("CatchUp", si!(i.catch_up))
             .value("AccelerationLimit", si!(i.limits.acceleration))

@@ -47,6 +47,7 @@ impl Row {
             time_gap_s: self.time_gap_s,
             gain: self.gain,
             damping_s: self.damping_s,
+            feed_forward: 0.0,
             lag_s: self.lag_s,
             acceleration_mps2: self.limit_acceleration_mps2,
             braking_mps2: self.limit_braking_mps2,

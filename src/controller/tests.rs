@@ -34,17 +34,11 @@ fn leads(config: &Config, target_mm_per_s: i32) -> Course {
 /// Behind a vehicle of 4.8 m, whose front bumper is that far ahead.
 fn follows(config: &Config, ahead_mm: i64, mm_per_s: i32) -> Course {
     let law = &config.law;
-    let aim = Aim::Follow {
-        gain: law.gain,
-        damping: law.damping,
-        time_gap: law.time_gap,
-        standstill: law.standstill,
-        catch_up: Speed::from_mm_per_s(48_000),
-    };
+    let aim = Aim::Follow { law: law.consensus(), standstill: law.standstill, catch_up: Speed::from_mm_per_s(48_000) };
     let reading = Reading { position: Position::from_mm(ahead_mm), speed: Speed::from_mm_per_s(mm_per_s) };
     Course::Law {
         vehicle: config.vehicle_model(aim),
-        target: Some((reading, Distance::from_mm(4_800))),
+        target: Some(Target { reading, gained: Speed::ZERO, length: Distance::from_mm(4_800) }),
         cap: Acceleration::MAX,
     }
 }
@@ -185,9 +179,11 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
     let config = config();
     let mut controller = Controller::new(config.period);
     let aim = |gain: i32, damping: i32| Aim::Follow {
-        gain: Gain::from_milli(gain),
-        damping: Seconds::from_millis(damping),
-        time_gap: config.law.time_gap,
+        law: Consensus {
+            gain: Gain::from_milli(gain),
+            damping: Seconds::from_millis(damping),
+            ..config.law.consensus()
+        },
         standstill: config.law.standstill,
         catch_up: Speed::from_mm_per_s(48_000),
     };
@@ -196,7 +192,7 @@ fn another_association_with_other_gains_does_not_make_the_demand_jump() {
         let reading = Reading { position: Position::from_mm(ahead), speed: Speed::from_mm_per_s(9_000) };
         Course::Law {
             vehicle: config.vehicle_model(aim(gain, damping)),
-            target: Some((reading, crate::parameters::DEFAULT_LENGTH)),
+            target: Some(Target { reading, gained: Speed::ZERO, length: crate::parameters::DEFAULT_LENGTH }),
             cap: Acceleration::MAX,
         }
     });

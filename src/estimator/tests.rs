@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::config::Config;
-use crate::model::State;
+use crate::model::{State, Step, TargetStep};
 use crate::peers::plausibility::{Belief, Certainty};
 use crate::time::Stamp;
 use crate::units::{Acceleration, FineSeconds, Fraction, Gain, Jerk, Position, Seconds, Speed};
@@ -24,6 +24,7 @@ pub(crate) fn leader() -> DrivingParameters {
         time_gap: Seconds::from_millis(1_000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2_000),
+        feed_forward: Fraction::ZERO,
         lag: FineSeconds::from_millis(300),
         limits: Limits {
             acceleration: Acceleration::from_mm_per_s2(2_500),
@@ -120,9 +121,12 @@ fn an_old_sample_in_few_steps_comes_to_where_it_comes_in_all_steps() {
             demand: sample.demand,
             ..State::default()
         };
+        let mut before = first.speed;
         for index in 1 - age_us / 10_000..=0 {
             let reading = ahead.read(GRID.time_of(index), &GRID, true).unwrap();
-            state = stride.take(state, Some((reading.position.ring(), reading.speed)));
+            let end = Step { position: reading.position.ring(), speed: reading.speed };
+            let before = core::mem::replace(&mut before, reading.speed);
+            state = stride.take(state, Some(TargetStep::between(before, &end)));
         }
         let now = horizon.read(GRID.origin, &GRID, true).unwrap();
         let off = metres(now) - horizon.absolute(state.position).get().to_num::<f64>();

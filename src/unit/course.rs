@@ -3,7 +3,7 @@
 
 use super::room;
 use super::scene::Scene;
-use crate::controller::{Course, Target, Facts, FallbackCause, FaultCause, Gains, Mode, TargetFact, slowing};
+use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, Target, TargetFact, slowing};
 use crate::model::bound::AccelerationRange;
 use crate::model::{Reading, State};
 use crate::parameters::FARTHEST_PEER;

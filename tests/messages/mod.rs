@@ -82,11 +82,11 @@ prop_compose! {
         length in steps(50..=4095, 100), standstill in steps(0..=1023, 100), predecessor in predecessor(),
         target_speed in speed(), catch_up in steps::<Fraction>(0..=15, 20),
         time_gap in steps(20..=799, 200), gain in steps::<Gain>(0..=3999, 1000),
-        damping in steps(0..=3999, 1000), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
+        damping in steps(0..=3999, 1000), feed_forward in steps::<Fraction>(0..=1, 2), lag in steps::<FineSeconds>(0..=999, 500), limits in limits(),
         horizon_tenths: u8,
     ) -> DrivingParameters {
         DrivingParameters {
-            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, lag, limits, horizon_tenths,
+            length, standstill, predecessor, target_speed, catch_up, time_gap, gain, damping, feed_forward, lag, limits, horizon_tenths,
         }
     }
 }

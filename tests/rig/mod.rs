@@ -217,6 +217,7 @@ pub fn parameters(acceleration: f64, emergency_braking: f64) -> DrivingParameter
         time_gap: config.law.time_gap,
         gain: config.law.gain,
         damping: config.law.damping,
+        feed_forward: config.law.feed_forward,
         lag: config.lag,
         limits: Limits {
             acceleration: mps2(acceleration),

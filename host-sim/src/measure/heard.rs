@@ -48,6 +48,8 @@ pub struct HeardParameters {
     pub gain: f64,
     /// Damping `γ`.
     pub damping_s: f64,
+    /// Share of its predecessor's acceleration that it adds, `φ`.
+    pub feed_forward: f64,
     /// Time constant of its actuators, `T`.
     pub lag_s: f64,
     /// Largest acceleration that its controller demands.
@@ -97,6 +99,7 @@ impl HeardParameters {
             time_gap_s: parameters.time_gap.get().to_num(),
             gain: parameters.gain.get().to_num(),
             damping_s: parameters.damping.get().to_num(),
+            feed_forward: parameters.feed_forward.get().to_num(),
             lag_s: parameters.lag.get().to_num(),
             acceleration_mps2: parameters.limits.acceleration.get().to_num(),
             braking_mps2: parameters.limits.braking.get().to_num(),
@@ -154,6 +157,7 @@ mod tests {
             time_gap: Seconds::from_bits(3 << 28),
             gain: Gain::from_bits(1 << 28),
             damping: Seconds::from_bits(5 << 27),
+            feed_forward: Fraction::from_milli(500),
             lag: FineSeconds::from_bits(1 << 28),
             limits: Limits {
                 acceleration: Acceleration::from_bits(2 << 25),
@@ -176,6 +180,7 @@ mod tests {
                 time_gap_s: 1.5,
                 gain: 0.5,
                 damping_s: 1.25,
+                feed_forward: 0.5,
                 lag_s: 0.25,
                 acceleration_mps2: 2.0,
                 braking_mps2: 3.5,

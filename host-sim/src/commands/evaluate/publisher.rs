@@ -98,6 +98,7 @@ impl<'a> Publisher<'a> {
             time_gap: Seconds::from_millis(1_000),
             gain: law.gain,
             damping: law.damping,
+            feed_forward: law.feed_forward,
             lag,
             limits,
             horizon_tenths: 0,

@@ -39,7 +39,8 @@ pub fn horizon(
             Role::Leader => Some(demand_lead(&state, law)),
             Role::Follower { ahead, length_m } => {
                 let State { position_m, speed_mps, .. } = ahead[k];
-                Some(demand_follow(&state, &Ahead { position_m, speed_mps, length_m }, law, step_s))
+                let gained_mps = speed_mps - ahead[k - 1].speed_mps;
+                Some(demand_follow(&state, &Ahead { position_m, speed_mps, gained_mps, length_m }, law, step_s))
             }
             Role::Silent => None,
         };

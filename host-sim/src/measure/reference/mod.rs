@@ -21,6 +21,9 @@ pub const STOPPING_TARGET_SPEED_MPS: f64 = 0.1;
 /// Time constant with which the acceleration of a vehicle without a law fades.
 pub const FADING_S: f64 = 2.0;
 
+/// The format of `φ/h` ends here. A shorter step passes on less of the predecessor's acceleration.
+pub const LARGEST_FEED_PER_S: f64 = 64.0;
+
 /// A vehicle's state on the lane at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
@@ -41,6 +44,8 @@ pub struct Ahead {
     pub position_m: f64,
     /// Its speed, `v_{n-1}`.
     pub speed_mps: f64,
+    /// By how much its speed grew over the step.
+    pub gained_mps: f64,
     /// Its length, `l_{n-1}`.
     pub length_m: f64,
 }
@@ -62,6 +67,8 @@ pub struct Parameters {
     pub gain: f64,
     /// Damping `γ`.
     pub damping_s: f64,
+    /// Share of the predecessor's acceleration that is added, `φ`.
+    pub feed_forward: f64,
     /// Time constant of the actuators, `T`; 0: no lag.
     pub lag_s: f64,
     /// Largest acceleration demanded.
@@ -102,6 +109,7 @@ impl From<&HeardParameters> for Parameters {
             time_gap_s: parameters.time_gap_s,
             gain: parameters.gain,
             damping_s: parameters.damping_s,
+            feed_forward: parameters.feed_forward,
             lag_s: parameters.lag_s,
             acceleration_mps2: parameters.acceleration_mps2,
             braking_mps2: parameters.braking_mps2,
@@ -141,8 +149,11 @@ pub fn demand_lead(state: &State, law: &Parameters) -> f64 {
 /// Eq. 13 as the semi-implicit step that it is, as a demand: with `κ = α k h` and `r_n(t+k) = r_n + v_n h`,
 ///
 /// ```text
-/// v* = [v_n - κ (r_n(t+k) - r_{n-1}(t+k) + l_{n-1} + s_0 - γ v_{n-1}(t+k))] / [1 + κ (t_g + γ)],   u = (v* - v_n)/h
+/// v* = [v_n - κ (r_n(t+k) - r_{n-1}(t+k) + l_{n-1} + s_0 - γ v_{n-1}(t+k))] / [1 + κ (t_g + γ)]
+/// u = (v* - v_n)/h + φ (v_{n-1}(t+k) - v_{n-1}(t+k-1))/h
 /// ```
+///
+/// `φ/h` is at most [`LARGEST_FEED_PER_S`].
 #[must_use]
 pub fn demand_follow(state: &State, ahead: &Ahead, law: &Parameters, step_s: f64) -> f64 {
     let kappa = law.gain * step_s;
@@ -151,7 +162,8 @@ pub fn demand_follow(state: &State, ahead: &Ahead, law: &Parameters, step_s: f64
     let wanted_mps = (state.speed_mps - kappa * (spacing_m - law.damping_s * ahead.speed_mps))
         / (1.0 + kappa * (law.time_gap_s + law.damping_s));
     let free = law.gain * (law.time_gap_s + step_s) / (1.0 + kappa * (law.time_gap_s + law.damping_s));
-    ((wanted_mps - state.speed_mps) / step_s).min(free * (law.catch_up_mps - state.speed_mps))
+    let by_gap = ((wanted_mps - state.speed_mps) / step_s).min(free * (law.catch_up_mps - state.speed_mps));
+    by_gap + (law.feed_forward / step_s).min(LARGEST_FEED_PER_S) * ahead.gained_mps
 }
 
 /// The demand within the law's limits on acceleration and, from the last demand on, on jerk. Where the two ranges do

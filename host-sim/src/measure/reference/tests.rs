@@ -15,6 +15,7 @@ fn law() -> Parameters {
         time_gap_s: 1.0,
         gain: 1.0,
         damping_s: 2.0,
+        feed_forward: 0.0,
         lag_s: 0.3,
         acceleration_mps2: 2.0,
         braking_mps2: 3.5,
@@ -87,7 +88,7 @@ fn a_leader_far_above_its_target_speed_brakes_no_harder_than_its_law() {
 fn equation_13_holds_with_the_demanded_speed_put_back_in() {
     for (speed, gap, speed_ahead, step_s) in [(9.0, 14.0, 11.0, 0.01), (20.0, 3.0, 5.0, 0.1), (0.0, 30.0, 9.0, 1.0)] {
         let (state, law) = (State { position_m: 100.0, ..moving(speed, 0.0) }, law());
-        let ahead = Ahead { position_m: 100.0 + gap + 4.8, speed_mps: speed_ahead, length_m: 4.8 };
+        let ahead = Ahead { position_m: 100.0 + gap + 4.8, speed_mps: speed_ahead, gained_mps: 0.0, length_m: 4.8 };
         let demand = demand_follow(&state, &ahead, &law, step_s);
         let wanted = speed + demand * step_s;
         let spacing = state.position_m + speed * step_s - ahead.position_m + 4.8 + 2.0 + wanted * law.time_gap_s;
@@ -104,7 +105,7 @@ fn far_behind_the_speed_to_catch_up_with_is_approached_and_held() {
     let law = Parameters { catch_up_mps: 13.2, ..law() };
     let mut state = moving(5.0, 0.0);
     for _ in 0..6_000 {
-        let ahead = Ahead { position_m: state.position_m + 300.0, speed_mps: 11.0, length_m: 4.8 };
+        let ahead = Ahead { position_m: state.position_m + 300.0, speed_mps: 11.0, gained_mps: 0.0, length_m: 4.8 };
         let demand = limited(demand_follow(&state, &ahead, &law, STEP_S), state.demand_mps2, &law, STEP_S);
         state = actuated(&state, demand, law.lag_s, STEP_S, Trapezoid);
         assert!(state.speed_mps < 13.3);

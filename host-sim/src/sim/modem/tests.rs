@@ -33,6 +33,7 @@ fn parameters(target_speed: i32) -> DrivingParameters {
         time_gap: Seconds::from_millis(1000),
         gain: Gain::from_milli(500),
         damping: Seconds::from_millis(2000),
+        feed_forward: Fraction::ZERO,
         lag: FineSeconds::from_millis(300),
         limits: Limits {
             acceleration: Acceleration::from_mm_per_s2(2000),

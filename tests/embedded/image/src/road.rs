@@ -245,6 +245,7 @@ fn parameters(peer: u8, other: bool) -> DrivingParameters {
         time_gap: Seconds::from_millis(if other { 1_200 } else { 1_000 }),
         gain: GAIN,
         damping: DAMPING,
+        feed_forward: Fraction::ZERO,
         lag: FineSeconds::from_millis(300),
         limits: Limits {
             acceleration: Acceleration::from_mm_per_s2(2_500),

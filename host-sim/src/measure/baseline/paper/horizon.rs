@@ -142,6 +142,7 @@ mod tests {
             time_gap_s: 1.0,
             gain: 0.25,
             damping_s: 2.0,
+            feed_forward: 0.0,
             lag_s: 0.3,
             acceleration_mps2: 2.0,
             braking_mps2: 4.0,

@@ -15,6 +15,7 @@ fn parameters(predecessor: Option<usize>, target_speed_mps: f64) -> HeardParamet
         time_gap_s: 1.0,
         gain: 0.25,
         damping_s: 2.0,
+        feed_forward: 0.0,
         lag_s: 0.3,
         acceleration_mps2: 2.0,
         braking_mps2: 4.0,

@@ -4,7 +4,8 @@
 
 use core::hint::black_box;
 use cortex_m_rt::entry;
-use holdover::model::{Aim, State, Step};
+use holdover::model::{Aim, Consensus, State, Step};
+use holdover::parameters::FEED_FORWARD;
 use holdover::time::{Duration, Instant};
 use holdover::units::{Position, Seconds, Speed};
 use holdover::wire::Transport;
@@ -173,9 +174,11 @@ fn compare(counter: &Counter) {
     let config = Config::car(EGO);
     let law = config.law;
     let aim = Aim::Follow {
-        gain: law.gain,
-        damping: law.damping,
-        time_gap: Seconds::from_millis(1_000), // as in the other two
+        law: Consensus {
+            time_gap: Seconds::from_millis(1_000), // as in the other two
+            feed_forward: FEED_FORWARD,            // which they do not have
+            ..law.consensus()
+        },
         standstill: law.standstill,
         catch_up: law.target_speed,
     };
@@ -187,7 +190,7 @@ fn compare(counter: &Counter) {
     for (step, way) in ahead.iter_mut().zip((18_110..).step_by(110)) {
         *step = Step { position: Position::from_mm(way).ring(), speed };
     }
-    let ((_, done), fixed) = counter.count(|| stride.run(start, black_box(ahead), black_box(out)));
+    let ((_, done), fixed) = counter.count(|| stride.run(start, speed, black_box(ahead), black_box(out)));
     assert!(done == CAPACITY);
     // All of them predict the same.
     let end = out.last().map_or(0, |step| step.position.ahead_of(Position::ZERO.ring()).to_mm()) as f32 / 1000.0;
