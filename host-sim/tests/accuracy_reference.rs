@@ -187,7 +187,9 @@ fn speed_before(vehicle: &Vehicle, end: &State, before: Duration) -> f64 {
     let whole_s = vehicle.age.as_micros() as f64 * 1e-6;
     let s = 1.0 - before.as_micros() as f64 * 1e-6 / whole_s;
     let mean = (end.position_m - position) / whole_s;
-    6.0 * s * (1.0 - s) * mean + (1.0 - s) * (1.0 - 3.0 * s) * speed + s * (3.0 * s - 2.0) * end.speed_mps
+    let on_cubic =
+        6.0 * s * (1.0 - s) * mean + (1.0 - s) * (1.0 - 3.0 * s) * speed + s * (3.0 * s - 2.0) * end.speed_mps;
+    on_cubic.max(0.0) // no vehicle reverses
 }
 
 /// The reference's states at the grid's steps 0 to 400, front vehicle first; each vehicle starts as far from its sample (m

@@ -60,7 +60,7 @@ impl Situation {
     /// The approach by a law.
     #[must_use]
     pub fn by_law(&self, law: Law) -> Approach {
-        let Law { pair, time_gap_s } = law;
+        let Law { pair, time_gap_s, .. } = law; // a target of constant speed gives nothing to feed forward
         self.approach(self.wanted_gap_m(time_gap_s), |gap_m, own_mps| {
             let error = -gap_m + STANDSTILL_M + own_mps * time_gap_s + pair.damping_s * (own_mps - self.target_mps);
             -pair.gain * error
@@ -112,7 +112,7 @@ mod tests {
     use super::super::linear::Pair;
     use super::*;
 
-    const USUAL: Law = Law { pair: Pair { gain: 0.5, damping_s: 2.0 }, time_gap_s: 1.0 };
+    const USUAL: Law = Law { pair: Pair { gain: 0.5, damping_s: 2.0 }, time_gap_s: 1.0, feed_forward: 0.0 };
 
     #[test]
     fn at_the_gap_and_the_speed_that_are_wanted_nothing_happens() {

@@ -28,11 +28,14 @@ Examples:
 The table:
   The gain k over own speed, target's speed and headway at the moment of
   association, and a curve of the damping over k. It is made for a time gap of
-  1 s, that of the scenarios, and proved there and at the shipped one of 1.6 s.
+  1 s, that of the scenarios, and proved there, at the shipped one of 1.6 s, and
+  at 1 s with half of the acceleration ahead passed on (feed-forward 0.5), which
+  is shipped for vehicles with a range sensor.
 
 Limits of every pair on the curve, thousandth by thousandth:
-  string stability  t_g >= sqrt(g² + 2/k) - g; the largest amplification 1
-                    without lag and with 0.3 s, 1.002 with 0.5 s
+  string stability  t_g >= sqrt(g² + 2 (1 - f)/k) - g, with the feed-forward f;
+                    the largest amplification 1 without lag and with
+                    0.3 s, 1.002 with 0.5 s
   margins           40 degrees and 0.2 s, with a lag of 0.5 s
 Limits of every cell, for a car that comes up to a target of constant speed:
   where braking at 3 m/s² from the start would do

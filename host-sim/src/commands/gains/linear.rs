@@ -1,8 +1,8 @@
 //! The properties of a pair of gains in every situation: `k`, `γ` and the time gap enter; string stability and
 //! stability margin leave.
 //!
-//! With the actuators' lag `T`, the law of eq. 5 transmits a predecessor's motion by `G(s) = k (1 + γ s)/(T s³ + s² + k
-//! (t_g + γ) s + k)`. Its own loop is `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
+//! With the actuators' lag `T` and feed-forward `φ`, the law transmits a predecessor's motion by `G(s) = [φ s² + k (1 + γ s)]/(T s³ + s² +
+//! k (t_g + γ) s + k)`. Its own loop is `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
 
 /// The time gap `t_g` that the gains are chosen for, in seconds. It is the smallest at which they are proved, and that
 /// of the scenarios.
@@ -41,39 +41,50 @@ pub struct Law {
     pub pair: Pair,
     /// `t_g` in s.
     pub time_gap_s: f64,
+    /// `φ`, the share of the predecessor's acceleration that is passed on.
+    pub feed_forward: f64,
 }
 
 impl Pair {
     /// The law with these gains at a time gap.
     #[must_use]
     pub fn at(self, time_gap_s: f64) -> Law {
-        Law { pair: self, time_gap_s }
+        Law { pair: self, time_gap_s, feed_forward: 0.0 }
     }
 }
 
 impl Law {
+    /// The same with feed-forward.
+    #[must_use]
+    pub fn fed(self, feed_forward: f64) -> Self {
+        Self { feed_forward, ..self }
+    }
+
     /// `t_g + γ`, the time by which the law looks ahead.
     fn lead_s(self) -> f64 {
         self.time_gap_s + self.pair.damping_s
     }
 
-    /// The condition without lag: `t_g >= sqrt(γ² + 2/k) - γ`.
+    /// The condition without lag: `t_g >= sqrt(γ² + 2 (1 - φ)/k) - γ`.
     #[must_use]
     pub fn is_string_stable_without_lag(self) -> bool {
         let Pair { gain, damping_s } = self.pair;
-        self.time_gap_s >= (damping_s * damping_s + 2.0 / gain).sqrt() - damping_s - 1e-12
+        let left = 1.0 - self.feed_forward;
+        self.time_gap_s >= (damping_s * damping_s + 2.0 * left / gain).sqrt() - damping_s - 1e-12
     }
 
     /// Whether a larger time gap amplifies no frequency by more than 1 and this gap's amplification, with this lag or
     /// any smaller one.
     ///
-    /// The numerator of `|G(jω)|²`, `k² (1 + γ² ω²)`, does not depend on the gap. The denominator is `(k - ω²)² + ω² (k
+    /// The numerator of `|G(jω)|²`, `(k - φ ω²)² + k² γ² ω²`, does not depend on the gap. The denominator is `(k - ω²)² + ω² (k
     /// (t_g + γ) - T ω²)²`. Up to `ω² = k (t_g + γ)/T` it grows with `t_g`. Beyond that frequency, its first term alone
-    /// is at least the numerator if `ω² >= k (2 + k γ²)`. That holds everywhere beyond if `t_g + γ >= T (2 + k γ²)`.
+    /// is at least the numerator if `ω² (1 - φ²) >= k [2 (1 - φ) + k γ²]`. That holds everywhere beyond if
+    /// `(t_g + γ) (1 - φ²) >= T [2 (1 - φ) + k γ²]`.
     #[must_use]
     pub fn is_string_stable_at_larger_time_gaps(self, lag_s: f64) -> bool {
         let Pair { gain, damping_s } = self.pair;
-        self.lead_s() >= lag_s * (2.0 + gain * damping_s * damping_s)
+        let share = self.feed_forward;
+        self.lead_s() * (1.0 - share * share) >= lag_s * (2.0 * (1.0 - share) + gain * damping_s * damping_s)
     }
 
     /// The largest `|G(jω)|` over frequencies from 0.01 to 30 rad/s.
@@ -81,7 +92,7 @@ impl Law {
     pub fn largest_gain(self, lag_s: f64) -> f64 {
         let Pair { gain: k, damping_s } = self.pair;
         let square = |w: f64| {
-            let passed = k * k * (1.0 + damping_s * damping_s * w * w);
+            let passed = (k - self.feed_forward * w * w).powi(2) + (k * damping_s * w).powi(2);
             let (real, imaginary) = (k - w * w, k * self.lead_s() * w - lag_s * w * w * w);
             passed / (real * real + imaginary * imaginary)
         };

@@ -1,5 +1,5 @@
 //! `gains`: eq. 6. Only options enter. The table of gains that the core ships leaves, with the proof of every cell at
-//! the time gap that the table is made for and at the shipped one, a report with a picture of it, and the verdict.
+//! the time gap that the table is made for, at the shipped one, and at that of a vehicle with a range sensor, a report with a picture of it, and the verdict.
 //!
 //! ```text
 //! sound pairs -> curve -> cells (on all cores) -> proofs -> source, JSON, report
@@ -17,6 +17,7 @@ pub mod source;
 use std::path::PathBuf;
 
 use holdover::parameters;
+use holdover::units::Seconds;
 use serde::Serialize;
 
 use crate::commands::ending::Destination;
@@ -60,8 +61,9 @@ pub struct Table {
     pub curve: Vec<u32>,
     /// Cells by own speed, target's speed and headway.
     pub cells: Vec<Cell>,
-    /// Proofs at the time gap that the table is made for, and at the shipped one.
-    pub proofs: [Proof; 2],
+    /// Proofs at the time gap that the table is made for, at the shipped one, and at that of a vehicle with a range sensor, which feeds
+    /// forward.
+    pub proofs: [Proof; 3],
     /// The requirements that do not hold.
     pub failures: Vec<String>,
 }
@@ -82,8 +84,10 @@ impl Table {
     pub fn made() -> Self {
         let curve = grid::curve();
         let cells = grid::cells(&curve);
-        let shipped_s = f64::from(parameters::TIME_GAP.to_millis()) / 1e3;
-        let proofs = [linear::DESIGN_TIME_GAP_S, shipped_s].map(|time_gap_s| Proof::at(time_gap_s, &curve, &cells));
+        let seconds = |gap: Seconds| f64::from(gap.to_millis()) / 1e3;
+        let with_sensor = (seconds(parameters::TIME_GAP_WITH_SENSOR), parameters::FEED_FORWARD.get().to_num());
+        let shipped = [(linear::DESIGN_TIME_GAP_S, 0.0), (seconds(parameters::TIME_GAP), 0.0), with_sensor];
+        let proofs = shipped.map(|(time_gap_s, feed_forward)| Proof::at(time_gap_s, feed_forward, &curve, &cells));
         let failures = proofs.iter().flat_map(|proof| proof.failures.clone()).collect();
         Self { curve, cells, proofs, failures }
     }
@@ -129,11 +133,12 @@ fn of_proof(proof: &Proof) -> String {
     let [none, car, lazy] = proof.largest_amplification;
     let nearest = proof.smallest_gap_m.map_or(String::new(), |gap_m| format!("; no collision: {gap_m:.2} m left"));
     format!(
-        "time gap {} s: everything is asked of {} cells, no collision of {}, nothing of {}\n  \
+        "time gap {} s, feed-forward {}: everything is asked of {} cells, no collision of {}, nothing of {}\n  \
          largest amplification: {none:.5} without lag, {car:.5} at 0.3 s, {lazy:.5} at 0.5 s\n  \
          least margins: {:.1} degrees, {:.2} s\n  \
          everything: settled in {:.1} s of {:.1} s, {:.2} m into the gap, braking {:.2} m/s²{nearest}\n",
         proof.time_gap_s,
+        proof.feed_forward,
         proof.everything_asked,
         proof.no_collision_asked,
         proof.nothing_asked,

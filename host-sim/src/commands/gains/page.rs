@@ -14,7 +14,7 @@ const WHAT: &str = "When a vehicle begins to follow another one, it looks its ga
                     what its leader does. A cell with a cross asks nothing: not even braking from the start would avoid a \
                     collision there.";
 
-const GAPS: &str = "The table is made for the smaller time gap and proved at both. What holds of amplification along a string \
+const GAPS: &str = "The table is made for the smaller time gap and proved at all three. What holds of amplification along a string \
                     holds at every larger gap; margins do not: at 3.995 s the phase margin is below 40°. And an approach takes longer: the last \
                     of it dies out with a time constant that has the gap in it, so the limit on settling grows by 7 s for \
                     each second of gap. The limits on the demand, 2.5 and -4 m/s² and 5 m/s³, hold by construction.";
@@ -22,10 +22,11 @@ const GAPS: &str = "The table is made for the smaller time gap and proved at bot
 /// The page.
 pub fn render(table: &Table) -> Page {
     let mut page = Page::new("holdover-sim · report of the gains", "The table of gains, eq. 6");
-    let [made, shipped] = &table.proofs;
+    let [made, shipped, seeing] = &table.proofs;
     let passed = format!(
-        "Every pair on the curve and every cell holds its limits, at a time gap of {} s and at {} s, which is shipped.",
-        made.time_gap_s, shipped.time_gap_s
+        "Every pair on the curve and every cell holds its limits, at a time gap of {} s, at {} s, which is shipped, and at \
+         {} s with a feed-forward of {}, which is shipped for vehicles with a range sensor.",
+        made.time_gap_s, shipped.time_gap_s, seeing.time_gap_s, seeing.feed_forward
     );
     page.verdict(
         table.failures.is_empty(),
@@ -53,6 +54,7 @@ fn proofs(page: &mut Page, proofs: &[Proof]) {
         let nearest = proof.smallest_gap_m.map_or("-".into(), |gap_m| format!("{gap_m:.2} m"));
         vec![
             Entry::number(format!("{} s", proof.time_gap_s)),
+            Entry::number(proof.feed_forward.to_string()),
             Entry::number(format!("{}, {}, {}", proof.everything_asked, proof.no_collision_asked, proof.nothing_asked)),
             Entry::number(format!("{none}, {car}, {lazy}")),
             Entry::judged(
@@ -68,6 +70,7 @@ fn proofs(page: &mut Page, proofs: &[Proof]) {
     };
     let header = [
         "Time gap",
+        "Feed-forward",
         "Everything, no collision, nothing asked",
         "Amplification, lag 0, 0.3, 0.5 s",
         "Phase margin",

@@ -1,4 +1,4 @@
-//! The proof of the table at one time gap: curve and cells enter; the worst figures leave, and the requirements that do
+//! The proof of the table at one time gap, with or without feed-forward: curve and cells enter; the worst figures leave, and the requirements that do
 //! not hold.
 
 use serde::Serialize;
@@ -13,6 +13,8 @@ use crate::parallel;
 pub struct Proof {
     /// The time gap.
     pub time_gap_s: f64,
+    /// The share of the predecessor's acceleration that is passed on.
+    pub feed_forward: f64,
     /// Cells of which everything is required.
     pub everything_asked: usize,
     /// Cells of which no collision is required.
@@ -41,13 +43,16 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The proof at a time gap, on all cores.
+    /// The proof at a time gap and with this feed-forward, on all cores.
     #[must_use]
-    pub fn at(time_gap_s: f64, curve: &[u32], cells: &[Cell]) -> Self {
-        let laws: Vec<Law> = grid::pairs(curve).into_iter().map(|pair| pair.at(time_gap_s)).collect();
+    pub fn at(time_gap_s: f64, feed_forward: f64, curve: &[u32], cells: &[Cell]) -> Self {
+        let laws: Vec<Law> = grid::pairs(curve).into_iter().map(|pair| pair.at(time_gap_s).fed(feed_forward)).collect();
         let sound = parallel::each(&laws, |law| law.is_sound());
         let unsound = laws.iter().zip(sound).filter(|(_, is_sound)| !is_sound).map(|(law, _)| {
-            format!("k = {:.3} 1/s² on the curve is not sound at a time gap of {time_gap_s} s", law.pair.gain)
+            format!(
+                "k = {:.3} 1/s² on the curve is not sound at a time gap of {time_gap_s} s and a feed-forward of {feed_forward}",
+                law.pair.gain
+            )
         });
         let margins: Vec<_> = laws.iter().map(|law| law.margins(LAZIEST_S)).collect();
         let least = |of: fn(&(f64, f64)) -> f64| margins.iter().map(of).fold(f64::INFINITY, f64::min);
@@ -65,6 +70,7 @@ impl Proof {
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         Self {
             time_gap_s,
+            feed_forward,
             everything_asked: of(Asked::Everything).count(),
             no_collision_asked: of(Asked::NoCollision).count(),
             nothing_asked: of(Asked::Nothing).count(),
@@ -96,19 +102,19 @@ mod tests {
     #[test]
     fn a_cell_that_misses_its_limit_is_named_with_the_time_gap() {
         let curve = grid::curve();
-        let proof = Proof::at(1.6, &curve, &[LATE]);
+        let proof = Proof::at(1.6, 0.0, &curve, &[LATE]);
         assert!(proof.failures.is_empty(), "{:?}", proof.failures);
         assert!(proof.longest_settling_s > 45.0, "what 1 s allows is not enough: {proof:?}");
         let slow = Cell { pair: Pair { gain: 0.275, damping_s: 6.0 }, ..LATE };
         assert_eq!(
-            Proof::at(1.6, &curve, &[slow]).failures,
+            Proof::at(1.6, 0.0, &curve, &[slow]).failures,
             ["Everything does not hold at 0 m/s behind 28 m/s, 120 m, and a time gap of 1.6 s"]
         );
     }
 
     #[test]
     fn at_a_time_gap_that_is_too_large_the_margins_of_the_curve_fail() {
-        let proof = Proof::at(3.995, &grid::curve(), &[]);
+        let proof = Proof::at(3.995, 0.0, &grid::curve(), &[]);
         assert!(!proof.failures.is_empty() && (36.9..37.1).contains(&proof.least_phase_margin_deg), "{proof:?}");
         // String stability holds nevertheless.
         assert!(proof.largest_amplification.into_iter().all(|largest| largest <= 1.000_1), "{proof:?}");
