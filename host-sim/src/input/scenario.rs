@@ -109,6 +109,9 @@ pub struct Vehicle {
     pub standstill_m: f64,
     /// Share by which it exceeds the speed that it wants on a free road to catch up with the vehicle ahead; 0 to 0.75.
     pub catch_up: f64,
+    /// Share of the acceleration of the vehicle ahead that it passes on; 0 or 0.5. The latter needs `step_s` and `period_s` of at least
+    /// 7.813 ms.
+    pub feed_forward: f64,
     /// How well it knows its own motion, as it publishes it.
     pub accuracy: Accuracy,
     /// Its range sensor for the vehicle ahead, if it has one.

@@ -6,7 +6,7 @@ use holdover::Config;
 use super::description::{Corridor, Emergencies, Radio, Wrong};
 use crate::input::kind::Kind;
 use crate::input::scenario::Envelope;
-use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed};
+use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed, thousandths};
 use crate::sim::sensors::faults::is_fitted;
 use crate::sim::station::station;
 use crate::sim::world::horizon;
@@ -117,6 +117,7 @@ pub fn config(corridor: &Corridor, conditions: &Conditions, identity: Identity, 
     config.law.time_gap = seconds(traffic.time_gap_s);
     config.law.standstill = distance(traffic.standstill_m);
     config.law.catch_up = share(traffic.catch_up);
+    config.law.feed_forward = thousandths(traffic.feed_forward);
     config.law.target_speed = speed(traffic.target_speed_mps);
     config.link.period = duration(1.0 / corridor.message_rate_hz);
     config.prediction.step = duration(conditions.step_s);

@@ -89,6 +89,9 @@ pub struct Traffic {
     pub standstill_m: f64,
     /// Share by which every vehicle exceeds that target speed to catch up with the vehicle ahead.
     pub catch_up: f64,
+    /// Share of the acceleration of the vehicle ahead that it passes on; 0 or 0.5. The latter needs `step_s` and `period_s` of at least
+    /// 7.813 ms.
+    pub feed_forward: f64,
     /// Least time between two arrivals on the same road.
     pub headway_s: f64,
     /// Vehicles appear this far before the first crossing point of their road.

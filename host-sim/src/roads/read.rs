@@ -26,6 +26,7 @@ const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 1.
 const ENTRY: Number = Number { key: "entry_speed_mps", unit: "m/s", limits: 1.0..=50.0, default: 10.0 };
 const TIME_GAP: Number = Number { key: "time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.0 };
 const CATCH_UP: Number = Number { key: "catch_up", unit: "a share", limits: 0.0..=0.75, default: 0.2 };
+const FEED_FORWARD: Number = Number { key: "feed_forward", unit: "a share", limits: 0.0..=0.5, default: 0.0 };
 const STANDSTILL: Number = Number { key: "standstill_m", unit: "metres", limits: 0.0..=10.23, default: 2.0 };
 const HEADWAY: Number = Number { key: "headway_s", unit: "seconds", limits: 1.0..=60.0, default: 2.5 };
 const APPEAR: Number = Number { key: "appear_m", unit: "metres", limits: 50.0..=1000.0, default: 180.0 };
@@ -166,6 +167,7 @@ fn traffic(document: &Document, mut section: Section) -> Result<Traffic, Error> 
         time_gap_s: section.number(&TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
+        feed_forward: section.number(&FEED_FORWARD)?.value,
         headway_s: section.number(&HEADWAY)?.value,
         appear_m: section.number(&APPEAR)?.value,
         leave_m: section.number(&LEAVE)?.value,

@@ -47,6 +47,12 @@ pub fn share(of_one: f64) -> Fraction {
     Fraction::from_milli((of_one * 20.0).round() as i32 * 50)
 }
 
+/// To thousandths.
+#[must_use]
+pub fn thousandths(of_one: f64) -> Fraction {
+    Fraction::from_milli((of_one * 1e3).round() as i32)
+}
+
 /// To the core's format, to nearest.
 #[must_use]
 pub fn duration(s: f64) -> Duration {

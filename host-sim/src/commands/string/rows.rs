@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use holdover::parameters::FEED_FORWARD;
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
 
@@ -223,9 +224,11 @@ fn not_following(trace: &Trace, from_s: f64) -> usize {
 fn scenario((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, sensors: Switch) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
     let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
+    // As `Config::with_range_sensor` has it.
+    let feed_forward: f64 = if sensors.is_on() { FEED_FORWARD.get().to_num() } else { 0.0 };
     let vehicle = |gap: &str| {
         format!(
-            "[[vehicle]]\n{gap}speed_mps = {CRUISE_MPS}\ntime_gap_s = {time_gap_s}\nposition_accuracy_m = 0.05\n\
+            "[[vehicle]]\n{gap}speed_mps = {CRUISE_MPS}\ntime_gap_s = {time_gap_s}\nfeed_forward = {feed_forward}\nposition_accuracy_m = 0.05\n\
              speed_accuracy_mps = 0.02\n"
         )
     };

@@ -30,6 +30,7 @@ const LAG: Number = Number { key: "lag_s", unit: "seconds", limits: 0.0..=1.998,
 const PLANT_LAG: Number = Number { key: "plant_lag_s", unit: "seconds", limits: 0.0..=5.0, default: 0.3 };
 const TIME_GAP: Number = Number { key: "time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.0 };
 const CATCH_UP: Number = Number { key: "catch_up", unit: "a share", limits: 0.0..=0.75, default: 0.2 };
+const FEED_FORWARD: Number = Number { key: "feed_forward", unit: "a share", limits: 0.0..=0.5, default: 0.0 };
 const STANDSTILL: Number = Number { key: "standstill_m", unit: "metres", limits: 0.0..=10.23, default: 2.0 };
 const DELAY_MEAN: Number = Number { key: "delay_mean_s", unit: "seconds", limits: 0.0..=10.0, default: 0.040 };
 const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 0.0..=10.0, default: 0.0259 };
@@ -258,6 +259,7 @@ fn vehicle(
         time_gap_s: section.number(&TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
+        feed_forward: section.number(&FEED_FORWARD)?.value,
         accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
         range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind, said)?,
     };

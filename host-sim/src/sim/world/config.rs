@@ -6,7 +6,7 @@ use holdover::time::Duration;
 
 use crate::input::scenario::Scenario;
 use crate::sim::plant::Machine;
-use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed};
+use crate::sim::quantities::{distance, duration, fine_seconds, seconds, share, speed, thousandths};
 use crate::sim::station::station;
 use crate::sim::vehicle::STEPS;
 
@@ -32,6 +32,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.law.time_gap = seconds(vehicle.time_gap_s);
     config.law.standstill = distance(vehicle.standstill_m);
     config.law.catch_up = share(vehicle.catch_up);
+    config.law.feed_forward = thousandths(vehicle.feed_forward);
     config.law.target_speed = speed(scenario.leader.target_speed_mps);
     config.link.period = duration(1.0 / scenario.message_rate_hz);
     config.range_sensor = vehicle.range_sensor.is_some();
