@@ -200,6 +200,8 @@ typedef int32_t holdover_status_t;
 #define HOLDOVER_CONFIG_IDENTIFIER_RANGE ((holdover_status_t)-51)
 // Two messages have the same identifier, all 16 slots counted. `holdover-sim dbc --place` names them.
 #define HOLDOVER_CONFIG_IDENTIFIER_SHARED ((holdover_status_t)-52)
+// `feed_forward_milli` is neither 0 nor 500, or is 500 with a step or a period below 7.813 ms.
+#define HOLDOVER_CONFIG_FEED_FORWARD ((holdover_status_t)-53)
 // A frame of ours that is not exactly 8 data bytes long, or a remote frame.
 #define HOLDOVER_REFUSED_LENGTH ((holdover_status_t)-64)
 // The E2E checksum does not fit.
@@ -430,7 +432,7 @@ typedef struct holdover_body_t {
 
 // The law of eqs 5 and 7.
 typedef struct holdover_law_t {
-  // Desired time gap in ms; 1600 by default. With a range sensor 1200 will do (`range_sensor`).
+  // Desired time gap in ms; 1600 by default. With a range sensor 1000 will do (`range_sensor`, and `feed_forward_milli` of 500).
   uint32_t time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;
@@ -440,6 +442,9 @@ typedef struct holdover_law_t {
   uint32_t gain_milli;
   // Damping in ms.
   uint32_t damping_ms;
+  // Share of the predecessor's acceleration that is passed on, in thousandths: 0 or 500. The latter needs a step and a period of at
+  // least 7.813 ms.
+  uint32_t feed_forward_milli;
   // Largest acceleration on a free road in mm/s2.
   uint32_t free_road_acceleration_mm_s2;
   // Speed wanted on a free road until `DriverRequest` says otherwise, in mm/s.
@@ -783,16 +788,17 @@ HOLDOVER_ASSERT(offsetof(holdover_body_t, ratio_milli) == 4U, "holdover_body_t.r
 HOLDOVER_ASSERT(offsetof(holdover_body_t, drag_milli) == 8U, "holdover_body_t.drag_milli");
 HOLDOVER_ASSERT(offsetof(holdover_body_t, friction_milli) == 12U, "holdover_body_t.friction_milli");
 HOLDOVER_ASSERT(offsetof(holdover_body_t, mechanical_n) == 16U, "holdover_body_t.mechanical_n");
-HOLDOVER_ASSERT(sizeof(holdover_law_t) == 36U, "sizeof holdover_law_t");
+HOLDOVER_ASSERT(sizeof(holdover_law_t) == 40U, "sizeof holdover_law_t");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, time_gap_ms) == 0U, "holdover_law_t.time_gap_ms");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, standstill_mm) == 4U, "holdover_law_t.standstill_mm");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_table) == 8U, "holdover_law_t.gain_table");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_milli) == 12U, "holdover_law_t.gain_milli");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, damping_ms) == 16U, "holdover_law_t.damping_ms");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, free_road_acceleration_mm_s2) == 20U, "holdover_law_t.free_road_acceleration_mm_s2");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, target_speed_mm_s) == 24U, "holdover_law_t.target_speed_mm_s");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, catch_up_milli) == 28U, "holdover_law_t.catch_up_milli");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, max_speed_mm_s) == 32U, "holdover_law_t.max_speed_mm_s");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, feed_forward_milli) == 20U, "holdover_law_t.feed_forward_milli");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, free_road_acceleration_mm_s2) == 24U, "holdover_law_t.free_road_acceleration_mm_s2");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, target_speed_mm_s) == 28U, "holdover_law_t.target_speed_mm_s");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, catch_up_milli) == 32U, "holdover_law_t.catch_up_milli");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, max_speed_mm_s) == 36U, "holdover_law_t.max_speed_mm_s");
 HOLDOVER_ASSERT(sizeof(holdover_model_t) == 10U, "sizeof holdover_model_t");
 HOLDOVER_ASSERT(offsetof(holdover_model_t, lag) == 0U, "holdover_model_t.lag");
 HOLDOVER_ASSERT(offsetof(holdover_model_t, limits) == 1U, "holdover_model_t.limits");
@@ -829,7 +835,7 @@ HOLDOVER_ASSERT(offsetof(holdover_envelope_t, speed_mm_s) == 16U, "holdover_enve
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, margin_mm) == 20U, "holdover_envelope_t.margin_mm");
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, delay_us) == 24U, "holdover_envelope_t.delay_us");
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, lag_tolerance_milli) == 28U, "holdover_envelope_t.lag_tolerance_milli");
-HOLDOVER_ASSERT(sizeof(holdover_config_t) == 324U, "sizeof holdover_config_t");
+HOLDOVER_ASSERT(sizeof(holdover_config_t) == 328U, "sizeof holdover_config_t");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, station) == 0U, "holdover_config_t.station");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, range_sensor) == 1U, "holdover_config_t.range_sensor");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, base_id) == 2U, "holdover_config_t.base_id");
@@ -843,9 +849,9 @@ HOLDOVER_ASSERT(offsetof(holdover_config_t, body) == 168U, "holdover_config_t.bo
 HOLDOVER_ASSERT(offsetof(holdover_config_t, correction) == 188U, "holdover_config_t.correction");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, passes) == 189U, "holdover_config_t.passes");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, law) == 192U, "holdover_config_t.law");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, prediction) == 228U, "holdover_config_t.prediction");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, link) == 248U, "holdover_config_t.link");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, envelope) == 292U, "holdover_config_t.envelope");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, prediction) == 232U, "holdover_config_t.prediction");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, link) == 252U, "holdover_config_t.link");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, envelope) == 296U, "holdover_config_t.envelope");
 HOLDOVER_ASSERT(sizeof(holdover_frame_t) == 16U, "sizeof holdover_frame_t");
 HOLDOVER_ASSERT(offsetof(holdover_frame_t, id) == 0U, "holdover_frame_t.id");
 HOLDOVER_ASSERT(offsetof(holdover_frame_t, extended) == 4U, "holdover_frame_t.extended");
