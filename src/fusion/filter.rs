@@ -7,7 +7,8 @@
 //! r' = r + v h + a h²/2      v' = v + a h      a' = φ a      P' = F P Fᵀ + q Q(h)
 //! ```
 //!
-//! A vehicle that keeps its acceleration is tracked with little noise (`WANDER`). Who brakes changes the acceleration at once. A speed that
+//! A vehicle that keeps its speed is tracked with little noise (`WANDER`). One that accelerates or brakes will end that, and the density of
+//! the noise grows with the square of the acceleration, `q = WANDER + min(a²/32, 1/2)`. Who brakes changes the acceleration at once. A speed that
 //! differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by `MANOEUVRE`
 //! within the last step, and the filter follows within a few views.
 //!
@@ -24,7 +25,7 @@ const BITS: u32 = 25;
 const ONE: i32 = 1 << BITS;
 
 /// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.06 m/s² in a second. More of it makes
-/// a string behind a steady leader less steady; who changes it faster is followed by `MANOEUVRE`.
+/// a string behind a steady leader less steady.
 const WANDER: i32 = ONE / 256;
 
 /// Variance of a sudden change of acceleration: a standard deviation of 5 m/s².
@@ -130,7 +131,9 @@ impl Filter {
             speed: speed.plus(gained),
             acceleration: Acceleration::from_bits(product(acceleration.to_bits(), keep)),
         };
-        self.covariances = self.covariances.after(h, keep).and(&Covariances::of_change(product(WANDER, h), h));
+        let density =
+            WANDER.saturating_add((product(acceleration.to_bits(), acceleration.to_bits()) / 32).min(ONE / 2));
+        self.covariances = self.covariances.after(h, keep).and(&Covariances::of_change(product(density, h), h));
         self.step = h;
     }
 
