@@ -102,6 +102,26 @@ fn a_law_outside_its_ranges_is_refused() {
     range(ConfigError::Standstill, [0, 10_230], |config, mm| config.law.standstill = Distance::from_mm(int(mm)));
     range(ConfigError::Gain, [10, 3_999], |config, milli| config.law.gain = Gain::from_milli(int(milli)));
     range(ConfigError::Gain, [0, 3_999], |config, milli| config.law.damping = Seconds::from_millis(int(milli)));
+    for (milli, ms, expected) in [
+        (0, 1, Ok(())),
+        (1, 30, Err(ConfigError::FeedForward)),
+        (499, 30, Err(ConfigError::FeedForward)),
+        (500, 30, Ok(())),
+        (501, 30, Err(ConfigError::FeedForward)),
+        (1_000, 30, Err(ConfigError::FeedForward)),
+        (-500, 30, Err(ConfigError::FeedForward)),
+        (500, 7, Err(ConfigError::FeedForward)),
+        (500, 8, Ok(())),
+    ] {
+        for (of_step, of_period) in [(ms, 30), (30, ms)] {
+            let mut config = Config::car(StationHash(1));
+            config.law.feed_forward = Fraction::from_milli(milli);
+            config.prediction.step = Duration::from_millis(of_step);
+            config.prediction.horizon = config.prediction.step.times(8);
+            config.period = Duration::from_millis(of_period);
+            assert_eq!(config.check(CAPACITY), expected, "{milli} {of_step} {of_period}");
+        }
+    }
     range(ConfigError::Speed, [0, 65_534], |config, mm| config.law.target_speed = Speed::from_mm_per_s(int(mm)));
     range(ConfigError::Speed, [0, 65_534], |config, mm| config.law.max_speed = Speed::from_mm_per_s(int(mm)));
     range(ConfigError::CatchUp, [0, 15], |config, steps| {
