@@ -78,6 +78,11 @@ def the_tour(page):
         holds(f"step {step} of the tour", page.until(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')"))
         began = page.read("state.scene.at_s")
         page.until(f"state.scene.at_s < {began} || state.scene.at_s > {began + seconds}")
+        if step == 1:
+            holds("the sliders say what the step has set", page.until("document.getElementById('delay-said').textContent === '0 ms'"))
+        if step == 5: # to be seen by others, and past the first second, which does not count
+            page.keyboard.press("ArrowDown", delay=1500)
+            holds("a key drives the leader in it", page.seen(0, "is_driven"))
         if step == 4:
             page.until(f"state.scene.at_s > {began + 0.5}")
             page.screenshot(path=f"{FOLDER}/without.png")
@@ -85,8 +90,9 @@ def the_tour(page):
     page.wait_for_selector("#tour-figures:not([hidden])")
     rows = page.eval_on_selector_all("#tour-figures tbody tr", "(rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent))")
     print("\n".join("  " + "  ".join(row) for row in rows))
-    figures = {name: ours for name, ours, _ in rows}
-    holds("its figures stand beside the paper's", figures["the paper reports"] == "0.50" and float(figures["4 s of silence"]) < 0.5)
+    figures = {name: (ours, theirs) for name, ours, _, theirs in rows}
+    holds("its figures stand beside the paper's", all(figures[name][1] == "0.50" for name in ("4 s of silence", "you drive"))
+          and float(figures["4 s of silence"][0]) < 0.5 and float(figures["without the estimate"][0]) > 5 and figures["you drive"][0] != "–")
     page.order('{"do":"pace","factor":1}')
 
 

@@ -1,15 +1,19 @@
 //! `live --bus`: a device on a bus in memory drives the ego, and the page shows the world with it in it.
 
-use std::path::Path;
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
 use holdover::time::Duration;
+use holdover_sim::commands::ecu::arguments::UnitArguments;
 use holdover_sim::commands::hil::judge::LATENCY_P99_MS;
 use holdover_sim::commands::hil::session::{self, Setup};
 use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
 use holdover_sim::commands::interruption::Interruption;
+use holdover_sim::commands::live::arguments::LiveArguments;
 use holdover_sim::commands::live::device::Device;
 use holdover_sim::commands::live::engine::Ask;
+use holdover_sim::commands::live::options::LiveOptions;
 use holdover_sim::commands::live::order::Order;
 use holdover_sim::input::scenario::{Overrides, Part, Scenario};
 use holdover_sim::sim::world;
@@ -106,6 +110,56 @@ fn what_is_switched_of_all_is_switched_of_all_but_the_device_at_once() {
         // The leader follows nobody, and drives by no estimate.
         assert_eq!(seen["is_plain"], !is_device && vehicle > 0, "vehicle {vehicle}");
     }
+}
+
+/// The options of `live --bus can0` with these.
+fn on_bus(scenario: Option<&str>, vehicle: Option<usize>) -> Result<LiveOptions, String> {
+    let arguments = LiveArguments {
+        scenario: scenario.map(PathBuf::from),
+        port: 0,
+        no_browser: true,
+        listen: IpAddr::V4(Ipv4Addr::LOCALHOST),
+        mcap: None,
+        bus: Some("can0".into()),
+        unit: UnitArguments { vehicle, ..UnitArguments::default() },
+        device: None,
+        seed: None,
+        set: Vec::new(),
+    };
+    LiveOptions::read(arguments).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_device_drives_whichever_vehicle_is_named() {
+    for vehicle in [1, 3, 4] {
+        let options = on_bus(None, Some(vehicle)).unwrap();
+        assert!(options.archive.cast().contains(&format!("\"device\":{vehicle}")));
+        let mut setup = options.device.unwrap().setup;
+        setup.scenario.duration_s = 6.0;
+        let switch = Order::Switch { vehicle: None, part: Part::Envelope, on: false };
+        let (_, scene, is_whole) = run(&setup, &[switch], |_| {});
+        assert!(is_whole);
+        let seen = &scene["vehicles"][vehicle];
+        assert!(seen["target"]["error_m"].as_f64().unwrap().abs() < 0.3 && seen["mode"] != "standby", "{seen}");
+        // Its envelope is its own.
+        assert_eq!(seen["has_envelope"], true);
+        assert_eq!(scene["vehicles"][2]["has_envelope"], false);
+    }
+}
+
+#[test]
+fn a_place_that_no_device_can_have_is_refused_with_the_remedy() {
+    for (vehicle, cause) in
+        [(0, "is 0, the leader, and a device follows somebody"), (9, "is 9, and there is no such vehicle")]
+    {
+        let said = on_bus(None, Some(vehicle)).unwrap_err();
+        assert_eq!(said, format!("--vehicle: {cause}; give an index from 1 to 4"));
+    }
+    let said = on_bus(Some("corridor"), Some(1)).unwrap_err();
+    assert!(
+        said.starts_with("--bus: a device drives in a string of vehicles, and this is a corridor; give "),
+        "{said}"
+    );
 }
 
 #[test]

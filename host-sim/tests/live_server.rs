@@ -164,6 +164,54 @@ fn garbage_a_stalled_page_and_one_that_hangs_up_do_not_matter() {
 }
 
 #[test]
+fn whoever_never_ends_a_request_goes_and_keeps_nobody_out() {
+    let live = Live::begin();
+    // More than are served at once, and more than a system may let a program have of files.
+    let slow: Vec<TcpStream> = (0..300)
+        .map(|_| {
+            let mut stream = live.connect();
+            write!(stream, "GET / HTTP/1.1\r\nHost: {}\r\nX", live.address).unwrap();
+            stream
+        })
+        .collect();
+    let mut half = live.connect();
+    write!(half, "POST /order HTTP/1.1\r\nHost: {}\r\nContent-Length: 99\r\n\r\n{{", live.address).unwrap();
+    live.goes_on(); // which looks on over a connection of its own
+    let mut answer = String::new();
+    half.read_to_string(&mut answer).unwrap();
+    assert!(answer.starts_with("HTTP/1.1 408") && answer.contains("did not come whole within 10 s"), "{answer}");
+    for mut stream in slow {
+        let _ = stream.read_to_string(&mut answer); // it ends, or the connection is reset
+    }
+    live.goes_on();
+}
+
+#[test]
+fn a_request_in_another_way_is_refused_with_what_is_right() {
+    let live = Live::begin();
+    for line in ["PUT /order", "GET /order", "DELETE /cast"] {
+        let answer = live.ask(line, "", "");
+        assert!(answer.starts_with("HTTP/1.1 405") && answer.contains("orders are sent by POST to /order"), "{answer}");
+    }
+    let answer = live.ask("GET /bus.log?vehicle=0", "Sec-Fetch-Site: cross-site\r\nSec-Fetch-Mode: no-cors\r\n", "");
+    assert!(answer.starts_with("HTTP/1.1 403") && answer.contains("for no page of another origin"), "{answer}");
+}
+
+#[test]
+fn what_was_set_of_the_links_is_told_to_every_page() {
+    let live = Live::begin();
+    assert_eq!(live.look_on().next().unwrap()["links"], serde_json::json!([]));
+    live.order(r#"{"do":"links","delay_mean_s":0.3,"delay_std_s":0.01,"loss":0.2}"#);
+    live.order(r#"{"do":"links","vehicle":2,"delay_mean_s":0,"delay_std_s":0,"loss":1}"#);
+    let is_told = |scene: &serde_json::Value| {
+        scene["links"] == serde_json::json!([[null, [0.3, 0.01, 0.2]], [2, [0.0, 0.0, 1.0]]])
+    };
+    assert!(live.look_on().take(100).any(|scene| is_told(&scene)));
+    live.order(r#"{"do":"restart"}"#);
+    assert!(live.look_on().take(100).any(|scene| scene["links"] == serde_json::json!([])));
+}
+
+#[test]
 fn a_port_in_use_is_named_with_the_remedy() {
     let live = Live::begin();
     let port = live.address.rsplit(':').next().unwrap();

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use std::rc::Rc;
 
 use crate::input::impairment::{ChannelModel, Link};
+use crate::input::scenario::Radio;
 use crate::sim::channel::Channel;
 use crate::sim::channel::changes::Changes;
 use crate::sim::modem::V2xMessage;
@@ -103,6 +104,12 @@ impl Air {
     /// What happens to the links beside the model.
     pub fn changes(&mut self) -> &mut Changes {
         self.channel.changes()
+    }
+
+    /// Of a vehicle or of all, the delay and the loss that were set since the start.
+    #[must_use]
+    pub fn radios(&self) -> &[(Option<usize>, Radio)] {
+        self.channel.radios()
     }
 
     /// Forgets the links of a vehicle that has gone.

@@ -108,6 +108,12 @@ impl Channel {
         &mut self.changes
     }
 
+    /// Of a vehicle or of all, the delay and the loss that were set since the start.
+    #[must_use]
+    pub fn radios(&self) -> &[(Option<usize>, Radio)] {
+        self.changes.radios()
+    }
+
     /// The same with at most this many messages in the record of a link. Of more every second, every fourth and so on is kept.
     #[must_use]
     pub fn of_at_most(self, messages: usize) -> Self {

@@ -34,7 +34,8 @@ pub struct LiveArguments {
     #[arg(long, value_name = "FILE.mcap")]
     pub mcap: Option<PathBuf>,
 
-    /// Put the device on this CAN interface into the world, in real time: it drives the ego. A string of vehicles only; Linux only
+    /// Put the device on this CAN interface into the world, in real time: it drives the ego, or the vehicle of --vehicle. A string of
+    /// vehicles only; Linux only
     #[arg(long, value_name = "INTERFACE")]
     pub bus: Option<String>,
 
@@ -69,6 +70,9 @@ Examples:
 
   holdover-sim live --bus vcan0 --device 'holdover-sim ecu --bus vcan0'
                                          with a device that drives the ego
+  holdover-sim live --bus can0 --vehicle 1
+                                         with a device that drives the first
+                                         follower
 
 The page shows the vehicles and what each believes of the one ahead. There you
 drive, break the links and switch things off. The address is printed on stdout.

@@ -4,7 +4,7 @@
 use std::io;
 
 use super::bus_view::{BusView, Row};
-use super::scene::{Ghost, Pulse, Scene, Seen, rounded};
+use super::scene::{Ghost, Pulse, Scene, Seen, links, rounded};
 use crate::input::scenario::Scenario;
 use crate::measure::baseline::Baseline;
 use crate::measure::baseline::freeze::Freeze;
@@ -112,6 +112,7 @@ impl Onlookers {
             pulse: pulse.clone(),
             largest_error_m: self.largest_error_m.map(|error| error.map(rounded)),
             hits: hits.map(|seen| [seen.id - 1, seen.id]).collect(),
+            links: links(world.radios()),
             vehicles,
         }
     }

@@ -56,7 +56,7 @@ impl LiveOptions {
     /// # Errors
     /// An unusable scenario.
     pub fn read(arguments: LiveArguments) -> Result<Self, Error> {
-        let overrides = Overrides { seed: arguments.seed, set: arguments.set, ..Overrides::default() };
+        let mut overrides = Overrides { seed: arguments.seed, set: arguments.set, ..Overrides::default() };
         let (file, text) = match &arguments.scenario {
             Some(named) => library::text(named)?,
             None => (PathBuf::new(), String::new()),
@@ -68,6 +68,10 @@ impl LiveOptions {
             Kind::String => Piece::String(Box::new(Scenario::parse(&file, &text, &overrides)?)),
             Kind::Corridor => Piece::Road(Box::new(RoadPlay::new(read::corridor(&file, &text, &overrides)?))),
         };
+        if let (Some(vehicle), Some(_), Piece::String(scenario)) = (arguments.unit.vehicle, &arguments.bus, &piece) {
+            overrides.set.push(seat(scenario, vehicle)?);
+            piece = Piece::String(Box::new(Scenario::parse(&file, &text, &overrides)?));
+        }
         let title = match &arguments.scenario {
             Some(named) => named.file_stem().unwrap_or(named.as_os_str()).to_string_lossy().into_owned(),
             None => "the paper's scenario".into(),
@@ -86,6 +90,17 @@ impl LiveOptions {
             opens_browser: !arguments.no_browser,
         })
     }
+}
+
+/// What makes this vehicle the ego, which the device drives.
+fn seat(scenario: &Scenario, vehicle: usize) -> Result<String, Error> {
+    let last = scenario.vehicles.len() - 1;
+    let cause = match vehicle {
+        0 => "is 0, the leader, and a device follows somebody".into(),
+        other if other > last => format!("is {other}, and there is no such vehicle"),
+        _ => return Ok(format!("ego={vehicle}")),
+    };
+    Err(Error::new(cause, format!("give an index from 1 to {last}")).in_option("--vehicle"))
 }
 
 /// The device, and the world as it is with it.
@@ -112,10 +127,6 @@ fn device(
             Error::new("a device drives in a string of vehicles, and this is a corridor", remedy).in_option("--bus")
         );
     };
-    if let Some(vehicle) = arguments.vehicle {
-        let remedy = format!("leave it out: the device is the ego, {}", scenario.ego);
-        return Err(Error::new(format!("is {vehicle}"), remedy).in_option("--vehicle"));
-    }
     let config = unit(scenario, arguments)?;
     if config.period != duration(scenario.period_s) {
         let cause = format!("`period_s` is {}, and the device ticks every 0.01 s", scenario.period_s);

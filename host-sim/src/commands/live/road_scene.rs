@@ -5,7 +5,7 @@ use holdover::coordination::Entry;
 
 use super::methods::Places;
 use super::road::{RoadPlay, Sights};
-use super::scene::{Ghost, Map, Pulse, Role, Scene, Seen, Square, Street, Way, rounded};
+use super::scene::{Ghost, Map, Pulse, Role, Scene, Seen, Square, Street, Way, links, rounded};
 use crate::input::kind::Kind;
 use crate::measure::figures::mode_name;
 use crate::roads::beliefs::on_axis;
@@ -36,6 +36,7 @@ pub fn of(
         pulse: pulse.clone(),
         largest_error_m: [None; 2],
         hits: seen.hits(&play.experiment.network),
+        links: links(traffic.radios()),
         vehicles: vehicles.collect(),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::input::scenario::Radio;
 use crate::sim::world::TargetBelief;
 
 /// The state at a tick.
@@ -18,6 +19,8 @@ pub struct Scene {
     pub largest_error_m: [Option<f64>; 2],
     /// The pairs of vehicles that run into one another.
     pub hits: Vec<[usize; 2]>,
+    /// Of a vehicle or of all, mean and spread of the delay and the loss that were set since the start; the last one about a vehicle holds.
+    pub links: Vec<(Option<usize>, [f64; 3])>,
     /// The vehicles.
     pub vehicles: Vec<Seen>,
 }
@@ -128,6 +131,12 @@ impl Ghost {
             error_m: rounded(belief.position_m - true_m),
         }
     }
+}
+
+/// What was set of the links, as the page is told.
+#[must_use]
+pub fn links(radios: &[(Option<usize>, Radio)]) -> Vec<(Option<usize>, [f64; 3])> {
+    radios.iter().map(|(vehicle, radio)| (*vehicle, [radio.delay_mean_s, radio.delay_std_s, radio.loss])).collect()
 }
 
 /// To a tenth of a millimetre: more than a screen shows, and short on the wire.

@@ -1,16 +1,18 @@
 //! The server: requests enter; the files of the page, scenes as server-sent events and answers leave.
 //!
 //! A page gets the newest scene whenever it is ready for one. So a page that is slow or stalled misses scenes, and holds nothing up.
+//! Whoever does not finish a request goes, so that nobody takes all the connections there are.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
+use std::time::Duration;
 
 use axum::Router;
-use axum::body::Bytes;
-use axum::extract::rejection::{BytesRejection, QueryRejection};
-use axum::extract::{DefaultBodyLimit, Query, Request, State};
+use axum::body::to_bytes;
+use axum::extract::rejection::QueryRejection;
+use axum::extract::{Query, Request, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::middleware::{Next, from_fn_with_state};
@@ -18,8 +20,12 @@ use axum::response::sse::{Event as Sent, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use futures_util::stream::{Stream, unfold};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 use serde::Deserialize;
-use tokio::sync::{oneshot, watch};
+use tokio::sync::{Semaphore, oneshot, watch};
+use tokio::time::{sleep, timeout};
 
 use super::archive::Archive;
 use super::engine::Ask;
@@ -29,6 +35,10 @@ use super::page::FILES;
 
 /// An order is no longer than this, in bytes.
 const LONGEST_ORDER: usize = 4096;
+/// Connections at once. More wait until one of them ends. A system may let a program have no more than 1024 files.
+const MOST_CONNECTIONS: usize = 256;
+/// The head of a request has to come within this, and then an order within this.
+const WITHIN: Duration = Duration::from_secs(10);
 
 /// What every request needs.
 #[derive(Clone)]
@@ -37,13 +47,15 @@ pub struct Desk {
     scenes: watch::Receiver<Arc<str>>,
     archive: Arc<Archive>,
     is_loopback: bool,
+    /// A run is played again for one log at a time, so that many do not take the computer from the run that goes on.
+    replays: Arc<Semaphore>,
 }
 
 impl Desk {
     /// A desk before an engine.
     #[must_use]
     pub fn new(asks: Sender<Ask>, scenes: watch::Receiver<Arc<str>>, archive: Arc<Archive>, is_loopback: bool) -> Self {
-        Self { asks, scenes, archive, is_loopback }
+        Self { asks, scenes, archive, is_loopback, replays: Arc::new(Semaphore::new(1)) }
     }
 
     async fn ask<T>(&self, ask: impl FnOnce(oneshot::Sender<T>) -> Ask) -> Result<T, Refused> {
@@ -69,11 +81,29 @@ pub fn serve(listener: TcpListener, desk: Desk) -> std::io::Result<()> {
     std::thread::Builder::new().name("server".into()).spawn(move || {
         runtime.block_on(async move {
             if let Ok(listener) = tokio::net::TcpListener::from_std(listener) {
-                let _ = axum::serve(listener, routes(desk)).await; // it never returns
+                accept(&listener, &routes(desk)).await;
             }
         });
     })?;
     Ok(())
+}
+
+/// Serves whoever connects, for ever.
+async fn accept(listener: &tokio::net::TcpListener, router: &Router) {
+    let seats = Arc::new(Semaphore::new(MOST_CONNECTIONS));
+    while let Ok(seat) = Arc::clone(&seats).acquire_owned().await {
+        let Ok((stream, _)) = listener.accept().await else {
+            sleep(Duration::from_millis(50)).await; // the system has no connection left for now
+            continue;
+        };
+        let service = TowerToHyperService::new(router.clone());
+        tokio::spawn(async move {
+            let mut connection = http1::Builder::new();
+            connection.timer(TokioTimer::new()).header_read_timeout(WITHIN);
+            let _ = connection.serve_connection(TokioIo::new(stream), service).await; // whoever has gone needs no answer
+            drop(seat);
+        });
+    }
 }
 
 fn routes(desk: Desk) -> Router {
@@ -90,7 +120,9 @@ fn routes(desk: Desk) -> Router {
         .route("/bus.log", get(candump))
         .route("/holdover.dbc", get(dbc))
         .fallback(|| async { (StatusCode::NOT_FOUND, "there is nothing of that name; the page is at /") })
-        .layer(DefaultBodyLimit::max(LONGEST_ORDER))
+        .method_not_allowed_fallback(|| async {
+            (StatusCode::METHOD_NOT_ALLOWED, "orders are sent by POST to /order, and all else is read by GET")
+        })
         .layer(from_fn_with_state(desk.clone(), guarded))
         .with_state(desk)
 }
@@ -110,7 +142,11 @@ async fn guarded(State(desk): State<Desk>, request: Request, next: Next) -> Resp
     response
 }
 
-async fn order(State(desk): State<Desk>, body: Result<Bytes, BytesRejection>) -> Response {
+async fn order(State(desk): State<Desk>, request: Request) -> Response {
+    let Ok(body) = timeout(WITHIN, to_bytes(request.into_body(), LONGEST_ORDER)).await else {
+        return (StatusCode::REQUEST_TIMEOUT, "the order did not come whole within 10 s; send it at once")
+            .into_response();
+    };
     let Ok(body) = body else {
         let refusal =
             format!("the order is longer than {LONGEST_ORDER} bytes; see docs/LIVE.md for the orders and their values");
@@ -175,8 +211,14 @@ async fn candump(State(desk): State<Desk>, wanted: Wanted) -> Result<Response, R
         return Err((StatusCode::CONFLICT, cause.into()));
     }
     let (events, ticks) = desk.ask(Ask::Journal).await?;
+    let turn = Arc::clone(&desk.replays).acquire_owned().await.map_err(|_| ended())?;
     let archive = Arc::clone(&desk.archive);
-    let played = tokio::task::spawn_blocking(move || archive.candump(events, ticks, which.vehicle)).await;
+    let played = tokio::task::spawn_blocking(move || {
+        let log = archive.candump(events, ticks, which.vehicle);
+        drop(turn);
+        log
+    });
+    let played = played.await;
     let log = played.ok().flatten().ok_or_else(no_vehicle)?;
     Ok(download(&format!("bus-{}.log", which.vehicle), "text/plain; charset=utf-8", log))
 }

@@ -94,6 +94,7 @@ mod tests {
                 pulse: pulse.clone(),
                 largest_error_m: [None; 2],
                 hits: Vec::new(),
+                links: Vec::new(),
                 vehicles: Vec::new(),
             }
         }

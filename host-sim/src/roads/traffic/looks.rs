@@ -5,6 +5,7 @@ use std::io;
 use super::{Traffic, Traveller};
 use crate::bus::Frame;
 use crate::input::impairment::Link;
+use crate::input::scenario::Radio;
 
 impl Traffic<'_> {
     /// Appends to the log what has been on the logged bus since it was asked for the last time.
@@ -30,6 +31,12 @@ impl Traffic<'_> {
     #[must_use]
     pub fn traveller(&self, trip: usize) -> Option<&Traveller> {
         self.travellers.get(&trip)
+    }
+
+    /// Of a vehicle or of all, the delay and the loss that were set since the start.
+    #[must_use]
+    pub fn radios(&self) -> &[(Option<usize>, Radio)] {
+        self.air.radios()
     }
 
     /// Whether every message that one vehicle sends another now is lost.

@@ -38,6 +38,12 @@ impl Changes {
         self.outages.retain(|(other, _)| *other != Some(vehicle));
     }
 
+    /// Of a vehicle or of all, the delay and the loss that were set, in the order in which they were: the last one about a link holds.
+    #[must_use]
+    pub fn radios(&self) -> &[(Option<usize>, Radio)] {
+        &self.radios
+    }
+
     /// Delay and loss of a link, if they were changed.
     #[must_use]
     pub fn radio(&self, link: Link) -> Option<Radio> {

@@ -4,7 +4,7 @@ use holdover::ConfigError;
 
 use super::World;
 use crate::input::impairment::Link;
-use crate::input::scenario::{Change, Envelope, Event, Part};
+use crate::input::scenario::{Change, Envelope, Event, Part, Radio};
 
 /// A tick's time is a product of a count and a period that binary fractions cannot hold.
 const SAME_TICK_S: f64 = 1e-9;
@@ -26,6 +26,12 @@ impl World<'_> {
     #[must_use]
     pub fn unrecorded(self) -> Self {
         Self { air: self.air.unrecorded(), ..self }
+    }
+
+    /// Of a vehicle or of all, the delay and the loss that were set since the start.
+    #[must_use]
+    pub fn radios(&self) -> &[(Option<usize>, Radio)] {
+        self.air.radios()
     }
 
     /// Whether every message of the vehicle ahead that is sent now is lost on its way to this one.

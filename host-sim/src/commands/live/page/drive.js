@@ -1,6 +1,7 @@
 // Driving: keys, pedals on the screen and a gamepad enter; what the pedals ask for is ordered whenever it changes.
 
-import { order } from "./link.js";
+import { announce, order } from "./link.js";
+import { gamepads } from "./pad.js";
 
 const byId = (id) => document.getElementById(id);
 // Braking by a key, as a share of the hardest.
@@ -12,6 +13,7 @@ export function drive(state) {
   let driven = null; // the vehicle that this page drives
   let asked = null; // what was asked for last
   let pad = 0;
+  const readPads = gamepads(byId("pad"));
 
   // From -1, the hardest braking, to 1.
   function pedal() {
@@ -26,6 +28,7 @@ export function drive(state) {
       if (at === 0) return;
       if (state.chosen === null) return; // the roads are empty
       driven = state.chosen;
+      announce(`You drive vehicle ${state.role(driven).name}.`);
     }
     const role = state.role(driven);
     const mps2 = Math.round((at >= 0 ? at * role.most_mps2 : at * role.braking_mps2) * 20) / 20;
@@ -40,6 +43,7 @@ export function drive(state) {
   }
 
   function forget() {
+    if (driven !== null) announce("Its unit drives.");
     [driven, asked] = [null, null];
     keys.clear();
     byId("driving").textContent = "Its unit drives.";
@@ -58,6 +62,7 @@ export function drive(state) {
   addEventListener("keydown", (event) => {
     hard = event.shiftKey;
     if (isField(event.target)) return;
+    if (event.key === "Shift" && keys.size) ask();
     if (event.key === "Enter" && driven !== null && event.target.tagName !== "BUTTON" && event.target.tagName !== "A") release();
     if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
     event.preventDefault();
@@ -103,17 +108,12 @@ export function drive(state) {
       forget();
     },
     draw() {
-      const found = navigator.getGamepads?.().find?.((one) => one?.connected);
-      if (!found) return;
-      // The triggers of a pad in the standard layout; a wheel's pedals are often an axis.
-      const [brake, gas] = [found.buttons[6]?.value ?? 0, found.buttons[7]?.value ?? 0];
-      const at = found.mapping === "standard" ? gas - brake : -(found.axes[1] ?? 0);
-      const next = Math.abs(at) < 0.06 ? 0 : Math.round(at * 20) / 20;
+      const { at: next, isLetGo } = readPads();
       if (next !== pad) {
         pad = next;
         ask();
       }
-      if (found.buttons[0]?.pressed) release();
+      if (isLetGo) release();
     },
   };
 }

@@ -6,8 +6,28 @@ export function say(text) {
   said.textContent = text;
 }
 
-// Resolves to whether the engine has done it.
-export async function order(what) {
+// For those who hear the page: what has changed, no oftener than they can listen. Of several things at once the newest counts.
+const told = document.getElementById("told");
+let next = null;
+let until = 0;
+export function announce(text) {
+  if (next === null) {
+    setTimeout(() => {
+      told.textContent = next;
+      [next, until] = [null, performance.now() + 1500];
+    }, Math.max(0, until - performance.now()));
+  }
+  next = text;
+}
+
+// Resolves to whether the engine has done it. Orders are sent one after the other, so that none overtakes another one.
+let sent = Promise.resolve();
+export function order(what) {
+  sent = sent.then(() => send(what));
+  return sent;
+}
+
+async function send(what) {
   try {
     const answer = await fetch("/order", { method: "POST", body: JSON.stringify(what) });
     say(answer.ok ? "" : await answer.text());
@@ -28,7 +48,7 @@ export function listen(take) {
   const source = new EventSource("/scenes");
   let lost = false;
   source.onmessage = (message) => {
-    if (lost) say("");
+    if (lost) say("The simulation is there again.");
     lost = false;
     const scene = JSON.parse(message.data);
     if (scene.vehicles) take(scene);

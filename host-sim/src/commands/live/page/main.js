@@ -2,7 +2,7 @@
 
 import { drive } from "./drive.js";
 import { frames } from "./frames.js";
-import { get, listen, order, say } from "./link.js";
+import { announce, get, listen, order, say } from "./link.js";
 import { map } from "./map.js";
 import { plots } from "./plots.js";
 import { road } from "./scene.js";
@@ -119,6 +119,22 @@ function note(scene) {
   }
 }
 
+// Who hears the page is told what the chosen vehicle's unit and link do, and whether time goes on.
+let heardOf = null;
+function tellChanges(scene) {
+  const seen = scene.byId.get(state.chosen);
+  const is = { id: state.chosen, isPlaying: scene.is_playing, isSilent: seen?.is_silent, mode: seen?.mode };
+  const was = heardOf;
+  heardOf = is;
+  if (was === null) return;
+  if (was.isPlaying !== is.isPlaying) return announce(is.isPlaying ? "Time goes on." : `Time stands still at ${scene.at_s.toFixed(1)} s.`);
+  if (was.id !== is.id || !seen) return;
+  const changes = [];
+  if (was.isSilent !== is.isSilent) changes.push(is.isSilent ? "the vehicle ahead is silent" : "the vehicle ahead is heard again");
+  if (was.mode !== is.mode) changes.push(is.mode);
+  if (changes.length) announce(`Vehicle ${state.role(is.id).name}: ${changes.join(", ")}.`);
+}
+
 // Time.
 const toggle = () => order({ do: state.scene?.is_playing ? "pause" : "play" });
 const back = () => order({ do: "back", seconds: 10 });
@@ -132,9 +148,13 @@ byId("pace").onchange = (event) => order({ do: "pace", factor: Number(event.targ
 const whom = () => (of.value === "" ? null : of.value === "chosen" ? state.chosen : Number(of.value));
 const sliders = { delay: "s", spread: "s", loss: "" };
 const radio = cast.radio ?? [0, 0, 0];
+let movedAt = -Infinity;
 Object.keys(sliders).forEach((id, place) => {
   byId(id).value = radio[place];
-  byId(id).oninput = tellSliders;
+  byId(id).oninput = () => {
+    movedAt = performance.now();
+    tellSliders();
+  };
   byId(id).onchange = () =>
     order({
       do: "links",
@@ -145,11 +165,21 @@ Object.keys(sliders).forEach((id, place) => {
     });
 });
 function tellSliders() {
-  byId("delay-said").textContent = `${Math.round(byId("delay").value * 1000)} ms`;
-  byId("spread-said").textContent = `${Math.round(byId("spread").value * 1000)} ms`;
-  byId("loss-said").textContent = `${Math.round(byId("loss").value * 100)} %`;
+  const ms = (id) => `${Math.round(byId(id).value * 1000)} ms`;
+  const texts = { delay: ms("delay"), spread: ms("spread"), loss: `${Math.round(byId("loss").value * 100)} %` };
+  for (const [id, text] of Object.entries(texts)) {
+    byId(`${id}-said`).textContent = text;
+    byId(id).setAttribute("aria-valuetext", text);
+  }
 }
 tellSliders();
+// What was changed last that is about the vehicle, or about all. A slider that was moved a moment ago stands.
+function showSliders(scene) {
+  if (performance.now() - movedAt < 1000) return;
+  const is = scene.links.findLast(([vehicle]) => vehicle === null || vehicle === whom())?.[1] ?? radio;
+  Object.keys(sliders).forEach((id, place) => (byId(id).value = is[place]));
+  tellSliders();
+}
 const silence = () => order({ do: "outage", vehicle: whom(), seconds: Number(byId("seconds").value) });
 byId("outage").onclick = silence;
 byId("heal").onclick = () => order({ do: "outage", vehicle: whom(), seconds: 0 });
@@ -211,10 +241,12 @@ if (!state.isRoad) cast.vehicles.forEach((_, index) => rowOf(index));
 choose(state.chosen);
 
 function tell(scene) {
+  tellChanges(scene);
   byId("clock").textContent = `${scene.at_s.toFixed(2)} s`;
   byId("play").textContent = scene.is_playing ? "Pause" : "Play";
   byId("pace").value = scene.pace;
   tellSwitches(scene);
+  showSliders(scene);
   const number = (value, digits) => (value == null ? "–" : value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1"));
   scene.vehicles.forEach((seen) => {
     const target = seen.target;
@@ -275,5 +307,5 @@ function draw(now) {
 }
 requestAnimationFrame(draw);
 // For those who measure, and for the tour.
-globalThis.holdover = { state, choose, frames: () => drawn, heard: () => heard };
+globalThis.holdover = { state, choose, camera: view.camera, frames: () => drawn, heard: () => heard };
 document.documentElement.dataset.ready = "yes";

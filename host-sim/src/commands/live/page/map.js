@@ -3,6 +3,7 @@
 
 import { roads } from "./roads.js";
 import { colours, cross, now, prepare } from "./scene.js";
+import { touch } from "./touch.js";
 
 const byId = (id) => document.getElementById(id);
 const LANE_M = 3.5;
@@ -27,7 +28,14 @@ export function map(state, choose) {
     camera.perM = Math.min(width / (east - west + 160), height / (north - south + 120), 8);
   }
 
-  const zoom = (factor) => (camera.perM = Math.min(40, Math.max(0.2, camera.perM * factor)));
+  // What lies under a place stays there. Where the view follows a vehicle, that vehicle does.
+  const zoom = (factor, x = canvas.clientWidth / 2, y = canvas.clientHeight / 2) => {
+    const [right, down] = byId("follows").checked ? [0, 0] : [x - canvas.clientWidth / 2, y - canvas.clientHeight / 2];
+    const before = camera.perM;
+    camera.perM = Math.min(40, Math.max(0.2, camera.perM * factor));
+    camera.e += right / before - right / camera.perM;
+    camera.n -= down / before - down / camera.perM;
+  };
   const move = (x, y) => {
     byId("follows").checked = false;
     camera.e += x / camera.perM;
@@ -36,34 +44,19 @@ export function map(state, choose) {
   const pan = (share, up = 0) => move(share * canvas.clientWidth, -up * canvas.clientHeight);
   byId("closer").onclick = () => zoom(1.25);
   byId("farther").onclick = () => zoom(0.8);
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    zoom(Math.exp(-event.deltaY * 0.002));
-  }, { passive: false });
-  let held = null;
-  canvas.addEventListener("pointerdown", (event) => {
-    held = { x: event.offsetX, y: event.offsetY, moved: false };
-    canvas.setPointerCapture(event.pointerId);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    const [x, y] = [event.offsetX - held.x, event.offsetY - held.y];
-    if (Math.hypot(x, y) < 3 && !held.moved) return;
-    held = { x: event.offsetX, y: event.offsetY, moved: true };
-    move(-x, -y);
-  });
-  canvas.addEventListener("pointerup", (event) => {
-    const isClick = held && !held.moved;
-    held = null;
-    if (!isClick) return;
-    const e = camera.e + (event.offsetX - canvas.clientWidth / 2) / camera.perM;
-    const n = camera.n - (event.offsetY - canvas.clientHeight / 2) / camera.perM;
-    const far = (seen) => {
-      const [east, north] = ways.at(seen.road, seen.position_m - state.role(seen.id).length_m / 2);
-      return Math.hypot(east - e, north - n);
-    };
-    const [nearest] = now(state).sort((a, b) => far(a) - far(b));
-    if (nearest && far(nearest) < Math.max(8, 16 / camera.perM)) choose(nearest.id);
+  touch(canvas, {
+    zoom,
+    move: (x, y) => (x !== 0 || y !== 0) && move(-x, -y),
+    tap(x, y) {
+      const e = camera.e + (x - canvas.clientWidth / 2) / camera.perM;
+      const n = camera.n - (y - canvas.clientHeight / 2) / camera.perM;
+      const far = (seen) => {
+        const [east, north] = ways.at(seen.road, seen.position_m - state.role(seen.id).length_m / 2);
+        return Math.hypot(east - e, north - n);
+      };
+      const [nearest] = [...now(state)].sort((a, b) => far(a) - far(b));
+      if (nearest && far(nearest) < Math.max(8, 16 / camera.perM)) choose(nearest.id);
+    },
   });
 
   function drawMap(vehicles) {
@@ -111,7 +104,7 @@ export function map(state, choose) {
       paint.restore();
     };
     const found = new Map(vehicles.map((one) => [one.id, one]));
-    const isClose = camera.perM >= 1.6;
+    const isClose = camera.perM >= 0.7; // farther off the numbers of a queue would lie on one another
     for (const one of vehicles) {
       if (one.is_silent || one.id === state.chosen) {
         const ahead = found.get(one.follows);
@@ -222,6 +215,7 @@ export function map(state, choose) {
   }
 
   return {
+    camera,
     zoom,
     pan,
     draw() {

@@ -14,23 +14,32 @@ const ahead = (of) => (seen, scene) => {
   return other ? of(other) : null;
 };
 
-// Each line: a colour, and a figure of a vehicle in a scene.
+// Each line: a colour, a figure of a vehicle in a scene, and what it is called where a plot has several.
 const PLOTS = [
-  { name: "position error of the vehicle ahead", unit: "m", least: 0.2, about: 0,
-    lines: [["paper", error("paper")], ["ours", error("ours")]],
+  { name: "error of the position ahead", unit: "m", least: 0.2, about: 0,
+    lines: [["paper", error("paper"), "literal"], ["ours", error("ours"), "estimate"]],
     band: (seen, scene) => {
       const truth = scene.byId.get(seen.target?.of)?.position_m;
       return seen.target?.bound_m && truth != null ? seen.target.bound_m.map((end) => end - truth) : null;
     } },
   { name: "gap", unit: "m", least: 2, lines: [["ours", (seen) => seen.gap_m]] },
-  { name: "speed, and that of the vehicle ahead", unit: "m/s", least: 2,
-    lines: [["newest", ahead((other) => other.speed_mps)], ["ours", (seen) => seen.speed_mps]] },
-  { name: "acceleration, and what is demanded", unit: "m/s²", least: 1, about: 0,
-    lines: [["paper", (seen) => seen.command_mps2], ["ours", (seen) => seen.acceleration_mps2]] },
+  { name: "speed", unit: "m/s", least: 2,
+    lines: [["newest", ahead((other) => other.speed_mps), "ahead"], ["ours", (seen) => seen.speed_mps, "own"]] },
+  { name: "acceleration", unit: "m/s²", least: 1, about: 0,
+    lines: [["paper", (seen) => seen.command_mps2, "demanded"], ["ours", (seen) => seen.acceleration_mps2, "own"]] },
   { name: "age of the newest message", unit: "s", least: 0.5, from: 0, lines: [["ours", (seen) => seen.target?.age_s]] },
   { name: "load of its bus", unit: "%", least: 10, from: 0, lines: [["ours", (seen) => seen.load * 100]] },
 ];
 const MODES = ["standby", "cooperative", "holdover", "fallback", "fault"];
+
+// The words of a caption, each in its colour.
+function say(caption, words) {
+  words.forEach(([colour, text], place) => {
+    const word = caption.children[place] ?? caption.appendChild(document.createElement(place ? "b" : "span"));
+    if (word.className !== colour) word.className = colour;
+    if (word.textContent !== text) word.textContent = text;
+  });
+}
 
 export function plots(state, onChoice) {
   let hue = colours();
@@ -41,8 +50,8 @@ export function plots(state, onChoice) {
     const caption = document.createElement("figcaption");
     const canvas = document.createElement("canvas");
     canvas.setAttribute("role", "img");
-    canvas.setAttribute("aria-label", `${name}, over the last ${SPAN_S} seconds`);
-    caption.textContent = name;
+    canvas.setAttribute("aria-label", `${name}, over the last ${SPAN_S} seconds; the newest figures stand above it`);
+    say(caption, [["", name]]);
     figure.append(caption, canvas);
     document.getElementById("plots").append(figure);
     return { caption, canvas };
@@ -95,10 +104,14 @@ export function plots(state, onChoice) {
     paint.lineWidth = 1;
     paint.fillStyle = hue.faint;
     paint.font = "10px system-ui";
-    paint.fillText(high.toPrecision(3), 3, 11);
-    paint.fillText(low.toPrecision(3), 3, height - 3);
-    const newest = series.at(-1)[1].at(-1);
-    caption.textContent = `${plot.name}: ${newest == null ? "–" : newest.toFixed(2)} ${plot.unit}`;
+    paint.fillText(Number(high.toPrecision(3)), 3, 11);
+    paint.fillText(Number(low.toPrecision(3)), 3, height - 3);
+    const words = plot.lines.map(([colour, , name], place) => {
+      const newest = series[place][1].at(-1);
+      const figure = newest == null ? "–" : newest.toFixed(2).replace(/^-(0\.00)$/, "$1");
+      return [name ? colour : "", `${name ?? ""} ${figure}${place === plot.lines.length - 1 ? ` ${plot.unit}` : ""}`.trim()];
+    });
+    say(caption, [["", plot.name], ...words]);
   }
 
   function drawModes({ caption, canvas }) {
@@ -116,8 +129,13 @@ export function plots(state, onChoice) {
     });
     paint.fillStyle = hue.ink;
     paint.font = "10px system-ui";
-    MODES.forEach((mode, place) => paint.fillText(mode, 3, place * tall + tall / 2 + 3));
-    caption.textContent = `mode of its unit: ${past.at(-1).byId.get(state.chosen)?.mode ?? "–"}`;
+    MODES.forEach((mode, place) => {
+      paint.fillStyle = hue.panel;
+      paint.fillRect(1, place * tall + 1, paint.measureText(mode).width + 5, tall - 2);
+      paint.fillStyle = hue.ink;
+      paint.fillText(mode, 3, place * tall + tall / 2 + 3);
+    });
+    say(caption, [["", "mode of its unit"], ["", past.at(-1).byId.get(state.chosen)?.mode ?? "–"]]);
   }
 
   let drawnAt = 0;

@@ -1,5 +1,7 @@
 // The road from above: vehicles, and each as its follower believes it to be, with the bound as a band. Below it the lane in order.
 
+import { touch } from "./touch.js";
+
 const byId = (id) => document.getElementById(id);
 
 // Positions at the time that is drawn, between two scenes.
@@ -35,7 +37,8 @@ export function now(state) {
 // The colours of the style sheet, in light and dark.
 export function colours() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["ground", "ink", "faint", "line", "road", "panel", "ours", "paper", "newest", "warn", "vehicle", "chosen"];
+  const names = ["ground", "ink", "faint", "line", "road", "panel", "ours", "paper", "newest", "warn", "vehicle", "chosen", "sky", "grass",
+    "asphalt", "paint"];
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }
 
@@ -73,37 +76,28 @@ export function road(state, choose) {
   let hue = colours();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (hue = colours()));
 
-  const zoom = (factor) => (camera.perM = Math.min(60, Math.max(0.5, camera.perM * factor)));
+  // What lies under a place stays there. Where the view follows a vehicle, that vehicle does.
+  const zoom = (factor, atPx = canvas.clientWidth / 2) => {
+    const offPx = byId("follows").checked ? 0 : atPx - canvas.clientWidth / 2;
+    const before = camera.perM;
+    camera.perM = Math.min(60, Math.max(0.5, camera.perM * factor));
+    camera.middleM += offPx / before - offPx / camera.perM;
+  };
   const pan = (share) => {
     byId("follows").checked = false;
     camera.middleM += (share * canvas.clientWidth) / camera.perM;
   };
   byId("closer").onclick = () => zoom(1.25);
   byId("farther").onclick = () => zoom(0.8);
-  canvas.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    zoom(Math.exp(-event.deltaY * 0.002));
-  }, { passive: false });
-  let held = null;
-  canvas.addEventListener("pointerdown", (event) => {
-    held = { x: event.offsetX, moved: false };
-    canvas.setPointerCapture(event.pointerId);
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    const by = event.offsetX - held.x;
-    if (Math.abs(by) < 3 && !held.moved) return;
-    held = { x: event.offsetX, moved: true };
-    pan(-by / canvas.clientWidth);
-  });
-  canvas.addEventListener("pointerup", (event) => {
-    const isClick = held && !held.moved;
-    held = null;
-    if (!isClick) return;
-    const atM = camera.middleM + (event.offsetX - canvas.clientWidth / 2) / camera.perM;
-    const hit = (seen, index) => atM <= seen.position_m + 2 && atM >= seen.position_m - state.cast.vehicles[index].length_m - 2;
-    const index = now(state).findIndex(hit);
-    if (index >= 0) choose(index);
+  touch(canvas, {
+    zoom,
+    move: (x) => x !== 0 && pan(-x / canvas.clientWidth),
+    tap(x) {
+      const atM = camera.middleM + (x - canvas.clientWidth / 2) / camera.perM;
+      const hit = (seen, index) => atM <= seen.position_m + 2 && atM >= seen.position_m - state.cast.vehicles[index].length_m - 2;
+      const index = now(state).findIndex(hit);
+      if (index >= 0) choose(index);
+    },
   });
 
   function drawRoad(seen) {
@@ -203,6 +197,7 @@ export function road(state, choose) {
   }
 
   return {
+    camera,
     zoom,
     pan,
     draw() {

@@ -3,7 +3,7 @@
 import { order } from "./link.js";
 
 const byId = (id) => document.getElementById(id);
-// The largest error that the paper reports over its four seconds without a message, in metres.
+// The largest error that the paper reports over its four seconds without a message, with people who drive, in metres.
 const PAPER_M = 0.5;
 const LATE = { delay_mean_s: 0.04, delay_std_s: 0.0259, loss: 0.1 }; // the paper's link
 
@@ -20,16 +20,21 @@ const STEPS = [
       await set("range_sensor", false);
       await set("envelope", false);
       await links({ delay_mean_s: 0, delay_std_s: 0, loss: 0 });
+      byId("ghosts").checked = true;
     },
   },
   {
     name: "late and lossy",
     text: "2. Late and lossy: 40 ms of delay, more or less, and one message in ten is lost. The outline stays on the vehicle. The literal " +
       "paper's outline does not: that method adds no time to what it heard.",
-    begin: () => links(LATE),
+    async begin() {
+      await links(LATE);
+      byId("papers").checked = true;
+    },
   },
   {
     name: "4 s of silence",
+    paperM: PAPER_M,
     text: "3. Four seconds of silence. No message reaches the ego or leaves it. Its follower goes on by the estimate; watch the band grow, " +
       "and come back with the first message.",
     async begin(state) {
@@ -39,6 +44,7 @@ const STEPS = [
   },
   {
     name: "without the estimate",
+    isPlain: true,
     text: "4. The same four seconds without the estimate. Time goes back to where the silence began. Who hears nothing takes the newest " +
       "message as it stands, brakes behind a vehicle that is not there any more, and everyone behind brakes too.",
     async begin(state) {
@@ -50,6 +56,7 @@ const STEPS = [
   },
   {
     name: "you drive",
+    paperM: PAPER_M,
     text: "5. You drive the leader, with the arrow keys or the pedals, and silence comes every ten seconds. What you will do, no unit knows " +
       "beforehand: that was the paper's experiment with people. Drive for half a minute, then see the figures.",
     async begin(state) {
@@ -76,18 +83,22 @@ export function tour(state) {
     byId("tour-text").textContent = step?.text ??
       (at < 0
         ? "A perfect link; late and lossy; four seconds of silence with the estimate; the same without; and you drive the leader."
-        : "Your errors stand beside the paper's, which reports ±0.5 m over its four seconds of silence.");
+        : "Your errors: how far the vehicle ahead was from where its follower took it to be. Without the estimate that is where the newest " +
+          "message said. The paper reports at most ±0.5 m over its four seconds of silence, with people who drive.");
     byId("tour-next").textContent = at < 0 ? "Begin" : at < STEPS.length - 1 ? "Next" : at < STEPS.length ? "See the figures" : "Again";
     byId("tour-next").disabled = false;
     const table = byId("tour-figures");
     table.hidden = at < STEPS.length;
     if (table.hidden) return;
     const number = (value) => (value == null ? "–" : value.toFixed(2));
-    const rows = STEPS.map((one, place) => [one.name, ...(figures[place] ?? [null, null]).map(number)]);
-    rows.push(["the paper reports", number(PAPER_M), ""]);
+    const rows = STEPS.map((one, place) => [one.name, ...(figures[place] ?? [null, null]).map(number), number(one.paperM)]);
     table.tBodies[0].replaceChildren(...rows.map((row) => {
       const line = document.createElement("tr");
-      row.forEach((text) => (line.insertCell().textContent = text));
+      const [name, ...cells] = row;
+      const head = document.createElement("th");
+      [head.scope, head.textContent] = ["row", name];
+      line.append(head);
+      cells.forEach((text) => (line.insertCell().textContent = text));
       return line;
     }));
   }
@@ -114,8 +125,10 @@ export function tour(state) {
       const ego = state.cast.ego;
       const by = ego + 1 < scene.vehicles.length ? ego + 1 : ego;
       const seen = scene.vehicles[by];
-      const paper = seen.paper_m == null ? null : seen.paper_m - scene.vehicles[by - 1].position_m;
-      figures[at] = [seen.target?.error_m, paper].map((error, place) => {
+      const truth = scene.vehicles[by - 1].position_m;
+      const off = (position) => (position == null ? null : position - truth);
+      const ours = STEPS[at].isPlain ? off(seen.newest_m) : seen.target?.error_m;
+      figures[at] = [ours, off(seen.paper_m)].map((error, place) => {
         const before = figures[at]?.[place] ?? null;
         return error == null ? before : Math.max(before ?? 0, Math.abs(error));
       });

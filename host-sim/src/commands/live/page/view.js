@@ -31,7 +31,7 @@ function box() {
 
 // Looks along the road from the eye: x is along, y to the left, z up.
 function camera([ex, ey, ez], aspect, down) {
-  const [near, far, f] = [0.3, 600, 1 / Math.tan(0.5)];
+  const [near, far, f] = [0.3, 600, 1 / Math.tan(0.36)];
   const [c, s] = [Math.cos(down), Math.sin(down)];
   const rows = [[0, -1, 0, ey], [s, 0, c, -s * ex - c * ez], [-c, 0, s, c * ex - s * ez]];
   const [right, up, back] = rows;
@@ -48,6 +48,7 @@ const rgb = (text) => [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16)
 
 export function ride(state) {
   const [canvas, rides] = [document.getElementById("view"), document.getElementById("rides")];
+  const dash = document.getElementById("dash");
   let hue = colours();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (hue = colours()));
   let gl = null;
@@ -80,9 +81,9 @@ export function ride(state) {
     return true;
   }
   rides.addEventListener("change", () => {
-    canvas.hidden = !rides.checked;
+    canvas.hidden = dash.hidden = !rides.checked;
     if (rides.checked && !gl && !start()) {
-      canvas.hidden = true;
+      canvas.hidden = dash.hidden = true;
       rides.checked = false;
       rides.disabled = true;
       document.getElementById("said").textContent = "This browser has no WebGL, so there is no driver's view; the road from above stays.";
@@ -106,7 +107,10 @@ export function ride(state) {
     const own = seen.find((one) => one.id === state.chosen);
     if (!own) return;
     const role = state.role(own.id);
-    const haze = rgb(hue.ground);
+    const haze = rgb(hue.sky);
+    const gap = own.gap_m == null ? "" : `, gap ${own.gap_m.toFixed(1)} m`;
+    const pedals = own.is_driven ? `, you ask for ${own.command_mps2.toFixed(1)} m/s²` : "";
+    dash.textContent = `${(own.speed_mps * 3.6).toFixed(0)} km/h, ${own.acceleration_mps2.toFixed(1).replace("-0.0", "0.0")} m/s²${gap}${pedals}`;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(...haze, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
@@ -121,11 +125,11 @@ export function ride(state) {
     const eye = state.chosen === 0 ? [-behindM, 0, 4] : [-behindM, 0.35, 1.45];
     gl.uniformMatrix4fv(places.camera, false, camera(eye, canvas.width / canvas.height, state.chosen === 0 ? 0.16 : 0.03));
     gl.disable(gl.BLEND);
-    solid([-100, 0, -0.3], [700, 400, 0.2], rgb(hue.line));
-    solid([-100, 0, -0.3], [700, 7.5, 0.29], rgb(hue.road));
+    solid([-100, 0, -0.3], [700, 400, 0.2], rgb(hue.grass));
+    solid([-100, 0, -0.3], [700, 7.5, 0.29], rgb(hue.asphalt));
     const firstM = -(own.position_m % 12) - 24;
     for (let m = firstM; m < 250; m += 12) {
-      for (const side of [-1.75, 1.75]) solid([m, side, -0.05], [4, 0.14, 0.07], rgb(hue.faint));
+      for (const side of [-1.75, 1.75]) solid([m, side, -0.05], [4, 0.14, 0.07], rgb(hue.paint));
     }
     for (let m = -(own.position_m % 50) - 50; m < 250; m += 50) {
       for (const side of [-5.5, 5.5]) solid([m, side, 0], [0.15, 0.15, 1], rgb(hue.ink));
@@ -143,17 +147,24 @@ export function ride(state) {
         solid([rear - 0.04, side, 0.7], [0.1, 0.3, 0.2], brakes ? [1, 0.15, 0.1] : [0.45, 0.08, 0.06]);
       }
     });
-    // Where the own unit believes the vehicle ahead to be, and what is certain of its rear.
+    // Where the own unit believes the vehicle ahead to be, and what is certain of its rear; and where other methods put it.
+    const of = state.cast.vehicles[state.chosen - 1];
+    if (!of) return;
+    gl.enable(gl.BLEND);
+    const at = (frontM) => frontM - own.position_m - of.length_m;
+    for (const [frontM, colour] of others(own)) solid([at(frontM), 0, 0.2], [of.length_m, 1.95, 1.5], rgb(colour), 0.3);
     const target = document.getElementById("ghosts").checked ? own.target : null;
     if (!target) return;
-    gl.enable(gl.BLEND);
-    const long = state.cast.vehicles[state.chosen - 1].length_m;
-    const at = (frontM) => frontM - own.position_m - long;
     if (target.bound_m) {
       const [low, up] = target.bound_m;
       solid([at(low), 0, 0.02], [up - low, 3.2, 0.03], rgb(hue.ours), 0.55);
     }
-    solid([at(target.position_m), 0, 0.2], [long, 1.95, 1.5], rgb(hue.ours), 0.3);
+    solid([at(target.position_m), 0, 0.2], [of.length_m, 1.95, 1.5], rgb(hue.ours), 0.3);
+  }
+  // Where the methods beside put the vehicle ahead, as far as they are to be shown.
+  function others(own) {
+    const all = [["newests", own.newest_m, hue.newest], ["papers", own.paper_m, hue.paper]];
+    return all.filter(([id, frontM]) => frontM != null && document.getElementById(id).checked).map(([, ...rest]) => rest);
   }
   // A body with its brake lights, in the frame of its own rear: turned by an angle.
   function body([x, y], long, one, angle) {
@@ -176,7 +187,7 @@ export function ride(state) {
     const near = ([x, y]) => Math.hypot(x, y) < 330;
     gl.uniformMatrix4fv(places.camera, false, camera([-2.1, 0.35, 1.45], canvas.width / canvas.height, 0.03));
     gl.disable(gl.BLEND);
-    solid([-100, 0, -0.5], [700, 700, 0.2], rgb(hue.line));
+    solid([-100, 0, -0.5], [700, 700, 0.2], rgb(hue.grass));
     ways.pieces.forEach((pieces, road) => {
       for (const piece of pieces) {
         const [x, y] = from(piece.e, piece.n);
@@ -184,10 +195,10 @@ export function ride(state) {
         const long = piece.toM - piece.fromM;
         // Roads that cross do not lie at the same height, so that neither shimmers through the other.
         const up = -0.3 + 0.004 * road;
-        solid([x, y, up], [long, 3.5, 0.25], rgb(hue.road), 1, angle);
+        solid([x, y, up], [long, 3.5, 0.25], rgb(hue.asphalt), 1, angle);
         for (const side of [-1.7, 1.7]) {
           const at = [x - side * Math.sin(angle), y + side * Math.cos(angle)];
-          solid([...at, up], [long, 0.12, 0.26], rgb(hue.faint), 1, angle);
+          solid([...at, up], [long, 0.12, 0.26], rgb(hue.paint), 1, angle);
         }
       }
     });
@@ -197,7 +208,7 @@ export function ride(state) {
       if (!near(middle)) return;
       for (const [road, atM] of square.legs) {
         const [east, north, way] = ways.at(road, atM - square.half_m);
-        solid([...from(east, north), -0.03 + 0.001 * road], [2 * square.half_m, 3.5, 0.02], rgb(hue.newest), 1, heading - way);
+        solid([...from(east, north), -0.03 + 0.001 * road], [2 * square.half_m, 3.5, 0.02], rgb(hue.asphalt).map((c) => c * 0.8), 1, heading - way);
       }
       const street = ways.at(square.legs[0][0], square.legs[0][1])[2];
       for (const corner of [1, 3, 5, 7]) {
@@ -214,14 +225,16 @@ export function ride(state) {
       if (near(at)) body(at, long, one, heading - way);
     }
     const target = document.getElementById("ghosts").checked ? own.target : null;
-    const of = target ? seen.find((one) => one.id === target.of) : null;
+    const of = seen.find((one) => one.id === own.follows);
     if (!of) return;
     gl.enable(gl.BLEND);
     const long = state.role(of.id).length_m;
-    const on = (wayM, up, size, alpha) => {
+    const on = (wayM, up, size, alpha, colour = hue.ours) => {
       const [east, north, way] = ways.at(of.road, wayM);
-      solid([...from(east, north), up], size, rgb(hue.ours), alpha, heading - way);
+      solid([...from(east, north), up], size, rgb(colour), alpha, heading - way);
     };
+    for (const [frontM, colour] of others(own)) on(frontM - long, 0.2, [long, 1.95, 1.5], 0.3, colour);
+    if (target?.of !== of.id) return;
     if (target.bound_m) on(target.bound_m[0] - long, 0.02, [target.bound_m[1] - target.bound_m[0], 3.2, 0.03], 0.55);
     on(target.position_m - long, 0.2, [long, 1.95, 1.5], 0.3);
   }
