@@ -55,7 +55,7 @@ impl Reference {
         while at - self.at > 1e-9 {
             let h = (at - self.at).min(0.25);
             let f = [[1.0, h, h * h / 2.0], [0.0, 1.0, h], [0.0, 0.0, 1.0 - h / 2.0]];
-            let q = 1.0 / 256.0 + (self.x[2] * self.x[2] / 32.0).min(0.5);
+            let q = 1.0 / 1_024.0 + (self.x[2] * self.x[2] / 32.0).min(0.5);
             self.x = std::array::from_fn(|i| (0..3).map(|k| f[i][k] * self.x[k]).sum());
             self.p = times(&times(&f, &self.p), &transposed(&f));
             let noise = [

@@ -24,9 +24,9 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 const BITS: u32 = 25;
 const ONE: i32 = 1 << BITS;
 
-/// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.06 m/s² in a second. More of it makes
+/// Spectral density of the change of acceleration, in (m/s³)²/Hz: an acceleration that wanders by 0.03 m/s² in a second. More of it makes
 /// a string behind a steady leader less steady.
-const WANDER: i32 = ONE / 256;
+const WANDER: i32 = ONE / 1_024;
 
 /// Variance of a sudden change of acceleration: a standard deviation of 5 m/s².
 const MANOEUVRE: i32 = 25 * ONE;
