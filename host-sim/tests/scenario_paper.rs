@@ -45,12 +45,12 @@ fn whatever_is_wrong_about_every_vehicle_costs_no_more_than_documented() {
     // The scenario that comes with the program; the largest error and its 99th percentile in metres, as documented.
     let documented = [
         ("wrong-lag", [0.067, 0.032]),
-        ("wrong-mass", [0.117, 0.037]),
-        ("wrong-grade", [0.014, 0.0059]),
-        ("wrong-wind", [0.013, 0.0055]),
-        ("wrong", [0.147, 0.102]),
-        ("vans", [0.016, 0.0073]),
-        ("buses", [0.021, 0.0074]),
+        ("wrong-mass", [0.116, 0.037]),
+        ("wrong-grade", [0.013, 0.0059]),
+        ("wrong-wind", [0.014, 0.0057]),
+        ("wrong", [0.149, 0.102]),
+        ("vans", [0.016, 0.0072]),
+        ("buses", [0.021, 0.0078]),
     ];
     for (name, [max_m, p99_m]) in documented {
         let (file, text) = library::text(Path::new(name)).unwrap();

@@ -236,7 +236,7 @@ mod tests {
         for speaker in [Speaker::Own, Speaker::Peer] {
             let state = frame(Content::Said(speaker, About::MotionA));
             let last = state.sections().last().unwrap();
-            assert_eq!((state.bytes, last.at + u16::from(last.length), state.sections().len()), (64, 504, MOST_PARTS));
+            assert_eq!((state.bytes, last.at + u16::from(last.length), state.sections().len()), (64, 505, MOST_PARTS));
         }
         assert_eq!(frame(Content::Said(Speaker::Ego, About::MotionA)).bytes, 16);
         assert_eq!(
