@@ -130,7 +130,7 @@ def free_road(speed: float, target_speed: float) -> float:
 
 # How the vehicle ahead drives, beside its TargetSpeed. The three parts are three frames of one identifier and one tag.
 PARAMETERS: list[dict[str, float | str]] = [
-    {"Length": LENGTH, "Standstill": STANDSTILL, "PredecessorKind": "nobody", "PredecessorStation": 0},
+    {"Length": LENGTH, "Standstill": STANDSTILL, "PredecessorKind": "nobody", "PredecessorStation": 0, "FeedForward": 0.0},
     {"TimeGap": TIME_GAP, "Gain": 0.5, "Damping": 2.0, "Lag": LAG, "CatchUp": 0.0},
     {"AccelerationLimit": 2.5, "BrakingLimit": 4.0, "JerkLimit": 5.0, "EmergencyBraking": 8.0, "HorizonLength": 0.0},
 ]

@@ -65,21 +65,19 @@ static uint32_t milli(int64_t bits, unsigned fraction)
     return (uint32_t)((bits * 1000 + ((int64_t)1 << (fraction - 1))) >> fraction);
 }
 
-static holdover_config_t configuration(void)
+static void configuration(holdover_config_t *config)
 {
-    holdover_config_t config;
-    (void)holdover_default_config(&config);
-    config.station = (uint8_t)word();
-    config.station_id = (uint32_t)word();
-    config.law.time_gap_ms = milli(word(), 29);
-    config.law.standstill_mm = milli(word(), 20);
-    config.law.target_speed_mm_s = milli(word(), 23);
-    config.law.catch_up_milli = milli(word(), 30);
-    config.prediction.step_us = (uint32_t)word();
-    config.prediction.horizon_us = (uint32_t)word();
-    config.envelope.engaged = (uint8_t)word();
-    config.range_sensor = (uint8_t)word();
-    return config;
+    (void)holdover_default_config(config);
+    config->station = (uint8_t)word();
+    config->station_id = (uint32_t)word();
+    config->law.time_gap_ms = milli(word(), 29);
+    config->law.standstill_mm = milli(word(), 20);
+    config->law.target_speed_mm_s = milli(word(), 23);
+    config->law.catch_up_milli = milli(word(), 30);
+    config->prediction.step_us = (uint32_t)word();
+    config->prediction.horizon_us = (uint32_t)word();
+    config->envelope.engaged = (uint8_t)word();
+    config->range_sensor = (uint8_t)word();
 }
 
 static holdover_scale_t scale(void)
@@ -210,14 +208,14 @@ static void write_refusals(void)
 
 int main(void)
 {
-    static holdover_config_t config;
+    static holdover_config_t config; /* not on the stack, where it would lie for as long as the program runs */
     if (holdover_version() != HOLDOVER_VERSION || holdover_unit_size() != HOLDOVER_UNIT_SIZE) {
         return 1; /* the header is not that of the library */
     }
     if (!board_open(&file_in, "log.bin", false) || !board_open(&file_out, "sent.bin", true)) {
         return 2;
     }
-    config = configuration();
+    configuration(&config);
     if (holdover_init(unit, sizeof unit, &config) != HOLDOVER_OK) {
         return 3;
     }
