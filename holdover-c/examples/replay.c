@@ -66,8 +66,9 @@ static void print_refusals(void)
 
 int main(void)
 {
-    static holdover_config_t config; /* not on the stack, where it would lie for as long as the program runs */
-    holdover_answer_t answer;
+    /* Not on the stack, where they would lie for as long as the program runs. */
+    static holdover_config_t config;
+    static holdover_answer_t answer;
     size_t next = 0;
 
     if (holdover_version() != HOLDOVER_VERSION) {
