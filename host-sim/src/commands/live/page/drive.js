@@ -28,7 +28,8 @@ export function drive(state) {
       if (at === 0) return;
       if (state.chosen === null) return; // the roads are empty
       driven = state.chosen;
-      announce(`You drive vehicle ${state.role(driven).name}.`);
+      const name = state.role(driven).name;
+      announce(() => `You drive vehicle ${name}.`);
     }
     const role = state.role(driven);
     const mps2 = Math.round((at >= 0 ? at * role.most_mps2 : at * role.braking_mps2) * 20) / 20;
@@ -43,7 +44,7 @@ export function drive(state) {
   }
 
   function forget() {
-    if (driven !== null) announce("Its unit drives.");
+    if (driven !== null) announce(() => "Its unit drives.");
     [driven, asked] = [null, null];
     keys.clear();
     byId("driving").textContent = "Its unit drives.";

@@ -6,18 +6,26 @@ export function say(text) {
   said.textContent = text;
 }
 
-// For those who hear the page: what has changed, no oftener than they can listen. Of several things at once the newest counts.
+// For those who hear the page: one thing after the other, no faster than they can listen. `what` says it when its turn has come, as things
+// are then, and nothing if there is nothing left to say.
 const told = document.getElementById("told");
-let next = null;
+const turns = [];
 let until = 0;
-export function announce(text) {
-  if (next === null) {
-    setTimeout(() => {
-      told.textContent = next;
-      [next, until] = [null, performance.now() + 1500];
-    }, Math.max(0, until - performance.now()));
-  }
-  next = text;
+export function announce(what) {
+  if (turns.includes(what)) return;
+  turns.push(what);
+  if (turns.length === 1) wait();
+}
+function wait() {
+  setTimeout(() => {
+    const text = turns[0]();
+    turns.shift();
+    if (text) {
+      told.textContent = text;
+      until = performance.now() + 1500;
+    }
+    if (turns.length) wait();
+  }, Math.max(0, until - performance.now()));
 }
 
 // Resolves to whether the engine has done it. Orders are sent one after the other, so that none overtakes another one.

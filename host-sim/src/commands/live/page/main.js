@@ -120,19 +120,27 @@ function note(scene) {
 }
 
 // Who hears the page is told what the chosen vehicle's unit and link do, and whether time goes on.
-let heardOf = null;
+let toldOf = null;
+let newest = null;
 function tellChanges(scene) {
   const seen = scene.byId.get(state.chosen);
-  const is = { id: state.chosen, isPlaying: scene.is_playing, isSilent: seen?.is_silent, mode: seen?.mode };
-  const was = heardOf;
-  heardOf = is;
-  if (was === null) return;
-  if (was.isPlaying !== is.isPlaying) return announce(is.isPlaying ? "Time goes on." : `Time stands still at ${scene.at_s.toFixed(1)} s.`);
-  if (was.id !== is.id || !seen) return;
-  const changes = [];
-  if (was.isSilent !== is.isSilent) changes.push(is.isSilent ? "the vehicle ahead is silent" : "the vehicle ahead is heard again");
-  if (was.mode !== is.mode) changes.push(is.mode);
-  if (changes.length) announce(`Vehicle ${state.role(is.id).name}: ${changes.join(", ")}.`);
+  newest = { id: state.chosen, isPlaying: scene.is_playing, atS: scene.at_s, isSilent: Boolean(seen?.is_silent), mode: seen?.mode };
+  if (toldOf === null || toldOf.id !== newest.id || !seen) toldOf = newest;
+  if (changes()) announce(spokenChanges);
+}
+// What is otherwise than it was told last; empty if it has come back to that.
+function changes() {
+  const [was, is] = [toldOf, newest];
+  if (was.isPlaying !== is.isPlaying) return is.isPlaying ? "Time goes on." : `Time stands still at ${is.atS.toFixed(1)} s.`;
+  const what = [];
+  if (was.isSilent !== is.isSilent) what.push(is.isSilent ? "the vehicle ahead is silent" : "the vehicle ahead is heard again");
+  if (was.mode !== is.mode) what.push(is.mode);
+  return what.length ? `Vehicle ${state.role(is.id).name}: ${what.join(", ")}.` : "";
+}
+function spokenChanges() {
+  const what = changes();
+  toldOf = newest;
+  return what;
 }
 
 // Time.
