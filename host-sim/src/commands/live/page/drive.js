@@ -11,6 +11,7 @@ export function drive(state) {
   const keys = new Set();
   let hard = false;
   let driven = null; // the vehicle that this page drives
+  let toldDriven = null; // the vehicle of which it was told
   let asked = null; // what was asked for last
   let pad = 0;
   const readPads = gamepads(byId("pad"));
@@ -22,14 +23,19 @@ export function drive(state) {
     return pad;
   }
 
+  function spokenDriver() {
+    if (driven === toldDriven) return "";
+    toldDriven = driven;
+    return driven === null ? "Its unit drives." : `You drive vehicle ${state.role(driven).name}.`;
+  }
+
   function ask() {
     const at = pedal();
     if (driven === null) {
       if (at === 0) return;
       if (state.chosen === null) return; // the roads are empty
       driven = state.chosen;
-      const name = state.role(driven).name;
-      announce(() => `You drive vehicle ${name}.`);
+      announce(spokenDriver);
     }
     const role = state.role(driven);
     const mps2 = Math.round((at >= 0 ? at * role.most_mps2 : at * role.braking_mps2) * 20) / 20;
@@ -44,7 +50,7 @@ export function drive(state) {
   }
 
   function forget() {
-    if (driven !== null) announce(() => "Its unit drives.");
+    if (driven !== null) announce(spokenDriver);
     [driven, asked] = [null, null];
     keys.clear();
     byId("driving").textContent = "Its unit drives.";

@@ -125,17 +125,19 @@ let newest = null;
 function tellChanges(scene) {
   const seen = scene.byId.get(state.chosen);
   newest = { id: state.chosen, isPlaying: scene.is_playing, atS: scene.at_s, isSilent: Boolean(seen?.is_silent), mode: seen?.mode };
-  if (toldOf === null || toldOf.id !== newest.id || !seen) toldOf = newest;
+  // Of another vehicle only what changes from now on is told, but whether time goes on is of no vehicle.
+  if (toldOf === null || toldOf.id !== newest.id || !seen) toldOf = { ...newest, isPlaying: toldOf?.isPlaying ?? newest.isPlaying };
   if (changes()) announce(spokenChanges);
 }
 // What is otherwise than it was told last; empty if it has come back to that.
 function changes() {
   const [was, is] = [toldOf, newest];
-  if (was.isPlaying !== is.isPlaying) return is.isPlaying ? "Time goes on." : `Time stands still at ${is.atS.toFixed(1)} s.`;
-  const what = [];
+  const [sentences, what] = [[], []];
+  if (was.isPlaying !== is.isPlaying) sentences.push(is.isPlaying ? "Time goes on." : `Time stands still at ${is.atS.toFixed(1)} s.`);
   if (was.isSilent !== is.isSilent) what.push(is.isSilent ? "the vehicle ahead is silent" : "the vehicle ahead is heard again");
   if (was.mode !== is.mode) what.push(is.mode);
-  return what.length ? `Vehicle ${state.role(is.id).name}: ${what.join(", ")}.` : "";
+  if (what.length) sentences.push(`Vehicle ${state.role(is.id).name}: ${what.join(", ")}.`);
+  return sentences.join(" ");
 }
 function spokenChanges() {
   const what = changes();
