@@ -35,6 +35,7 @@ report sweep sweep --seeds 4
 report envelope-cost envelope-cost --seeds 2
 report gains gains
 report string string --delays 0,0.2 --losses 0,0.4 --step-only --seeds 3
+report braking braking --seeds 2
 report motions motions --silences 5
 report corridor run corridor --set duration_s=15 --set ego_after_s=0 --set 'ego_road="Harrison Street, southwest"' --vehicles 10
 

@@ -38,6 +38,7 @@ fn a_folder_that_cannot_be_created_is_refused_before_the_work() {
         "gains",
         "motions",
         "envelope-cost",
+        "braking",
         "run corridor",
         "run short.toml",
         "evaluate --motion drive.csv --outage 1",

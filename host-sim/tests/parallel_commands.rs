@@ -111,6 +111,11 @@ fn envelope_cost_is_the_same_on_any_number_of_threads() {
 }
 
 #[test]
+fn braking_is_the_same_on_any_number_of_threads() {
+    is_the_same_on_all(folder().path(), "braking --braking 8 --seeds 2");
+}
+
+#[test]
 fn gains_is_the_same_on_any_number_of_threads() {
     is_the_same_on_all(folder().path(), "gains");
 }

@@ -1,6 +1,7 @@
 //! The command line as it is typed: arguments enter, raw values leave. [`crate::commands::options`] interprets and
 //! checks them.
 
+use crate::commands::braking::{self, arguments::BrakingArguments};
 use crate::commands::check::{self, arguments::CheckArguments};
 use crate::commands::dbc::{self, arguments::DbcArguments};
 use crate::commands::ecu::{self, arguments::EcuArguments};
@@ -63,6 +64,9 @@ pub enum Command {
     /// Measure how a string of ten vehicles damps a disturbance by its leader, over delays and losses, on all cores
     #[command(after_help = string::arguments::AFTER_HELP)]
     String(StringArguments),
+    /// Measure how a string of ten comes to rest behind a leader that brakes in a silence, on all cores
+    #[command(after_help = braking::arguments::AFTER_HELP)]
+    Braking(BrakingArguments),
     /// Measure the estimate of a target in a silence over five motions, beside seven other methods, on all cores
     #[command(after_help = motions::arguments::AFTER_HELP)]
     Motions(MotionsArguments),

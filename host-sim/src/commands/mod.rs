@@ -4,6 +4,7 @@
 //! cli (what is typed) -> options (what is meant, every input read) -> a command's run -> its table, JSON and page -> ending
 //! ```
 
+pub mod braking;
 pub mod check;
 pub mod cli;
 pub mod corridor;

@@ -5,6 +5,7 @@ use clap_complete::Shell;
 use std::path::PathBuf;
 
 use crate::commands::check::CheckOptions;
+use crate::commands::braking::options::BrakingOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::dbc::DbcOptions;
@@ -23,7 +24,7 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, manual, motions, record, replay, run, string,
+    braking, check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, manual, motions, record, replay, run, string,
     sweep,
 };
 use crate::error::Error;
@@ -56,6 +57,8 @@ pub enum Options {
     Gains(GainsOptions),
     /// Measure string stability.
     String(StringOptions),
+    /// Measure how a string brakes.
+    Braking(BrakingOptions),
     /// Measure the estimate over target motions.
     Motions(MotionsOptions),
     /// Replay a log.
@@ -89,6 +92,7 @@ impl Options {
             Some(Command::EnvelopeCost(arguments)) => EnvelopeCostOptions::read(arguments).map(Self::EnvelopeCost),
             Some(Command::Gains(arguments)) => GainsOptions::read(arguments).map(Self::Gains),
             Some(Command::String(arguments)) => StringOptions::read(arguments).map(Self::String),
+            Some(Command::Braking(arguments)) => BrakingOptions::read(arguments).map(Self::Braking),
             Some(Command::Motions(arguments)) => MotionsOptions::read(arguments).map(Self::Motions),
             Some(Command::Replay(arguments)) => ReplayOptions::read(arguments).map(Self::Replay),
             Some(Command::Record(arguments)) => RecordOptions::read(arguments).map(Self::Record),
@@ -135,6 +139,7 @@ impl Options {
             Self::Sweep(options) => sweep::run(options),
             Self::Gains(options) => gains::run(options),
             Self::String(options) => string::run(options),
+            Self::Braking(options) => braking::run(options),
             Self::Motions(options) => motions::run(options),
             Self::EnvelopeCost(options) => envelope_cost::run(options),
             Self::Replay(options) => replay::run(options),

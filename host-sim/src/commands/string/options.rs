@@ -98,7 +98,11 @@ pub fn shipped_time_gap_s(sensors: Switch) -> f64 {
     f64::from(time_gap.to_millis()) / 1e3
 }
 
-fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {
+/// Refuses the first value outside the limits.
+///
+/// # Errors
+/// That value, with the limits.
+pub fn within(option: &str, values: &[f64], unit: &str, (low, high): (f64, f64)) -> Result<(), Error> {
     let remedy = format!("give {unit} from {low} to {high}");
     match values.iter().find(|value| !(low..=high).contains(*value)) {
         Some(value) => Err(Error::new(format!("is {value}"), remedy).in_option(option)),
