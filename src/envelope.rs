@@ -66,7 +66,7 @@
 //!
 //! # What it tolerates
 //!
-//! The gate tolerates all of these at once. `tests/envelope_margins.rs` drives at each limit, and at all limits together, without a
+//! The gate tolerates all of these at once. `tests/core/envelope_margins.rs` drives at each limit, and at all limits together, without a
 //! collision. What happens beyond was counted with the drives of that test: 600 drives of the gate alone with full acceleration demanded
 //! throughout, and 72 of whole units that follow. The two counts of collisions are in this order.
 //!
@@ -82,7 +82,7 @@
 //! # What is given away
 //!
 //! Compared with the least way from which emergency braking does not collide, found by simulation with nothing tolerated
-//! (`tests/envelope_lorry.rs`; 8 m/s², lag 0.3 s), the gate gives away at most 0.7 m behind a vehicle that brakes at least as hard. That
+//! (`tests/core/envelope_lorry.rs`; 8 m/s², lag 0.3 s), the gate gives away at most 0.7 m behind a vehicle that brakes at least as hard. That
 //! is `½ b T²` of the lag's end and `j (τ + h)³/6` of the ramp. Behind a vehicle that brakes less hard it gives away at most 1.7 m at
 //! the same speed. It gives away up to 15 m where the ego closes in on a much slower vehicle and would stop a little before that vehicle
 //! does. There the points of rest with `c` itself would suffice. But whether they suffice depends on which vehicle stops first, and a

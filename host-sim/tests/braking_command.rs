@@ -5,11 +5,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 
 fn braking(arguments: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_holdover-sim"))
-        .arg("braking")
-        .args(arguments.split_whitespace())
-        .output()
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_holdover-sim")).arg("braking").args(arguments.split_whitespace()).output().unwrap()
 }
 
 fn text(bytes: Vec<u8>) -> String {
@@ -82,7 +78,10 @@ fn bad_input_is_refused_with_the_option_and_the_limits() {
         let output = braking(&format!("{arguments} --no-report"));
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments}");
         let said_so = text(output.stderr);
-        assert!(said_so.starts_with(&format!("error: {said}")) && said_so.lines().count() == 1, "{arguments}: {said_so}");
+        assert!(
+            said_so.starts_with(&format!("error: {said}")) && said_so.lines().count() == 1,
+            "{arguments}: {said_so}"
+        );
     }
     assert!(text(braking("--help").stdout).contains("Exit codes:"));
 }

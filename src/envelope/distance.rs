@@ -160,7 +160,7 @@ pub fn floor(envelope: &Envelope, last: Acceleration, period: Duration) -> Accel
 /// demanded, and be in force from now to the next tick. Then the predicate holds at the next tick too. This is for an ego whose
 /// acceleration and command in force are not below `-braking`, and which moves exactly and never backwards. It is for every obstacle that
 /// brakes no harder than this one, and whose position and speed at the next tick are no less than those of this one after a tick of its
-/// hardest braking (speed not below 0). Rounding costs less than 50 µm of position (`tests/envelope_kept.rs`). And where the predicate
+/// hardest braking (speed not below 0). Rounding costs less than 50 µm of position (`tests/core/envelope_kept.rs`). And where the predicate
 /// holds and the ego is not beyond the obstacle, emergency braking does not take the ego beyond it.
 ///
 /// With a tolerance, the predicate holds for every lag within it. Only for a lag that is not the real one may it fail later, by an ego

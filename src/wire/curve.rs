@@ -6,7 +6,7 @@
 //! there, which no polynomial follows; so such a stretch is cut at the kinks ([`Segment::new`]).
 //!
 //! How well it does, as measured over 20,000 leaders and followers with gains, lags and limits over their whole range,
-//! half of them behind a vehicle that brakes, stops and moves off at random (`tests/wire_horizon.rs`):
+//! half of them behind a vehicle that brakes, stops and moves off at random (`tests/core/wire_horizon.rs`):
 //!
 //! | horizon | median | 99 of 100 | worst |
 //! |---|---|---|---|

@@ -4,8 +4,8 @@
 use clap_complete::Shell;
 use std::path::PathBuf;
 
-use crate::commands::check::CheckOptions;
 use crate::commands::braking::options::BrakingOptions;
+use crate::commands::check::CheckOptions;
 use crate::commands::cli::{Cli, Command};
 use crate::commands::corridor::options::CorridorOptions;
 use crate::commands::dbc::DbcOptions;
@@ -24,8 +24,8 @@ use crate::commands::run::options::RunOptions;
 use crate::commands::string::options::StringOptions;
 use crate::commands::sweep::options::SweepOptions;
 use crate::commands::{
-    braking, check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, manual, motions, record, replay, run, string,
-    sweep,
+    braking, check, corridor, dbc, ecu, envelope_cost, evaluate, gains, hil, live, manual, motions, record, replay,
+    run, string, sweep,
 };
 use crate::error::Error;
 use crate::input::library;

@@ -137,7 +137,11 @@ fn the_keys_of_string_are_the_documented_ones() {
 
 #[test]
 fn the_keys_of_braking_are_the_documented_ones() {
-    holds("braking", folder().path(), &["braking --braking 8 --seeds 1 --no-report", "braking --braking 0.5 --seeds 1 --no-report"]);
+    holds(
+        "braking",
+        folder().path(),
+        &["braking --braking 8 --seeds 1 --no-report", "braking --braking 0.5 --seeds 1 --no-report"],
+    );
 }
 
 #[test]

@@ -12,7 +12,8 @@ const WHAT: &str = "The links of all vehicles fall silent, and in the silence th
 
 /// The page.
 pub fn render(options: &BrakingOptions, rows: &[Row], failures: &[String]) -> Page {
-    let mut page = Page::new("holdover-sim · report of braking", "Ten vehicles behind a leader that brakes in a silence");
+    let mut page =
+        Page::new("holdover-sim · report of braking", "Ten vehicles behind a leader that brakes in a silence");
     let passed = "With the envelope nobody collided, and no target was ever outside its bound.".to_owned();
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
     table(&mut page, rows);
@@ -63,25 +64,28 @@ fn facts(options: &BrakingOptions) -> Vec<(String, String)> {
 }
 
 fn figures(page: &mut Page, rows: &[Row]) {
-    let bars = |title: &str, unit: &str, value: &dyn Fn(&Side) -> Option<f64>, leader: Option<fn(&Comfort) -> f64>| {
-        let of = |side: fn(&Row) -> &Side| rows.iter().map(|row| value(side(row))).collect();
-        let mut methods = vec![
-            ("without the envelope".into(), Tone::Idle, of(|row| &row.off)),
-            ("with it".into(), Tone::Ours, of(|row| &row.on)),
-        ];
-        methods.extend(leader.map(|of| {
-            ("the leader".into(), Tone::Other(0), rows.iter().map(|row| Some(of(&row.leader))).collect())
-        }));
-        Bars {
-            title: title.into(),
-            description: format!("{title} for each time gap and braking of the leader, without the envelope and with it."),
-            x_label: "time gap (s), braking of the leader (m/s²)".into(),
-            y: Axis::linear(title, unit),
-            height: 150.0,
-            groups: rows.iter().map(|row| format!("{}, {}", row.time_gap_s, row.braking_mps2)).collect(),
-            methods,
-        }
-    };
+    let bars =
+        |title: &str, unit: &str, value: &dyn Fn(&Side) -> Option<f64>, leader: Option<fn(&Comfort) -> f64>| {
+            let of = |side: fn(&Row) -> &Side| rows.iter().map(|row| value(side(row))).collect();
+            let mut methods = vec![
+                ("without the envelope".into(), Tone::Idle, of(|row| &row.off)),
+                ("with it".into(), Tone::Ours, of(|row| &row.on)),
+            ];
+            methods.extend(leader.map(|of| {
+                ("the leader".into(), Tone::Other(0), rows.iter().map(|row| Some(of(&row.leader))).collect())
+            }));
+            Bars {
+                title: title.into(),
+                description: format!(
+                    "{title} for each time gap and braking of the leader, without the envelope and with it."
+                ),
+                x_label: "time gap (s), braking of the leader (m/s²)".into(),
+                y: Axis::linear(title, unit),
+                height: 150.0,
+                groups: rows.iter().map(|row| format!("{}, {}", row.time_gap_s, row.braking_mps2)).collect(),
+                methods,
+            }
+        };
     let gap = bars("smallest gap", "m", &|side| side.min_gap_m, None);
     let braking = bars(
         "hardest braking",
@@ -89,8 +93,12 @@ fn figures(page: &mut Page, rows: &[Row]) {
         &|side| Some(side.comfort.hardest_braking_mps2),
         Some(|leader| leader.hardest_braking_mps2),
     );
-    let jerk =
-        bars("largest jerk", "m/s³", &|side| Some(side.comfort.largest_jerk_mps3), Some(|leader| leader.largest_jerk_mps3));
+    let jerk = bars(
+        "largest jerk",
+        "m/s³",
+        &|side| Some(side.comfort.largest_jerk_mps3),
+        Some(|leader| leader.largest_jerk_mps3),
+    );
     page.figure("Safety", &say_safety(rows), &[&gap]);
     page.figure("Comfort", "What those inside feel, beside what those inside the leader do.", &[&braking, &jerk]);
 }

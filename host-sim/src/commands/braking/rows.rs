@@ -73,8 +73,11 @@ pub fn count(options: &BrakingOptions) -> u64 {
 /// # Errors
 /// An error that a unit finds in the configuration.
 pub fn run(options: &BrakingOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
-    let places: Vec<(f64, f64)> =
-        options.time_gaps_s.iter().flat_map(|gap| options.braking_mps2.iter().map(|braking| (*gap, *braking))).collect();
+    let places: Vec<(f64, f64)> = options
+        .time_gaps_s
+        .iter()
+        .flat_map(|gap| options.braking_mps2.iter().map(|braking| (*gap, *braking)))
+        .collect();
     let runs = 2 * options.seeds;
     let jobs = 0..places.len() as u64 * runs;
     let one = |job: u64| {
@@ -234,8 +237,10 @@ mod tests {
 
     #[test]
     fn where_vehicles_met_there_is_no_smallest_gap() {
-        let side = |collisions, min_gap_m| Side { collisions, min_gap_m, comfort: Comfort::default(), bound_violations: 0 };
-        let outcomes = [side(0, Some(1.5)), side(1, Some(-3.0))].map(|side| Outcome { leader: Comfort::default(), side });
+        let side =
+            |collisions, min_gap_m| Side { collisions, min_gap_m, comfort: Comfort::default(), bound_violations: 0 };
+        let outcomes =
+            [side(0, Some(1.5)), side(1, Some(-3.0))].map(|side| Outcome { leader: Comfort::default(), side });
         assert_eq!(Side::of(outcomes.iter()).min_gap_m, None);
         assert_eq!(Side::of(outcomes.iter().take(1)).min_gap_m, Some(1.5));
     }

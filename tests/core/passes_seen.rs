@@ -1,0 +1,115 @@
+//! A vehicle makes an emergency stop in the conflict area, and its radio dies. The ego has a pass for later, and its range sensor sees the
+//! vehicle: it does not go in, also if the sensor sees nothing for a moment then. A sensor that says nothing is not relied on.
+
+use crate::rig::config;
+use crate::rig::junction::{CROSSING, Driver, Junction, is_on_point};
+use holdover::Config;
+
+fn sees(station: u8, way: usize, at: f64, speed: f64) -> Driver {
+    let mut driver = Driver::of(Config { range_sensor: true, ..config() }, station, way, at, speed, true);
+    driver.sees_across = true;
+    driver
+}
+
+/// Stops the second vehicle on the crossing point, and silences it.
+fn strand(junction: &mut Junction) {
+    let stranded = &mut junction.drivers[1];
+    if stranded.body.position > CROSSING - 1.0 {
+        (stranded.speaks, stranded.hears) = (false, false);
+    }
+    if !stranded.speaks {
+        let is_at_rest = stranded.body.speed <= 0.1 || stranded.body.position > CROSSING + 2.0;
+        (stranded.body.speed, stranded.body.acceleration) =
+            if is_at_rest { (0.0, 0.0) } else { (stranded.body.speed, -8.0) };
+    }
+}
+
+#[test]
+fn one_that_waits_at_its_line_and_is_heard_does_not_explain_a_view_of_another_one_in_the_area() {
+    let mut waits = sees(4, 3, 195.0, 0.0);
+    waits.accuracy = 0.5;
+    let mut junction = Junction::new(vec![sees(3, 0, 30.0, 10.0), sees(2, 1, 60.0, 10.0), waits]);
+    junction.run(40.0, |junction| {
+        strand(junction);
+        let [ego, stranded, _] = &junction.drivers[..] else { panic!("three") };
+        assert!(!(is_on_point(&ego.body) && is_on_point(&stranded.body)), "{:.2} s", junction.now as f64 * 1e-6);
+    });
+}
+
+/// Whether both were in the area, when the ego's position is noisy.
+fn meets(noise: f64, speed: f64, seed: u64) -> bool {
+    let mut ego = sees(3, 0, 30.0, speed);
+    ego.body.position = (CROSSING - 17.0 * speed).max(-280.0);
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    let (mut both, mut seed) = (false, seed);
+    junction.run(40.0, |junction| {
+        strand(junction);
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let ego = &mut junction.drivers[0];
+        ego.off = noise * (((seed >> 33) % 2001) as f64 / 1000.0 - 1.0);
+        ego.accuracy = 0.05_f64.max(noise / 2.0);
+        both |= junction.drivers.iter().all(Driver::is_inside);
+    });
+    both
+}
+
+#[test]
+fn the_ego_does_not_commit_itself_past_one_that_it_sees_in_the_area() {
+    for speed in [8.0, 10.0, 13.0] {
+        for noise in [0.0, 0.1, 0.2, 0.3] {
+            for seed in 1..=5 {
+                assert!(!meets(noise, speed, seed), "{speed} m/s, {noise} m, seed {seed}");
+            }
+        }
+    }
+}
+
+/// Whether both were in the area, when the ego's sensor is blind for some time.
+fn meets_when_blind(from: f64, seconds: f64) -> bool {
+    let mut ego = sees(3, 0, 30.0, 10.0);
+    ego.body.position = CROSSING - 170.0;
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    let mut both = false;
+    junction.run(40.0, |junction| {
+        strand(junction);
+        let now = junction.now as f64 * 1e-6;
+        junction.drivers[0].is_blind = (from..from + seconds).contains(&now);
+        both |= junction.drivers.iter().all(Driver::is_inside);
+    });
+    both
+}
+
+#[test]
+fn a_time_without_views_does_not_let_the_ego_in() {
+    for seconds in [0.5, 1.5, 20.0] {
+        for tenths in 110..190 {
+            let from = f64::from(tenths) * 0.1;
+            assert!(!meets_when_blind(from, seconds), "blind from {from} s for {seconds} s");
+        }
+    }
+}
+
+/// How far the ego gets in 60 s behind one that has stopped before its line, with a dead radio, after its pass.
+fn gets(is_blind: bool) -> f64 {
+    let mut ego = sees(3, 0, 30.0, 10.0);
+    ego.is_blind = is_blind;
+    ego.body.position = CROSSING - 190.0;
+    let mut junction = Junction::new(vec![ego, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    junction.run(60.0, |junction| {
+        let stranded = &mut junction.drivers[1];
+        if stranded.body.position > CROSSING - 20.0 {
+            (stranded.speaks, stranded.hears) = (false, false);
+        }
+        if !stranded.speaks {
+            let speed = stranded.body.speed;
+            (stranded.body.speed, stranded.body.acceleration) = if speed <= 0.1 { (0.0, 0.0) } else { (speed, -8.0) };
+        }
+    });
+    junction.drivers[0].body.position
+}
+
+#[test]
+fn a_pass_of_another_is_trusted_only_while_the_own_sensor_says_something() {
+    assert!(gets(false) > CROSSING + 50.0, "{}", gets(false));
+    assert!(gets(true) < CROSSING, "{}", gets(true));
+}
