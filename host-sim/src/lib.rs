@@ -1,7 +1,7 @@
 //! The host harness of holdover: scenario -> world of vehicles (plant + the same core as on the ECU) -> V2X channel
 //! -> CAN bus -> metrics -> report.
 //!
-//! The modules are floors of a house, and imports go down only (`tests/floors.rs` holds that):
+//! The modules are floors of a house, and imports go down only (`tests/sim/floors.rs` holds that):
 //!
 //! ```text
 //! commands     one for each command: its arguments, options, run, table and page

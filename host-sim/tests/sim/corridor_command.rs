@@ -1,11 +1,9 @@
 //! `run corridor`: short runs of the real program against what it promises, its exit codes and its output.
 
-mod own_frames;
-
 use std::path::Path;
 use std::process::{Command, Output};
 
-use own_frames::repeats;
+use crate::own_frames::repeats;
 
 fn sim(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(arguments).output().expect("the program runs")

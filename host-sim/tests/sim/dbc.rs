@@ -2,7 +2,7 @@
 //! what an independent parser reads in the file, and every signal of every message is compared with the message.
 
 #[allow(dead_code)] // shared with the core's own tests
-#[path = "../../tests/core/messages/mod.rs"]
+#[path = "../../../tests/core/messages/mod.rs"]
 mod messages;
 
 use std::collections::BTreeMap;

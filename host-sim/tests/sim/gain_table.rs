@@ -7,7 +7,7 @@ fn the_committed_table_is_made_anew_byte_for_byte_and_every_limit_holds() {
     let table = Table::made();
     assert_eq!(table.failures, Vec::<String>::new());
     let made = source::text(&table.curve, &table.cells);
-    let committed = include_str!("../../src/controller/gain_table.rs");
+    let committed = include_str!("../../../src/controller/gain_table.rs");
     assert!(made == committed, "holdover-sim gains --write src/controller/gain_table.rs makes another table");
 }
 

@@ -1,14 +1,12 @@
 //! Runs whose buses are CAN FD: what the vehicles do is what they do over classic CAN, and a log of such a bus replays the same.
 
-mod own_frames;
-
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::own_frames::{count, repeats};
 use holdover::time::{Duration, Instant};
 use holdover_sim::bus::candump::{Content, Entry, LogReader};
 use holdover_sim::bus::wire::length;
-use own_frames::{count, repeats};
 use serde_json::Value;
 
 fn holdover_sim(arguments: &[&str]) -> Output {

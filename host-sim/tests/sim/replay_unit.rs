@@ -1,11 +1,9 @@
 //! A unit that lives by a log sends what the unit on that bus sent, and is not moved by other people's traffic.
 
-mod own_frames;
-
 use std::path::Path;
 use std::process::{Command, Output};
 
-use own_frames::{count, repeats};
+use crate::own_frames::{count, repeats};
 
 fn holdover_sim(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_holdover-sim")).args(arguments).output().unwrap()

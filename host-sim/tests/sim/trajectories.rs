@@ -55,7 +55,7 @@ fn of_a_string_the_largest_error_in_the_file_is_the_one_that_is_reported() {
 #[test]
 fn of_a_corridor_the_largest_error_in_the_file_is_the_one_that_is_reported() {
     let overrides = Overrides { set: vec!["duration_s=40".into()], ..Overrides::default() };
-    let text = include_str!("../scenarios/corridor.toml");
+    let text = include_str!("../../scenarios/corridor.toml");
     let experiment = Experiment::new(read::corridor(Path::new("corridor.toml"), text, &overrides).unwrap());
     let folder = tempfile::tempdir().unwrap();
     let wanted = Wanted::read(folder.path().join("all.csv"), experiment.corridor.period_s).unwrap();

@@ -12,9 +12,9 @@ fn dbc(arguments: &[&str]) -> (i32, String, String) {
 
 #[test]
 fn without_arguments_it_is_the_committed_file() {
-    let committed = include_str!("../../holdover.dbc");
+    let committed = include_str!("../../../holdover.dbc");
     assert_eq!(dbc(&[]), (0, committed.into(), String::new()));
-    let committed = include_str!("../../holdover-fd.dbc");
+    let committed = include_str!("../../../holdover-fd.dbc");
     assert_eq!(dbc(&["--fd"]), (0, committed.into(), String::new()));
 }
 
