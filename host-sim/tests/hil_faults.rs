@@ -9,7 +9,7 @@ use holdover_sim::commands::hil::rig::Rig;
 use holdover_sim::commands::hil::session::{self, Setup};
 use holdover_sim::commands::hil::virtual_bus::{Behaviour, VirtualPort, VirtualRig, bench};
 use holdover_sim::input::scenario::{Overrides, Scenario};
-use holdover_sim::sim::world;
+use holdover_sim::sim::world::{self, MOST_TICKS};
 use std::io;
 use std::path::Path;
 
@@ -24,6 +24,7 @@ fn setup(duration_s: u32, fault: &str) -> Setup {
         wait: Duration::from_millis(3000),
         latency_p99_ms: LATENCY_P99_MS,
         faults: vec![fault.parse().unwrap()],
+        most_ticks: MOST_TICKS,
     }
 }
 

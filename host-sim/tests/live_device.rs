@@ -16,7 +16,7 @@ use holdover_sim::commands::live::engine::Ask;
 use holdover_sim::commands::live::options::LiveOptions;
 use holdover_sim::commands::live::order::Order;
 use holdover_sim::input::scenario::{Overrides, Part, Scenario};
-use holdover_sim::sim::world;
+use holdover_sim::sim::world::{self, MOST_TICKS};
 use serde_json::Value;
 use tokio::sync::{oneshot, watch};
 
@@ -25,7 +25,7 @@ fn setup(duration_s: f64) -> Setup {
     let scenario = Scenario::parse(Path::new("live.toml"), &text, &Overrides::default()).unwrap();
     let config = world::config(&scenario, scenario.ego);
     let (wait, latency_p99_ms) = (Duration::from_millis(3000), LATENCY_P99_MS);
-    Setup { scenario, config, wait, latency_p99_ms, faults: Vec::new() }
+    Setup { scenario, config, wait, latency_p99_ms, faults: Vec::new(), most_ticks: MOST_TICKS }
 }
 
 /// A run before which these orders were given: what became of each, the last scene, and the journal.

@@ -120,14 +120,6 @@ pub fn impaired_followers(scenario: &Scenario) -> Vec<usize> {
     if found.is_empty() { followers.collect() } else { found }
 }
 
-/// The figures of a trace.
-#[must_use]
-pub fn summarise(scenario: &Scenario, trace: &Trace, realtime_factor: f64) -> Summary {
-    let mut tally = Tally::new(scenario);
-    trace.each(|at_s, ticks, paper_m| tally.note(at_s, ticks, paper_m));
-    tally.finish(realtime_factor)
-}
-
 /// The reasons why a run failed; empty if it passed.
 #[must_use]
 pub fn failures(scenario: &Scenario, summary: &Summary) -> Vec<String> {

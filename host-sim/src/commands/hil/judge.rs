@@ -15,10 +15,7 @@ use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
 use super::session::Setup;
 use super::spread::Spread;
-use crate::measure::figures::mode_name;
-use crate::measure::figures::{BoundFigures, Summary, failures, summarise};
-use crate::sim::world::{Tick, Trace};
-use crate::thinned::Thinning;
+use crate::measure::figures::{Summary, Tally, failures, mode_name};
 use crate::verdict::Verdict;
 
 /// Default limit of the time from the vehicle's motion to the device's command, except for one command in a hundred:
@@ -133,8 +130,7 @@ impl Results {
 /// Judges an outcome.
 #[must_use]
 pub fn judge(setup: &Setup, outcome: &Outcome) -> Results {
-    let mut scenario = summarise(&setup.scenario, &outcome.trace, outcome.realtime_factor);
-    scenario.bound.violations = violations(setup, outcome);
+    let scenario = figures(setup, outcome);
     let (device, deviation) = (device(setup, outcome), deviation(setup, outcome));
     let timing = timing(setup, outcome);
     let faults = recoveries(setup, outcome);
@@ -218,31 +214,15 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
     }
 }
 
-/// Ticks at which a target was outside its bound. Not counted are the aftermath of faults, because a device that
-/// receives false values sends false values; and ticks around which the harness was late, because it received the
-/// device's frames later.
-fn violations(setup: &Setup, outcome: &Outcome) -> usize {
-    let trace = &outcome.trace;
-    let is_judged = |tick: usize| {
-        trace.times_s.get(tick).is_some_and(|at_s| !setup.is_excused(*at_s) && !outcome.lateness.is_around(*at_s))
-    };
-    let judged = |ticks: &Vec<Tick>| {
-        let target = |(index, tick): (usize, &Tick)| Tick { target: tick.target.filter(|_| is_judged(index)), ..*tick };
-        ticks.iter().enumerate().map(target).collect()
-    };
-    let trace = Trace {
-        times_s: trace.times_s.clone(),
-        vehicles: trace.vehicles.iter().map(judged).collect(),
-        paper: Vec::new(),
-        measured: trace.measured,
-        refusals: Vec::new(),
-        channel: trace.channel.clone(),
-        log: Vec::new(),
-        turned_away: 0,
-        latest: Vec::new(),
-        thinning: Thinning::default(),
-    };
-    BoundFigures::of(&setup.scenario, &trace).violations
+/// The figures of the world. Of the ticks at which a target was outside its bound, those are not counted that are in the aftermath of a
+/// fault, because a device that receives false values sends false values; nor those around which the harness was late, because it
+/// received the device's frames later.
+fn figures(setup: &Setup, outcome: &Outcome) -> Summary {
+    let recorded = &outcome.recorded;
+    let mut figures = recorded.summary.clone().unwrap_or_else(|| Tally::new(&setup.scenario).finish(0.0));
+    let is_judged = |at_s: &&f64| !setup.is_excused(**at_s) && !outcome.lateness.is_around(**at_s);
+    figures.bound.violations = recorded.outside_s.iter().filter(is_judged).count();
+    figures
 }
 
 /// The reasons against the harness.

@@ -21,13 +21,13 @@ use super::deviation::Deviation;
 use super::lateness::Lateness;
 use super::monitor::Monitor;
 use super::outcome::{Cut, Outcome, Steps};
+use super::record::Record;
 use super::rig::Rig;
 use super::session::Setup;
 use super::talk::Talk;
 use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
-use crate::measure::paper_beside::PaperBeside;
 use crate::sim::stages::Stages;
 use crate::sim::time::{EPOCH_US, micros};
 use crate::sim::vehicle::Unit;
@@ -77,8 +77,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         answer: VecDeque::new(),
     };
     bench.talk.dates = false; // the time of a step is that of the world
-    let mut trace = world.trace();
-    let mut paper = PaperBeside::of(&world, scenario);
+    let mut record = Record::of(&world, setup, true);
     rig.power(true)?;
     let warm_up = i64::from(world.warm_up_ticks(WARM_UP_S));
     let ticks = i64::try_from(world.ticks()).unwrap_or(i64::MAX);
@@ -117,8 +116,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
             world.answer(at_s)?;
         } else {
             world.act(at_s)?;
-            world.note(at_s, &mut trace);
-            paper.note(&world, at_s, &mut trace)?;
+            record.note(&world, at_s)?;
             world.drive(at_s)?;
         }
         if tick % 100 == 0 {
@@ -126,10 +124,10 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         }
     }
     let took_s = bench.talk.now().since(begun).as_micros() as f64 * 1e-6;
-    let realtime_factor = time(i64::try_from(trace.times_s.len()).unwrap_or(0)) / took_s.max(1e-6);
+    let realtime_factor = time(i64::from(record.ticks())) / took_s.max(1e-6);
     rig.power(false)?;
     Ok(Outcome {
-        trace: world.finish(trace)?,
+        recorded: record.finish(world, realtime_factor)?,
         monitor: bench.monitor,
         deviation: Deviation::default(),
         steps: Some(bench.steps),
@@ -139,7 +137,6 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         bus_errors: bench.bus_errors,
         origin: Instant::from_micros(0),
         faults: Vec::new(),
-        realtime_factor,
         cut,
     })
 }

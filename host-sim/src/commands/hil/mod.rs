@@ -21,6 +21,7 @@ pub mod monitor;
 pub mod options;
 pub mod outcome;
 mod page;
+pub mod record;
 pub mod recovery;
 pub mod rig;
 pub mod said;
@@ -68,7 +69,7 @@ pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
     options.destination.deliver(&results, &text, &text, || page::render(options, &outcome, &results))?;
     if let Some(file) = &options.mcap {
         let mut mcap = McapFile::of(file, &options.setup.scenario)?;
-        outcome.trace.each(|at_s, ticks, paper_m| mcap.note(at_s, ticks, paper_m));
+        outcome.recorded.trace.each(|at_s, ticks, paper_m| mcap.note(at_s, ticks, paper_m));
         mcap.finish()?;
     }
     Ok(results.code())

@@ -11,6 +11,7 @@ use crate::error::Error;
 use crate::input::scenario::{Overrides, Scenario, VehicleBus};
 use crate::places::can_be_file;
 use crate::sim::quantities::duration;
+use crate::sim::world::MOST_TICKS;
 
 /// A run with hardware in the loop.
 #[derive(Clone, Debug)]
@@ -87,6 +88,8 @@ impl HilOptions {
                 wait: duration(arguments.wait),
                 latency_p99_ms: arguments.latency,
                 faults,
+                // The file has every tick.
+                most_ticks: if arguments.mcap.is_some() { usize::MAX } else { MOST_TICKS },
             },
             name: arguments.scenario.display().to_string(),
             lock_step: arguments.lock_step,

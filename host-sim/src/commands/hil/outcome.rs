@@ -6,8 +6,8 @@ use super::deviation::Deviation;
 use super::fault_injector::Played;
 use super::lateness::Lateness;
 use super::monitor::Monitor;
+use super::record::Recorded;
 use super::talk::Counts;
-use crate::sim::world::Trace;
 
 /// Why a run ended early.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,8 +56,8 @@ pub struct Steps {
 
 /// The whole outcome.
 pub struct Outcome {
-    /// The world's trace.
-    pub trace: Trace,
+    /// The world.
+    pub recorded: Recorded,
     /// The device.
     pub monitor: Monitor,
     /// The device beside its twin, in real time.
@@ -76,8 +76,6 @@ pub struct Outcome {
     pub origin: Instant,
     /// The faults that were injected, with the reason why one could not be.
     pub faults: Vec<Played>,
-    /// Simulated seconds per second.
-    pub realtime_factor: f64,
     /// Why it ended early.
     pub cut: Option<Cut>,
 }

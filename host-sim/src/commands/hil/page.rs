@@ -32,6 +32,12 @@ pub fn render(options: &HilOptions, outcome: &Outcome, results: &Results) -> Pag
     page.section("Setup");
     page.facts(&facts(options));
     page.section("Course");
+    let stride = outcome.recorded.trace.thinning.stride();
+    if stride > 1 {
+        page.paragraph(&format!(
+            "The run is long: speed and gap are of one tick in {stride}. The figures of the table are of all."
+        ));
+    }
     figures(&mut page, options, outcome);
     page
 }
@@ -76,12 +82,13 @@ fn facts(options: &HilOptions) -> Vec<(String, String)> {
 
 fn figures(page: &mut Page, options: &HilOptions, outcome: &Outcome) {
     let ego = options.setup.scenario.ego;
+    let joined_s = JOINED_S * outcome.recorded.trace.thinning.stride() as f64;
     let line = |name: &str, points: Vec<(f64, f64)>, tone| {
-        Layer::line(Series::new(name, points).joined_within(JOINED_S), tone)
+        Layer::line(Series::new(name, points).joined_within(joined_s), tone)
     };
-    let speed = speeds(&outcome.trace).into_iter().nth(ego).unwrap_or_default();
-    let ahead = speeds(&outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
-    let gap = gaps(&options.setup.scenario, &outcome.trace).into_iter().nth(ego - 1).unwrap_or_default();
+    let speed = speeds(&outcome.recorded.trace).into_iter().nth(ego).unwrap_or_default();
+    let ahead = speeds(&outcome.recorded.trace).into_iter().nth(ego - 1).unwrap_or_default();
+    let gap = gaps(&options.setup.scenario, &outcome.recorded.trace).into_iter().nth(ego - 1).unwrap_or_default();
     let millis = |at: &super::monitor::CommandRecord| {
         at.latency.map(|latency| (outcome.time_of(at.at), latency.as_micros() as f64 * 1e-3))
     };

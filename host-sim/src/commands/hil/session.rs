@@ -20,6 +20,7 @@ use super::fault_injector::{FaultInjector, Played};
 use super::lateness::Lateness;
 use super::monitor::{Monitor, News};
 use super::outcome::{Cut, Outcome};
+use super::record::Record;
 use super::rig::Rig;
 use super::said::Said;
 use super::talk::Talk;
@@ -28,11 +29,10 @@ use crate::bus::memory::MemoryNode;
 use crate::bus::port::{Event, Port};
 use crate::bus::{Bus, Frame};
 use crate::input::scenario::Scenario;
-use crate::measure::paper_beside::PaperBeside;
 use crate::sim::stages::Stages;
 use crate::sim::station::station;
 use crate::sim::vehicle::Alias;
-use crate::sim::world::{Trace, World};
+use crate::sim::world::World;
 
 /// Time for which the world sends before the run, in seconds. A time base needs two synchronisations, half a second
 /// apart, that are trusted.
@@ -41,7 +41,7 @@ const WARM_UP_S: f64 = 2.0;
 const GONE_S: f64 = 2.0;
 /// Longest wait for the echoes of the last frames.
 const ECHO_PATIENCE: Duration = Duration::from_millis(1000);
-/// What is kept of a run that nobody judges, in commands of the device and in ticks.
+/// The commands of the device that are kept of a run that nobody judges.
 const LATEST: usize = 1000;
 /// Time after a fault in which effects are attributed to it, in seconds.
 pub const AFTERMATH_S: f64 = 5.0;
@@ -60,6 +60,8 @@ pub struct Setup {
     pub latency_p99_ms: f64,
     /// The faults to inject.
     pub faults: Vec<Fault>,
+    /// The most ticks that the trace keeps: of a longer run every second, every fourth and so on. Figures are of every tick.
+    pub most_ticks: usize,
 }
 
 impl Setup {
@@ -199,7 +201,7 @@ pub trait Onlooker {
         Ok(true)
     }
 
-    /// Whether the run is judged at its end, for which every tick is kept.
+    /// Whether the run is judged at its end, for which every command is kept.
     fn judges(&self) -> bool {
         true
     }
@@ -241,8 +243,7 @@ pub fn run_before<P: Port>(
     }
     let mut talk = Talk::new(port, config.identifiers);
     onlooker.begin(&mut world)?;
-    let mut trace = world.trace().of_at_most(if onlooker.judges() { usize::MAX } else { LATEST });
-    let mut paper = PaperBeside::of(&world, scenario);
+    let mut record = Record::of(&world, setup, onlooker.judges());
     let mut injector = FaultInjector::new(&setup.faults, config.identifiers).over(config.transport);
     rig.power(true)?;
     let mut cut = wait_for_device(setup, &mut talk, &mut listener, rig)?;
@@ -293,8 +294,7 @@ pub fn run_before<P: Port>(
             world.answer(at_s)?
         } else {
             world.act(at_s)?;
-            world.note(at_s, &mut trace);
-            paper.note(&world, at_s, &mut trace)?;
+            record.note(&world, at_s)?;
             if !onlooker.see(&mut world, at_s)? {
                 break;
             }
@@ -313,12 +313,12 @@ pub fn run_before<P: Port>(
     injector.note_altered(talk.altered());
     injector.stop(rig);
     let faults = injector.played(cut.is_none());
-    finished(world, trace, &talk, listener, lateness, faults, cut)
+    finished(world, record, &talk, listener, lateness, faults, cut)
 }
 
 fn finished<P: Port>(
     world: World<'_>,
-    trace: Trace,
+    record: Record<'_>,
     talk: &Talk<P>,
     listener: BusListener,
     lateness: Lateness,
@@ -326,7 +326,7 @@ fn finished<P: Port>(
     cut: Option<Cut>,
 ) -> io::Result<Outcome> {
     Ok(Outcome {
-        trace: world.finish(trace)?,
+        recorded: record.finish(world, 1.0)?,
         monitor: listener.monitor,
         deviation: listener.deviation,
         steps: None,
@@ -336,7 +336,6 @@ fn finished<P: Port>(
         bus_errors: listener.bus_errors,
         origin: talk.instant(0.0),
         faults,
-        realtime_factor: 1.0,
         cut,
     })
 }

@@ -18,6 +18,7 @@ use crate::output;
 use crate::places::can_be_file;
 use crate::roads::read;
 use crate::sim::quantities::duration;
+use crate::sim::world::MOST_TICKS;
 
 /// Longest wait for the first frame of a device, in seconds.
 const WAIT_S: f64 = 10.0;
@@ -137,7 +138,13 @@ fn device(
     // It goes on until it is ended, unless the leader's recording ends before.
     let duration_s = if scenario.leader.motion.is_some() { scenario.duration_s } else { LONGEST_S };
     let world = Scenario { duration_s, ..(**scenario).clone() };
-    let setup =
-        Setup { scenario: world, config, wait: duration(WAIT_S), latency_p99_ms: LATENCY_P99_MS, faults: Vec::new() };
+    let setup = Setup {
+        scenario: world,
+        config,
+        wait: duration(WAIT_S),
+        latency_p99_ms: LATENCY_P99_MS,
+        faults: Vec::new(),
+        most_ticks: MOST_TICKS,
+    };
     Ok(Some(OnBus { bus, setup, command }))
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::input::scenario::Scenario;
 use crate::measure::metrics::{SETTLED_FROM_S, percentile_abs};
-use crate::sim::world::{Measured, Tick, Trace};
+use crate::sim::world::{Measured, Tick};
 use crate::thinned::Thinned;
 
 /// The figures of the bounds.
@@ -24,16 +24,6 @@ pub struct BoundFigures {
 
 /// The most widths of which the median is taken.
 const MOST: usize = 200_000;
-
-impl BoundFigures {
-    /// The figures of a trace.
-    #[must_use]
-    pub fn of(scenario: &Scenario, trace: &Trace) -> Self {
-        let mut tally = BoundTally::new(scenario);
-        trace.each(|at_s, ticks, _| tally.note(at_s, ticks));
-        tally.finish()
-    }
-}
 
 /// The running figures.
 #[derive(Clone, Debug)]
@@ -64,8 +54,8 @@ impl<'a> BoundTally<'a> {
         }
     }
 
-    /// A tick of every vehicle.
-    pub fn note(&mut self, at_s: f64, ticks: &[Tick]) {
+    /// A tick of every vehicle. Returns how many targets are outside their bounds in it.
+    pub fn note(&mut self, at_s: f64, ticks: &[Tick]) -> usize {
         let bound = |tick: &Tick| tick.target.and_then(|target| target.bound);
         if at_s >= SETTLED_FROM_S - 1e-9
             && let Some(bound) = bound(&ticks[self.by])
@@ -73,6 +63,7 @@ impl<'a> BoundTally<'a> {
             self.widths_m.push(bound.width_m());
         }
         self.watch_leader(at_s, ticks[0].speed_mps);
+        let before = self.violations;
         for (target, pair) in ticks.windows(2).enumerate() {
             let (truth, seen) = (&pair[0], &pair[1]);
             if bound(seen).is_none_or(|bound| bound.hold(truth.position_m, truth.speed_mps)) {
@@ -84,6 +75,7 @@ impl<'a> BoundTally<'a> {
                 self.violations += 1;
             }
         }
+        self.violations - before
     }
 
     fn watch_leader(&mut self, at_s: f64, speed_mps: f64) {

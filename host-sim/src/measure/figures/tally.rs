@@ -96,8 +96,9 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// A tick of every vehicle, and where the literal paper's method then estimates the measured one to be.
-    pub fn note(&mut self, at_s: f64, ticks: &[Tick], paper_m: Option<f64>) {
+    /// A tick of every vehicle, and where the literal paper's method then estimates the measured one to be. Returns how many targets are
+    /// outside their bounds in it.
+    pub fn note(&mut self, at_s: f64, ticks: &[Tick], paper_m: Option<f64>) -> usize {
         let Measured { vehicle, by } = self.measured;
         if at_s >= SETTLED_FROM_S - 1e-9 {
             let truth_m = ticks[vehicle].position_m;
@@ -108,7 +109,7 @@ impl<'a> Tally<'a> {
                 self.paper.note(paper_m - truth_m);
             }
         }
-        self.bound.note(at_s, ticks);
+        let outside = self.bound.note(at_s, ticks);
         let driven = usize::from(self.scenario.leader.motion.is_some());
         for (index, (tick, stand)) in ticks.iter().zip(&mut self.stands).enumerate() {
             self.lowest_speed_mps = least(self.lowest_speed_mps, tick.speed_mps);
@@ -122,6 +123,7 @@ impl<'a> Tally<'a> {
         }
         let limited = self.impaired.iter().filter(|index| ticks[**index].limited).count();
         self.limited = (self.limited.0 + limited, self.limited.1 + self.impaired.len());
+        outside
     }
 
     fn gap(&mut self, at_s: f64, index: usize, ahead: &Tick, behind: &Tick) {

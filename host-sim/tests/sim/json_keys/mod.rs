@@ -14,7 +14,7 @@ use holdover_sim::commands::hil::session::{self, Setup};
 use holdover_sim::commands::hil::virtual_bus::{Behaviour, bench};
 use holdover_sim::input::scenario::{Overrides, Scenario};
 use holdover_sim::measure::figures::Collision;
-use holdover_sim::sim::world;
+use holdover_sim::sim::world::{self, MOST_TICKS};
 use serde_json::Value;
 
 fn run(folder: &Path, arguments: &str, threads: &str) -> Value {
@@ -165,7 +165,8 @@ fn the_keys_of_hil_are_the_documented_ones() {
     let config = world::config(&scenario, scenario.ego);
     let faults = vec!["corrupt@1:1".parse().unwrap()];
     let latency_p99_ms = holdover_sim::commands::hil::judge::LATENCY_P99_MS;
-    let setup = Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms, faults };
+    let setup =
+        Setup { scenario, config, wait: Duration::from_millis(3000), latency_p99_ms, faults, most_ticks: MOST_TICKS };
     // The device drives well; so a collision is made up.
     let collision = Collision {
         at_s: 1.0,
