@@ -4,6 +4,7 @@
     recordings.py comma2k19 SEGMENT MOTION.csv             a segment's folder
     recordings.py cicv5g RUN.txt [--motion M.csv] [--channel C.csv]
     recordings.py openacc RUN.csv FOLDER                   a file for each vehicle: FOLDER/veh1.csv, the leader, and so on
+    recordings.py tlssc RUN.csv FOLDER                     the same of a car by itself, or behind another
     recordings.py candump LOG --dbc holdover.dbc FOLDER    a log of a unit's bus: FOLDER/ego.csv, FOLDER/peer0.csv, ...
 
 A drive has the columns t_s,position_m,speed_mps, a link t_s,delay_s, with an empty delay for a message that was lost. Times
@@ -15,6 +16,7 @@ import csv
 import re
 import sys
 from collections import defaultdict
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,7 @@ import numpy as np
 STAMPS_WRAP_S = 13.1072  # stamps on the bus are modulo this
 POSITIONS_WRAP_M = 33554.432
 TOGETHER_S = 0.05  # the frames of one message come within this
+EARTH_M = 6_371_009.0  # mean radius
 
 
 class Unusable(Exception):
@@ -122,16 +125,57 @@ def openacc(run, folder):
     if not known.any():
         raise Unusable("never knows all vehicles at once; give another part of the run")
     first = int(np.argmax(known))
-    behind_m = {}
-    for n, ahead in zip(vehicles, [None, *vehicles]):
-        gap_m = 0.0 if ahead is None else float(np.linalg.norm(places[n][:, first] - places[ahead][:, first]))
-        behind_m[n] = gap_m + (behind_m[ahead] if ahead is not None else 0.0)
-    last_m = max(behind_m.values())
-    for n in vehicles:
-        ok = np.isfinite(speeds[n]) & (np.arange(len(times_s)) >= first)
-        t, speed = times_s[ok] - times_s[first], speeds[n][ok]
-        rows_of = zip(t, integral(t, speed) + last_m - behind_m[n], speed)
-        write(Path(folder) / f"veh{n}.csv", ["t_s", "position_m", "speed_mps"], [[f"{x:.3f}" for x in row] for row in rows_of])
+    gaps_m = [float(np.linalg.norm(places[n][:, first] - places[ahead][:, first])) for ahead, n in zip(vehicles, vehicles[1:])]
+    write_platoon(folder, times_s[first:], [speeds[n][first:] for n in vehicles], gaps_m)
+
+
+def write_platoon(folder, times_s, speeds, gaps_m):
+    """The drives of vehicles that follow one another, on one axis that begins where the last one does. `gaps_m` is how far each is
+    behind the one ahead at the first moment."""
+    starts_m = np.cumsum([0.0, *gaps_m])
+    for n, (speed, behind_m) in enumerate(zip(speeds, starts_m), start=1):
+        ok = np.isfinite(speed)
+        t = times_s[ok] - times_s[0]
+        rows = zip(t, integral(t, speed[ok]) + starts_m[-1] - behind_m, speed[ok])
+        write(Path(folder) / f"veh{n}.csv", ["t_s", "position_m", "speed_mps"], [[f"{x:.3f}" for x in row] for row in rows])
+
+
+def tlssc(run, folder):
+    """A car with Tesla's control for traffic lights and stop signs, at 10 Hz, as its receiver had it and not as smoothed. A file of one
+    car has the columns Time, Latitude, Longitude and Speed; one of two has the last three with _lead and with _follow."""
+    with open(run, newline="", encoding="utf-8-sig", errors="replace") as text:
+        reader = csv.DictReader(text)
+        names = reader.fieldnames or []
+        vehicles = ["_lead", "_follow"] if "Speed_lead" in names else [""]
+        wanted = ["Time", *(name + vehicle for vehicle in vehicles for name in ("Latitude", "Longitude", "Speed"))]
+        absent = [name for name in wanted if name not in names]
+        if absent:
+            raise Unusable(f"has no column {absent[0]}; give a file of TLSSC-V as published")
+        rows = []
+        for line in reader:
+            try:
+                rows.append([clock_s(line["Time"]), *(float(line[name] or "nan") for name in wanted[1:])])
+            except (TypeError, ValueError):
+                raise Unusable(f"line {reader.line_num} is no sample; give the file as published") from None
+    table = np.array(sorted(rows, key=lambda row: row[0]))
+    known = np.flatnonzero(np.isfinite(table).all(axis=1)) if rows else []
+    if len(known) < 2:
+        raise Unusable("has fewer than two samples; give a file with a drive in it")
+    table = table[known[0]:]
+    table = table[np.concatenate([[True], np.diff(table[:, 0]) > 0])]
+    first = np.radians(table[0, 1:])
+    gaps_m = []
+    if len(vehicles) == 2:
+        north, east = first[3] - first[0], (first[4] - first[1]) * np.cos(first[0])
+        gaps_m = [EARTH_M * float(np.hypot(north, east))]
+    write_platoon(folder, table[:, 0], [table[:, 3 * n + 3] for n in range(len(vehicles))], gaps_m)
+
+
+def clock_s(text):
+    """A date and time with its offset: year first, or day first as files of one car have it."""
+    if re.match(r"\d\d-", text):
+        return datetime.strptime(text, "%d-%m-%Y %H:%M:%S.%f %z").timestamp()
+    return datetime.fromisoformat(text).timestamp()
 
 
 def frames(log):
@@ -211,6 +255,8 @@ def main(arguments):
     kind = kinds.add_parser("cicv5g")
     kind.add_argument("run"), kind.add_argument("--motion"), kind.add_argument("--channel")
     kind = kinds.add_parser("openacc")
+    kind.add_argument("run"), kind.add_argument("folder")
+    kind = kinds.add_parser("tlssc")
     kind.add_argument("run"), kind.add_argument("folder")
     kind = kinds.add_parser("candump")
     kind.add_argument("log"), kind.add_argument("--dbc", required=True), kind.add_argument("folder")

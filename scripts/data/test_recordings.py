@@ -96,6 +96,36 @@ class Converted(unittest.TestCase):
         (self.folder / "run.csv").write_text("a,b\n1,2\n")
         self.assertIn("no header that begins with Time", self.refused("openacc", self.folder / "run.csv", self.folder))
 
+    def test_a_run_of_tlssc_is_the_drive_of_one_car_or_of_two(self):
+        alone = "Track Name,Time,Geometry,Latitude,Longitude,Elevation,Speed,Speed_Smoothed\n"
+        line = lambda n: f"Track 5,15-05-2025 22:44:{5 + n // 10:02}.{n % 10}00 -0500,POINTZ(1 2 3),43.0155,-89.4416,268.9,{8 + 0.1 * n},0\n"
+        (self.folder / "25-mph_1.csv").write_text(alone + "".join(map(line, range(50))))
+        self.convert("tlssc", self.folder / "25-mph_1.csv", self.folder / "one")
+        drive = rows(self.folder / "one/veh1.csv")
+        self.assertEqual((drive[0], drive[1]["t_s"], len(drive)), ({"t_s": 0.0, "position_m": 0.0, "speed_mps": 8.0}, 0.1, 50))
+        self.assertAlmostEqual(drive[-1]["position_m"], 8 * 4.9 + 0.5 * 4.9 * 4.9, places=2)
+        self.is_sound(self.folder / "one/veh1.csv")
+        # Two fixes a second of the leader, between which the publishers drew lines; a whole second has no decimals. Both go west.
+        two = "Time,Track Name_lead,Latitude_lead,Longitude_lead,Speed_lead,Latitude_follow,Longitude_follow,Speed_follow,Speed_lead_smoothed\n"
+        degrees = 1 / (math.radians(1) * 6_371_009 * math.cos(math.radians(43)))
+        def pair(n):
+            clock = f"2025-06-10 23:29:{5 + n // 10:02}{f'.{n % 10}00000' if n % 10 else ''}-05:00"
+            way = 12 * n / 10 * degrees
+            return f"{clock},,43.0,{-89.4 - 25 * degrees - way:.9f},{'' if n == 0 else 12.0},43.0,{-89.4 - way:.9f},12.0,0\n"
+        (self.folder / "gap-2.csv").write_text(two + "".join(map(pair, range(101))))
+        self.convert("tlssc", self.folder / "gap-2.csv", self.folder / "two")
+        leader, follower = rows(self.folder / "two/veh1.csv"), rows(self.folder / "two/veh2.csv")
+        self.assertEqual((len(leader), len(follower), leader[0]["t_s"], follower[0]["position_m"]), (100, 100, 0.0, 0.0))
+        for at in (0, -1):
+            self.assertAlmostEqual(leader[at]["position_m"] - follower[at]["position_m"], 25, places=2)
+        self.is_sound(self.folder / "two/veh1.csv", self.folder / "two/veh2.csv")
+        (self.folder / "gap-2.csv").write_text("Time,Speed_lead\n1,2\n")
+        self.assertIn("has no column Latitude_lead", self.refused("tlssc", self.folder / "gap-2.csv", self.folder))
+        (self.folder / "gap-2.csv").write_text(alone + line(0) + line(1).replace("22:44", "noon"))
+        self.assertIn("line 3 is no sample", self.refused("tlssc", self.folder / "gap-2.csv", self.folder))
+        (self.folder / "gap-2.csv").write_text(alone)
+        self.assertIn("fewer than two samples", self.refused("tlssc", self.folder / "gap-2.csv", self.folder))
+
     def test_a_log_of_a_unit_is_the_drives_and_the_links_of_its_peers(self):
         scenario = self.folder / "link.toml"
         scenario.write_text("duration_s = 20\n[channel]\ndelay_mean_s = 0.12\ndelay_std_s = 0.02\nloss = 0.2\noutages = [[9, 11]]\n"
