@@ -155,7 +155,7 @@ fn the_table_and_the_report_stand_side_by_side() {
     let folder = tempfile::tempdir().unwrap();
     let output = envelope_cost(&format!("--seeds 1 --silences 0.5,2 --out {}/report", folder.path().display()), "2");
     let (stdout, stderr) = (text(output.stdout), text(output.stderr));
-    for wanted in ["1 seeds each; travel time over 200 m\n", "\n0.5 ", "\n2 ", " off ", " on ", "verdict: passed\n"] {
+    for wanted in ["seeds each: 1; travel time over 200 m\n", "\n0.5 ", "\n2 ", " off ", " on ", "verdict: passed\n"] {
         assert!(stdout.contains(wanted), "{wanted}: {stdout}");
     }
     assert_eq!(stderr, format!("report: {}/report/index.html\n", folder.path().display()));

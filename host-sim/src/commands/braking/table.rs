@@ -12,7 +12,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     let Some(first) = rows.first() else { return text };
     // Writing to a string cannot fail.
     let _ =
-        writeln!(text, "ten vehicles behind a leader that brakes to a stop in a silence; {} seeds each", first.seeds);
+        writeln!(text, "ten vehicles behind a leader that brakes to a stop in a silence; seeds each: {}", first.seeds);
     let heads = ["gap, m", "braking, m/s²", "jerk, m/s³", "collisions"];
     let _ = write!(text, "{:<13}{:<15}{:<11}", "time gap, s", "leader, m/s²", "envelope");
     text.extend(heads.map(|head| format!("{head:>15}")));

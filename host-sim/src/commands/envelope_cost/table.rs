@@ -11,7 +11,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     let mut text = String::new();
     let Some(first) = rows.first() else { return text };
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{} seeds each; travel time over {} m", first.seeds, first.distance_m);
+    let _ = writeln!(text, "seeds each: {}; travel time over {} m", first.seeds, first.distance_m);
     let heads = ["limited, %", "travel, s", "stops/run", "gap, m", "braking, m/s²", "collisions"];
     let _ = write!(text, "{:<11}{:<10}", "silence, s", "envelope");
     text.extend(heads.map(|head| format!("{head:>14}")));
