@@ -129,8 +129,8 @@ fn an_order_that_cannot_be_is_refused_with_its_cause_and_the_simulation_goes_on(
     for (order, cause) in [
         ("", "the order is none"),
         (r#"{"do":"drive","vehicle":9,"mps2":1}"#, "there is no vehicle 9; give an index from 0 to 4"),
-        (r#"{"do":"drive","vehicle":1,"mps2":99}"#, "`drive_mps2` is 99; give m/s² from -12 to 12"),
-        (r#"{"do":"outage","seconds":-1}"#, "`outage_s` is -1; give seconds from 0 to 600"),
+        (r#"{"do":"drive","vehicle":1,"mps2":99}"#, "`mps2` is 99; give m/s² from -12 to 12"),
+        (r#"{"do":"outage","seconds":-1}"#, "`seconds` is -1; give seconds from 0 to 600"),
     ] {
         let answer = live.order(order);
         assert!(answer.starts_with("HTTP/1.1 400") && answer.contains(cause), "{order}: {answer}");

@@ -17,7 +17,7 @@ mod validate;
 
 pub use bus::VehicleBus;
 pub use envelope::Envelope;
-pub use event::{Change, Event, Fleet, Part, Radio};
+pub use event::{Change, DRIVEN_MPS2, Event, Fleet, OUTAGES_S, Part, Radio};
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
 
 use crate::error::Error;

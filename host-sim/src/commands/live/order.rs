@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::error::{Error, shown};
-use crate::input::scenario::{Change, Event, Part, Radio};
+use crate::input::scenario::{Change, DRIVEN_MPS2, Event, OUTAGES_S, Part, Radio};
 
 /// The longest way back, and the most ticks at once.
 const LONGEST_BACK_S: f64 = 86_400.0;
@@ -96,6 +96,12 @@ impl Order {
             }
             Self::Back { seconds } if !(0.0..=LONGEST_BACK_S).contains(&seconds) => {
                 refused(format!("`seconds` is {}", shown(seconds)), "give a number from 0 to 86400")
+            }
+            Self::Drive { mps2, .. } if !DRIVEN_MPS2.contains(&mps2) => {
+                refused(format!("`mps2` is {}", shown(mps2)), "give m/s² from -12 to 12")
+            }
+            Self::Outage { seconds, .. } if !OUTAGES_S.contains(&seconds) => {
+                refused(format!("`seconds` is {}", shown(seconds)), "give seconds from 0 to 600")
             }
             order => Ok(order),
         }

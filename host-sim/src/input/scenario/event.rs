@@ -2,20 +2,23 @@
 //! time. [`Event::toml`] writes one as it is read.
 
 use std::fmt::Write;
+use std::ops::RangeInclusive;
 
 use super::keys::{Document, Number, Section};
 use super::{Leader, Vehicle};
 use crate::error::Error;
 
-/// A person drives no harder than this, in m/s²: more than any vehicle is capable of.
-const HARDEST_MPS2: f64 = 12.0;
+/// The accelerations that a person asks for, in m/s²: up to more than any vehicle is capable of.
+pub const DRIVEN_MPS2: RangeInclusive<f64> = -12.0..=12.0;
+/// The lengths of an outage, in seconds.
+pub const OUTAGES_S: RangeInclusive<f64> = 0.0..=600.0;
 
 const AT: Number = Number { key: "at_s", unit: "seconds", limits: 0.0..=86_400.0, default: 0.0 };
-const DRIVE: Number = Number { key: "drive_mps2", unit: "m/s²", limits: -HARDEST_MPS2..=HARDEST_MPS2, default: 0.0 };
+const DRIVE: Number = Number { key: "drive_mps2", unit: "m/s²", limits: DRIVEN_MPS2, default: 0.0 };
 const DELAY_MEAN: Number = Number { key: "delay_mean_s", unit: "seconds", limits: 0.0..=10.0, default: 0.0 };
 const DELAY_STD: Number = Number { key: "delay_std_s", unit: "seconds", limits: 0.0..=10.0, default: 0.0 };
 const LOSS: Number = Number { key: "loss", unit: "a share", limits: 0.0..=1.0, default: 0.0 };
-const OUTAGE: Number = Number { key: "outage_s", unit: "seconds", limits: 0.0..=600.0, default: 0.0 };
+const OUTAGE: Number = Number { key: "outage_s", unit: "seconds", limits: OUTAGES_S, default: 0.0 };
 
 /// Something that happens during a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
