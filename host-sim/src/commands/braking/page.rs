@@ -28,6 +28,7 @@ pub fn render(options: &BrakingOptions, rows: &[Row], failures: &[String]) -> Pa
 
 fn table(page: &mut Page, rows: &[Row]) {
     let header = ["Time gap", "Leader, m/s²", "Envelope", "Gap, m", "Braking, m/s²", "Jerk, m/s³", "Collisions"];
+    let names = |row: &Row, who: &str| [format!("{} s", row.time_gap_s), row.braking_mps2.to_string(), who.into()];
     let felt = |names: [String; 3], gap: String, comfort: &Comfort, collisions: Cell| {
         let mut cells = names.map(Cell::text).to_vec();
         cells.extend([
@@ -38,14 +39,14 @@ fn table(page: &mut Page, rows: &[Row]) {
         ]);
         cells
     };
-    let side = |envelope: &str, side: &Side| {
+    let side = |row: &Row, envelope: &str, side: &Side| {
         let gap = side.min_gap_m.map_or("–".into(), |gap| significant(gap, 3));
         let collisions = Cell::judged(count(side.collisions as u64), side.collisions == 0);
-        felt([String::new(), String::new(), envelope.into()], gap, &side.comfort, collisions)
+        felt(names(row, envelope), gap, &side.comfort, collisions)
     };
     let group = |row: &Row| {
-        let names = [format!("{} s", row.time_gap_s), row.braking_mps2.to_string(), "(leader)".into()];
-        [felt(names, "–".into(), &row.leader, Cell::text("")), side("off", &row.off), side("on", &row.on)]
+        let leader = felt(names(row, "(leader)"), "–".into(), &row.leader, Cell::text(""));
+        [leader, side(row, "off", &row.off), side(row, "on", &row.on)]
     };
     let caption = "The worst of all runs. Jerk is the largest change of acceleration within 0.1 s, while a vehicle moves. There is \
                    no smallest gap where vehicles met.";

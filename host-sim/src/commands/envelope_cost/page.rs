@@ -56,7 +56,7 @@ fn table(page: &mut Page, rows: &[Row]) {
         ]
     };
     let name = |row: &Row| row.silence_s.map_or("as recorded".into(), |length| format!("{length} s"));
-    let pair = |row: &Row| [cells(row, name(row), "off", &row.off), cells(row, String::new(), "on", &row.on)];
+    let pair = |row: &Row| [cells(row, name(row), "off", &row.off), cells(row, name(row), "on", &row.on)];
     let caption = "Time limited and travel time are of the vehicles whose link to the one ahead is impaired, gap and \
                    braking the worst of all runs. In parentheses: the interval of 95 % confidence over the seeds (bootstrap).";
     page.table(caption, &header, &rows.iter().flat_map(pair).collect::<Vec<_>>());
