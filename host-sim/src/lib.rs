@@ -11,8 +11,8 @@
 //! sim          the world of a string: vehicles, plants, sensors, modems and the air between them
 //! bus          CAN buses in memory and in Linux, their faults and their logs
 //! input        scenarios, recordings and the library of scenarios
-//! draft, error, output, parallel, places, provenance, seeds, streams, thinned, verdict    what every floor
-//!              stands on
+//! draft, error, output, parallel, places, progress, provenance, seeds, streams, thinned, verdict    what every
+//!              floor stands on
 //! ```
 
 pub mod bus;
@@ -24,6 +24,7 @@ pub mod measure;
 pub mod output;
 pub mod parallel;
 pub mod places;
+pub mod progress;
 pub mod provenance;
 pub mod report;
 pub mod roads;

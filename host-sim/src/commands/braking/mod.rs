@@ -15,7 +15,7 @@ pub mod table;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::output::Progress;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use options::BrakingOptions;
 use rows::Row;

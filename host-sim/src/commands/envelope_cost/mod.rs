@@ -14,7 +14,7 @@ pub mod table;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::output::Progress;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use options::EnvelopeCostOptions;
 use rows::Row;

@@ -22,10 +22,10 @@ mod trace;
 use std::time::Instant;
 
 use holdover::ConfigError;
-use indicatif::ProgressBar;
 
 use crate::error::Error;
 use crate::parallel;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use figures::{Results, Timing};
 use options::{EvaluateOptions, Impairment, Recording};
@@ -67,8 +67,8 @@ fn failures(options: &EvaluateOptions, outcomes: &[Outcome]) -> Vec<String> {
 /// silences they run one after the other, and the silences of each run in parallel.
 fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
     let total_s: f64 = options.recordings.iter().map(|recording| recording.motion.duration_s()).sum();
-    let bar = ProgressBar::new((total_s * 10.0) as u64);
-    let advance = |seconds: f64| bar.inc((seconds * 10.0) as u64);
+    let progress = Progress::of_time(total_s);
+    let advance = |seconds: f64| progress.inc_s(seconds);
     let (recordings, step_s) = (&options.recordings, options.step_s);
     let over_link = |link, recording| over_link::evaluate(recording, link, step_s, &advance);
     let in_silence = |lengths_s, recording| in_silence::evaluate(recording, lengths_s, step_s, &advance);
@@ -76,7 +76,7 @@ fn outcomes(options: &EvaluateOptions) -> Result<Vec<Outcome>, Error> {
         Impairment::Channel(_, link) => parallel::each(recordings, |recording| over_link(link, recording)),
         Impairment::Outages(lengths_s) => recordings.iter().map(|recording| in_silence(lengths_s, recording)).collect(),
     };
-    bar.finish_and_clear();
+    progress.finish();
     let refused = |cause| Error::new(format!("the unit refuses it: {cause}"), "choose another").in_option("--step");
     outcomes.into_iter().map(|outcome| outcome.map_err(refused)).collect()
 }

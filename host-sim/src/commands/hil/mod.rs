@@ -32,11 +32,10 @@ pub mod talk;
 pub mod twin;
 pub mod virtual_bus;
 
-use indicatif::ProgressBar;
-
 use crate::bus;
 use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use judge::judge;
 use options::HilOptions;
@@ -50,16 +49,15 @@ pub fn run(options: &HilOptions) -> Result<Verdict, Error> {
     options.destination.warn();
     let port = bus::open(&options.bus)?;
     let mut rig = MachineRig::new(&options.bus, options.device.clone());
-    let bar = ProgressBar::new(1000);
-    let duration_s = options.setup.scenario.duration_s;
-    let progress = |at_s: f64| bar.set_position((at_s / duration_s * 1000.0).max(0.0) as u64);
+    let done = Progress::of_time(options.setup.scenario.duration_s);
+    let progress = |at_s: f64| done.at_s(at_s.max(0.0));
     let outcome = if options.lock_step {
         lock_step::run(&options.setup, port, &mut rig, progress)
     } else {
         session::run(&options.setup, port, &mut rig, progress)
     };
     drop(rig);
-    bar.finish_and_clear();
+    done.finish();
     let outcome = outcome.map_err(|error| {
         let cause = format!("the run ended: {error}");
         Error::new(cause, "see whether the interface is still there: ip -details link").in_option("--bus")

@@ -23,7 +23,7 @@ pub use page::{largest, section};
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::output::Progress;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use motion::TargetMotion;
 use options::MotionsOptions;

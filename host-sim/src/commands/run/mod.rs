@@ -8,13 +8,12 @@ pub mod options;
 mod page;
 mod table;
 
-use indicatif::ProgressBar;
-
 use crate::commands::mcap_file::McapFile;
 use crate::error::Error;
 use crate::measure::figures::failures;
 use crate::measure::simulate::simulate_beside;
 use crate::measure::trajectories::{Moves, Seen, Trajectories};
+use crate::progress::Progress;
 use crate::sim::world::{Tick, Trace};
 use crate::verdict::Verdict;
 use candump::Candump;
@@ -28,7 +27,7 @@ use options::RunOptions;
 pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
     options.destination.warn();
     let scenario = &options.scenario;
-    let bar = ProgressBar::new(1000);
+    let progress = Progress::of_time(scenario.duration_s);
     let logged = options.candump.as_ref().map(|candump| candump.vehicle);
     let mut traced = options.trace.as_ref().map(|file| TraceFile::of(file, scenario)).transpose()?;
     let mut trajectories = options.trajectories.as_ref().map(Trajectories::of).transpose()?;
@@ -50,8 +49,8 @@ pub fn run(options: &RunOptions) -> Result<Verdict, Error> {
         }
     };
     let (trace, summary) =
-        simulate_beside(scenario, scenario.seed, logged, each, |share| bar.set_position((share * 1000.0) as u64))?;
-    bar.finish_and_clear();
+        simulate_beside(scenario, scenario.seed, logged, each, |share| progress.at_s(share * scenario.duration_s))?;
+    progress.finish();
     let failures = failures(scenario, &summary);
     let text = table::text(scenario, &summary, &failures);
     let page = || page::report(options, &trace, &summary, &failures).page();

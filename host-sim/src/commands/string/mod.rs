@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::input::scenario::Switch;
-use crate::output::Progress;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use options::StringOptions;
 use rows::{Row, Smallest};

@@ -17,7 +17,7 @@ pub use timing::of_log;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::output::Progress;
+use crate::progress::Progress;
 use crate::verdict::Verdict;
 use options::SweepOptions;
 use rows::{Failure, Row};
