@@ -126,14 +126,14 @@ def openacc(run, folder):
         raise Unusable("never knows all vehicles at once; give another part of the run")
     first = int(np.argmax(known))
     gaps_m = [float(np.linalg.norm(places[n][:, first] - places[ahead][:, first])) for ahead, n in zip(vehicles, vehicles[1:])]
-    write_platoon(folder, times_s[first:], [speeds[n][first:] for n in vehicles], gaps_m)
+    write_platoon(folder, times_s[first:], {n: speeds[n][first:] for n in vehicles}, gaps_m)
 
 
 def write_platoon(folder, times_s, speeds, gaps_m):
-    """The drives of vehicles that follow one another, on one axis that begins where the last one does. `gaps_m` is how far each is
-    behind the one ahead at the first moment."""
+    """The drives of vehicles that follow one another, by their numbers, on one axis that begins where the last one does. `gaps_m` is how
+    far each is behind the one ahead at the first moment."""
     starts_m = np.cumsum([0.0, *gaps_m])
-    for n, (speed, behind_m) in enumerate(zip(speeds, starts_m), start=1):
+    for (n, speed), behind_m in zip(speeds.items(), starts_m):
         ok = np.isfinite(speed)
         t = times_s[ok] - times_s[0]
         rows = zip(t, integral(t, speed[ok]) + starts_m[-1] - behind_m, speed[ok])
@@ -168,7 +168,7 @@ def tlssc(run, folder):
     if len(vehicles) == 2:
         north, east = first[3] - first[0], (first[4] - first[1]) * np.cos(first[0])
         gaps_m = [EARTH_M * float(np.hypot(north, east))]
-    write_platoon(folder, table[:, 0], [table[:, 3 * n + 3] for n in range(len(vehicles))], gaps_m)
+    write_platoon(folder, table[:, 0], {n + 1: table[:, 3 * n + 3] for n in range(len(vehicles))}, gaps_m)
 
 
 def clock_s(text):

@@ -15,7 +15,7 @@ use super::outcome::{Cut, Outcome};
 use super::recovery::{Recovery, recoveries};
 use super::session::Setup;
 use super::spread::Spread;
-use crate::measure::figures::{Summary, Tally, failures, mode_name};
+use crate::measure::figures::{Summary, failures, mode_name};
 use crate::verdict::Verdict;
 
 /// Default limit of the time from the vehicle's motion to the device's command, except for one command in a hundred:
@@ -219,7 +219,7 @@ fn timing(setup: &Setup, outcome: &Outcome) -> Timing {
 /// received the device's frames later.
 fn figures(setup: &Setup, outcome: &Outcome) -> Summary {
     let recorded = &outcome.recorded;
-    let mut figures = recorded.summary.clone().unwrap_or_else(|| Tally::new(&setup.scenario).finish(0.0));
+    let mut figures = recorded.summary.clone();
     let is_judged = |at_s: &&f64| !setup.is_excused(**at_s) && !outcome.lateness.is_around(**at_s);
     figures.bound.violations = recorded.outside_s.iter().filter(is_judged).count();
     figures

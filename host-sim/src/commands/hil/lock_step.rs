@@ -124,7 +124,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
         }
     }
     let took_s = bench.talk.now().since(begun).as_micros() as f64 * 1e-6;
-    let realtime_factor = time(i64::from(record.ticks())) / took_s.max(1e-6);
+    let realtime_factor = time(record.ticks()) / took_s.max(1e-6);
     rig.power(false)?;
     Ok(Outcome {
         recorded: record.finish(world, realtime_factor)?,
