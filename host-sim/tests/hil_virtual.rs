@@ -12,7 +12,6 @@ use holdover_sim::commands::hil::rig::Rig;
 use holdover_sim::commands::hil::session::{self, Setup};
 use holdover_sim::commands::hil::virtual_bus::{Behaviour, VirtualRig, bench};
 use holdover_sim::input::scenario::{Overrides, Scenario};
-use holdover_sim::measure::figures::{Summary, Timing};
 use holdover_sim::sim::world::{self, MOST_TICKS};
 use holdover_sim::verdict::Verdict;
 use std::collections::VecDeque;
@@ -72,25 +71,6 @@ fn in_lock_step_device_and_twin_say_the_same_bit_for_bit() {
     assert_eq!((results.verdict, &results.reasons[..]), ("passed", &[][..]));
     assert_eq!((results.deviation.ticks, results.deviation.different_frames), (2100, 0));
     assert!(results.deviation.frames > 3 * 2100, "{}", results.deviation.frames);
-}
-
-#[test]
-fn what_is_kept_of_a_run_does_not_grow_with_it_and_its_figures_are_of_every_tick() {
-    for lock_step in [true, false] {
-        let run = |most_ticks| {
-            let setup = Setup { most_ticks, ..setup(SHORT, &[]) };
-            let (port, mut rig) = bench(Behaviour::good(setup.config, lock_step));
-            let outcome = match lock_step {
-                true => lock_step::run(&setup, port, &mut rig, |_| {}).unwrap(),
-                false => session::run(&setup, port, &mut rig, |_| {}).unwrap(),
-            };
-            (outcome.recorded.trace.times_s.len(), judge(&setup, &outcome).scenario)
-        };
-        let ((all, whole), (kept, thinned)) = (run(MOST_TICKS), run(64));
-        assert_eq!((all, kept), (400, 50), "one in eight");
-        let of = |summary: Summary| Summary { timing: Timing { realtime_factor: 1.0 }, ..summary };
-        assert_eq!(of(whole), of(thinned));
-    }
 }
 
 #[test]

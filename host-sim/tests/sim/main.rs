@@ -25,6 +25,7 @@ mod fd_bus;
 mod floors;
 mod gain_table;
 mod ground_geodesic;
+mod hil_record;
 mod input_candump;
 mod input_channel;
 mod input_cli;
