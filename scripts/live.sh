@@ -4,6 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/need.sh
 
+(cd host-sim/third-party/ogl && sha256sum --check --quiet SHA256SUMS)
 need_browser
 target=${CARGO_TARGET_DIR:-target}
 mkdir -p "$target/live"
