@@ -42,10 +42,21 @@ export function colours() {
   return Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }
 
+// How large each canvas is. To ask the canvas itself would lay the page out anew for every plot of every picture.
+const sizes = new Map();
+const observer = new ResizeObserver((seen) => seen.forEach(({ target }) => sizes.delete(target)));
+function sizeOf(canvas) {
+  if (!sizes.has(canvas)) {
+    sizes.set(canvas, [canvas.clientWidth, canvas.clientHeight]);
+    observer.observe(canvas);
+  }
+  return sizes.get(canvas);
+}
+
 // A canvas in the display's own pixels; lengths in it are in CSS pixels.
 export function prepare(canvas) {
   const ratio = devicePixelRatio || 1;
-  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  const [width, height] = sizeOf(canvas);
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
