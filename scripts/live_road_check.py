@@ -160,6 +160,7 @@ def main():
             views(page)
             what_is_kept(page)
             holds(f"no error in the console {page.faults}", page.faults == [])
+            page.close()
         many(browser)
 
 
