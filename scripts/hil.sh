@@ -65,30 +65,6 @@ both() {
     return $code
 }
 
-# shard NUMBER: every second one of the tests, from that one on.
-shard() {
-    # A test's own folder is its package's. One at a time, because they share the bus.
-    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim
-        number=$1 names=() && shift
-        for binary; do
-            mapfile -t names < <("$binary" --ignored --list --format terse | sed -n "s/: test$//p" | awk "NR % 2 == $number")
-            "$binary" --ignored --exact --test-threads 1 "${names[@]}" || exit
-        done' tests "$1" "${binaries[@]}"
-}
-
-test_binaries() {
-    cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
-        grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p'
-}
-
-check_tests() {
-    local binaries
-    # Built outside: user-mode Linux has one processor.
-    mapfile -t binaries < <(test_binaries)
-    [ ${#binaries[@]} -gt 0 ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
-    both "shard 0" "shard 1"
-}
-
 # images TARGET: the firmware in both forms, as $work/TARGET-real-time and $work/TARGET-lock-step, as far as it is not built yet.
 images() {
     if [ -n "${building:-}" ]; then
@@ -169,6 +145,42 @@ conclude() {
         echo "attempt $attempt of 8 says nothing: $why"
     done
     return 3
+}
+
+test_binaries() {
+    cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
+        grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p'
+}
+
+# tests FILE: the tests whose names it has, which has those that failed afterwards.
+tests() {
+    local code=0
+    # A test's own folder is its package's. One at a time, because they share the bus.
+    scripts/vcan.sh --real-time --timeout 1800 bash -c 'cd host-sim
+        mapfile -t names <"$1" && shift
+        code=0
+        for binary; do "$binary" --ignored --exact --test-threads 1 "${names[@]}" || code=1; done
+        exit $code' tests "$1" "${binaries[@]}" 2>&1 | tee "$1.said" || code=$?
+    sed -n 's/^    \([a-z0-9_]*\)$/\1/p' "$1.said" | sort -u >"$1"
+    # In lock step no lateness explains a failure; and where no test failed, something else did.
+    if [ "$code" = 1 ] && { [ ! -s "$1" ] || grep -q in_lock_step "$1"; }; then return 101; fi
+    return "$code"
+}
+
+# shard NUMBER: every second one of the tests, from that one on.
+shard() {
+    local names=$work/names.$1 binary
+    for binary in "${binaries[@]}"; do "$binary" --ignored --list --format terse; done |
+        sed -n "s/: test$//p" | awk "NR % 2 == $1" >"$names"
+    conclude tests "$names"
+}
+
+check_tests() {
+    local binaries
+    # Built outside: user-mode Linux has one processor.
+    mapfile -t binaries < <(test_binaries)
+    [ ${#binaries[@]} -gt 0 ] || { echo "no test of holdover-sim needs vcan0" && return 1; }
+    both "shard 0" "shard 1"
 }
 
 # in_real_time fd|placed: a process of Linux, over CAN FD, or with identifiers of its own.

@@ -129,7 +129,7 @@ pub fn run<P: Port>(setup: &Setup, port: P, rig: &mut dyn Rig, mut progress: imp
     Ok(Outcome {
         recorded: record.finish(world, realtime_factor)?,
         monitor: bench.monitor,
-        deviation: Deviation::default(),
+        deviation: Deviation::new(config.period),
         steps: Some(bench.steps),
         lateness: Lateness::default(),
         counts: bench.talk.counts(),

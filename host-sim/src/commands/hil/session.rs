@@ -104,7 +104,7 @@ impl BusListener {
             monitor: Monitor::new(config.identifiers, config.period).over(config.transport),
             twin: Twin::new(config)?,
             told: None,
-            deviation: Deviation::default(),
+            deviation: Deviation::new(config.period),
             foreign: 0,
             bus_errors: 0,
             is_judged: true,
