@@ -32,6 +32,7 @@ mod fusion;
 mod idle;
 mod junction_hand_back;
 mod junction_namesakes;
+mod junction_turns;
 mod misbehaviour_drift;
 mod misbehaviour_named;
 mod mode_transitions;

@@ -41,9 +41,11 @@ timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial no
     exit 1
 }
 
-# The firmware without logs: what is in flash (.data lies there too, for the start), and what is in RAM for good.
-(cd ../.. && cargo build --locked --quiet --profile firmware --target $target --bin holdover-ecu)
-size -A "${CARGO_TARGET_DIR:-../../target}/$target/firmware/holdover-ecu" | awk '
+# The firmware without logs: what is in flash (.data lies there too, for the start), and what is in RAM for good. In a folder of its own,
+# because scripts/firmware.sh builds other forms of it meanwhile.
+ecu=$(realpath -m "${CARGO_TARGET_DIR:-target}/ecu")
+(cd ../.. && cargo build --locked --quiet --profile firmware --target $target --bin holdover-ecu --target-dir "$ecu")
+size -A "$ecu/$target/firmware/holdover-ecu" | awk '
     $1 == ".vector_table" || $1 == ".text" || $1 == ".rodata" || $1 == ".data" { flash += $2 }
     $1 == ".data" || $1 == ".bss" || $1 == ".uninit" { ram += $2 }
     END { print "flash 8 400", flash; print "ram 8 400", ram }' >>"$work/counts"

@@ -111,6 +111,8 @@ pub struct Driver {
     pub rig: Rig,
     /// North, east, or east at the second intersection.
     pub way: usize,
+    /// The way that it is on beyond the first crossing, if it turns there. As far along it as along its own one.
+    pub turns_to: Option<usize>,
     pub body: plant::Plant,
     /// Its own axis begins so far before its street.
     pub axis: f64,
@@ -163,6 +165,7 @@ impl Driver {
         Self {
             rig,
             way,
+            turns_to: None,
             body,
             axis,
             target_speed: speed,
@@ -185,11 +188,16 @@ impl Driver {
         }
     }
 
+    /// The street that it is on.
+    fn street(&self) -> usize {
+        self.turns_to.filter(|_| self.body.position > CROSSING).unwrap_or(self.way)
+    }
+
     pub fn geo(&self, at: i64) -> GeoPosition {
         let cm = (self.body.position * 100.0).round() as i32;
         let (tag, stamp) = ((at / 100_000 % 4) as u8, gnss(at, 0).stamp());
         let eastward = |latitude, begins| GeoPosition { tag, latitude, longitude: cm + begins, heading: 7_200, stamp };
-        match self.way {
+        match self.street() {
             0 => GeoPosition { tag, latitude: cm, longitude: 0, heading: 0, stamp },
             1 => eastward(20_000, -20_000),
             3 => GeoPosition { tag, latitude: 20_000, longitude: 20_000 - cm, heading: 21_600, stamp },
@@ -268,11 +276,12 @@ impl Junction {
         let now = self.now;
         let mut said: Vec<(usize, Said)> = Vec::new();
         let mut passes = Vec::new();
-        let places: Vec<_> = self.drivers.iter().map(|driver| (driver.way, driver.body)).collect();
+        let places: Vec<_> = self.drivers.iter().map(|driver| (driver.street(), driver.body)).collect();
         for (index, driver) in self.drivers.iter_mut().enumerate() {
             let plant::Plant { position, speed, acceleration, .. } = driver.body;
             let demand = driver.command();
             let station = driver.rig.unit.config().station;
+            let street = driver.street();
             let at = position + driver.axis + driver.off;
             let motion =
                 driver.rig.motion(station, now, at, speed, acceleration, demand, Some((driver.accuracy, 0.02)));
@@ -297,7 +306,7 @@ impl Junction {
             }
             if driver.sees_across && !driver.is_blind && now % 20_000 == 0 {
                 let own = driver.body;
-                let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > own.position);
+                let ahead = places.iter().filter(|(way, body)| *way == street && body.position > own.position);
                 let ahead = ahead.map(|(_, body)| (body.position - LENGTH, body.speed));
                 let across = places.iter().filter(|(way, body)| (*way == 0) != (driver.way == 0) && is_on_point(body));
                 let across = across.map(|_| (CROSSING - WIDTH / 2.0, 0.0));
@@ -307,7 +316,7 @@ impl Junction {
                     None => driver.rig.nobody(now, 100.0, 0),
                 };
             }
-            let ahead = places.iter().filter(|(way, body)| *way == driver.way && body.position > driver.body.position);
+            let ahead = places.iter().filter(|(way, body)| *way == street && body.position > driver.body.position);
             if driver.sees
                 && now % 20_000 == 0
                 && let Some((_, ahead)) = ahead.min_by(|a, b| a.1.position.total_cmp(&b.1.position))
