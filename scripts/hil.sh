@@ -2,7 +2,8 @@
 # hil.sh [CHECK...]: hardware in the loop on a real CAN interface of Linux. `./ci.sh vcan` runs all of it:
 #
 #   kernel   vcan.sh gives a command a vcan0, and keeps what it says of exit code, output and time
-#   tests    the simulator's tests that need a SocketCAN interface
+#   tests    the simulator's tests that need a SocketCAN interface; one in real time that fails is asked again, as below, if this machine
+#            kept a processor from it
 #   ecu      the paper's scenario against the unit as a process of Linux, in real time over CAN FD and with identifiers of 29 bits, with these
 #            in lock step too; the tests have the other ways
 #   m4       the same against the firmware on an emulated Cortex-M4F, over Linux's slcan
