@@ -12,10 +12,11 @@
 //!         limit    the command: the demand, or what the limits leave of it        gate, lane, envelope
 //!         actuate  the force or torque that brings the command about              dynamics
 //!         foresee  the own horizon, when the own messages are due                 ego_horizon
+//!         plan     passes, in the tick before                                     pass
 //!         send     frames                                                         outbox
 //! ```
 //!
-//! From `decide` on the scene is only looked at, but `foresee` writes the own horizon into it. ARCHITECTURE.md explains the order.
+//! From `decide` on the scene is only looked at, but `foresee` writes the own horizon into it, and `plan` the passes. ARCHITECTURE.md explains the order.
 
 use embedded_can::Frame as CanFrame;
 use heapless::Vec;
@@ -30,7 +31,6 @@ use crate::peers::Sample;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Speed};
 use crate::wire::command::{ACCELERATION_STEPS, Command};
-use crate::wire::pass::Pass;
 use crate::wire::quantity::Quantity;
 use crate::wire::{Frame, Identifiers, Received, Receiver, Role};
 use association::Association;
@@ -72,6 +72,16 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     last_tick: Option<Instant>,
     /// The demand of the tick before the last one.
     demand_before: Acceleration,
+}
+
+/// What a tick does of what is not done in every tick.
+struct Turn {
+    /// The own messages are due, with the own horizon.
+    is_due: bool,
+    /// What can wait for the next tick does.
+    waits: bool,
+    /// Passes are planned: in the tick before the one in which the own messages are due.
+    plans: bool,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
@@ -189,9 +199,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
-        let is_due = self.is_started() && self.outbox.is_due(now, self.scene.config.link.period);
-        // The own horizon takes most of a tick. What can wait for the next one does.
-        let waits = is_due && self.scene.config.period.times(2) <= self.scene.config.link.period;
+        let Turn { is_due, waits, plans } = self.turn(now, last);
         self.scene.look(&mut self.health);
         let target = self.review(now, last, waits);
         let fused = if waits { None } else { self.scene.fuse() };
@@ -205,8 +213,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
             let own = is_due.then(|| self.foresee(now, last, target));
-            let pass = own.as_ref().and_then(|_| self.claim(now, ego.as_ref()));
-            self.send(now, own.as_ref().map(Option::as_ref), pass, answer);
+            if plans {
+                self.plan(now, ego.as_ref());
+            }
+            self.send(now, own.as_ref().map(Option::as_ref), answer);
         }
         self.demand_before = last.demand;
     }
@@ -217,6 +227,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         let now = self.monotonic(now);
         let age = last_tick.map_or(Duration::ZERO, |last_tick| now.since(last_tick));
         (now, Last { demand: self.controller.last_demand(), age })
+    }
+
+    /// What this tick does of what is not done in every tick. The own horizon takes most of a tick, so the rest has others where it can.
+    fn turn(&mut self, now: Instant, last: Last) -> Turn {
+        let (period, between) = (self.scene.config.period, self.scene.config.link.period);
+        let spreads = period.times(2) <= between;
+        let is_busy = spreads && (last.age > between || self.scene.coordination.is_asked_at_once());
+        let is_due = self.is_started() && self.outbox.is_due(now, between, is_busy);
+        // Half a period more, because ticks may come a little early.
+        let soon = Duration::from_micros(period.times(3).as_micros() >> 1);
+        let plans = if spreads { self.outbox.is_due_in(now, soon) } else { is_due };
+        Turn { is_due, waits: is_due && spreads, plans }
     }
 
     /// The vehicle that the ego follows, by the order at the intersections or by the driver's word. The review of the order `waits` for
@@ -346,32 +368,31 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         Some(own)
     }
 
-    /// Claims passes at the next intersection, and says them when it is their turn.
+    /// Plans the passes that are claimed at the next intersection.
     #[inline(never)] // apart from the stack of the horizon
-    fn claim(&mut self, now: Instant, ego: Option<&State>) -> Option<Pass> {
-        let is_kept = self.mode != Mode::Standby && self.scene.may_claim();
-        let range = Range::of(&self.scene, now, ego?).filter(|_| is_kept && self.scene.fresh_ego(now).is_some())?;
-        pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
-        let tag = self.outbox.next_tag();
-        if Outbox::is_route_due(tag) { self.scene.say_passes(now, tag) } else { None }
-    }
-
-    /// Sends the answer, and the own messages if they are due: then `own` is the ego's motion as far as it is known.
-    fn send(&mut self, now: Instant, own: Option<Option<&Sample>>, pass: Option<Pass>, answer: &mut Answer) {
-        let Answer { command, estimate, frames, .. } = answer;
-        self.outbox.send_answer(command, estimate.as_ref(), &mut self.health, frames);
-        if let Some(own) = own {
-            self.send_own(now, own, pass, frames);
+    fn plan(&mut self, now: Instant, ego: Option<&State>) {
+        if let Some(range) = ego.filter(|_| self.keeps_passes(now)).and_then(|ego| Range::of(&self.scene, now, ego)) {
+            pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
         }
     }
 
-    fn send_own(
-        &mut self,
-        now: Instant,
-        own: Option<&Sample>,
-        pass: Option<Pass>,
-        frames: &mut Vec<Frame, MAX_FRAMES>,
-    ) {
+    fn keeps_passes(&self, now: Instant) -> bool {
+        self.mode != Mode::Standby && self.scene.may_claim() && self.scene.fresh_ego(now).is_some()
+    }
+
+    /// Sends the answer, and the own messages if they are due: then `own` is the ego's motion as far as it is known.
+    fn send(&mut self, now: Instant, own: Option<Option<&Sample>>, answer: &mut Answer) {
+        let Answer { command, estimate, frames, .. } = answer;
+        self.outbox.send_answer(command, estimate.as_ref(), &mut self.health, frames);
+        if let Some(own) = own {
+            self.send_own(now, own, frames);
+        }
+    }
+
+    fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
+        let tag = self.outbox.next_tag();
+        let says = Outbox::is_route_due(tag) && self.keeps_passes(now);
+        let pass = if says { self.scene.say_passes(now, tag) } else { None };
         let report = Report { mode: self.mode, gains: self.association.gains(), ego: own, pass };
         self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }

@@ -228,7 +228,9 @@ fn arrives<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         return Some(Duration::ZERO);
     }
     let step = scene.config.prediction.step;
-    let length = scene.estimator.horizon_length().min(scene.config.prediction.horizon).minus(step.times(2));
+    // It was computed when the ego spoke last.
+    let spoken = scene.config.link.period.plus(step.times(2));
+    let length = scene.estimator.horizon_length().min(scene.config.prediction.horizon).minus(spoken);
     let read = |after| scene.estimator.read_own(ego.now.plus(after)).filter(|_| is_by_law);
     let way = |length, top| Way { length, top, acceleration: leaving(scene) };
     let Some(last) = read(length) else {
