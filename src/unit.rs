@@ -38,6 +38,7 @@ use gate::{Gate, Last};
 use outbox::{Outbox, Report};
 use pass::Range;
 use scene::Scene;
+use schedule::{Schedule, Turn};
 
 mod answer;
 mod association;
@@ -50,6 +51,7 @@ mod outbox;
 mod pass;
 mod room;
 mod scene;
+mod schedule;
 mod vantage;
 mod view;
 
@@ -67,21 +69,12 @@ pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: us
     controller: Controller,
     gate: Gate,
     dynamics: Inversion,
+    schedule: Schedule,
     outbox: Outbox,
     health: Health,
     last_tick: Option<Instant>,
     /// The demand of the tick before the last one.
     demand_before: Acceleration,
-}
-
-/// What a tick does of what is not done in every tick.
-struct Turn {
-    /// The own messages are due, with the own horizon.
-    is_due: bool,
-    /// What can wait for the next tick does.
-    waits: bool,
-    /// Passes are planned: in the tick before the one in which the own messages are due.
-    plans: bool,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<PEERS, SAMPLES, STEPS> {
@@ -101,6 +94,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             health: Health::new(),
             last_tick: None,
             demand_before: Acceleration::ZERO,
+            schedule: Schedule::NEW,
         }
     }
 
@@ -129,6 +123,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         self.health = Health::new();
         self.last_tick = None;
         self.demand_before = Acceleration::ZERO;
+        self.schedule = Schedule::NEW;
         Ok(())
     }
 
@@ -199,11 +194,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
-        let Turn { is_due, waits, plans } = self.turn(now, last);
+        let turn = self.turn(now, last);
+        let Turn { reviews, plans, speaks, waits } = turn;
         self.scene.look(&mut self.health);
-        let target = self.review(now, last, waits);
+        let target = self.review(now, last, reviews);
         let fused = if waits { None } else { self.scene.fuse() };
-        let (before, reading) = self.update(now, target, is_due, fused.as_ref());
+        let (before, reading) = self.update(now, target, turn.besides(), fused.as_ref());
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
@@ -212,7 +208,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         answer.mode = self.mode;
         answer.estimate = target.zip(reading).and_then(|(index, reading)| self.estimate(now, index, reading));
         if self.is_started() {
-            let own = is_due.then(|| self.foresee(now, last, target));
+            let own = speaks.then(|| self.foresee(now, last, target));
             if plans {
                 self.plan(now, ego.as_ref());
             }
@@ -229,25 +225,23 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         (now, Last { demand: self.controller.last_demand(), age })
     }
 
-    /// What this tick does of what is not done in every tick. The own horizon takes most of a tick, so the rest has others where it can.
+    /// What this tick does of what is not done in every tick. It has much else to do after a pause, in a review that was asked for, and when
+    /// its target's news ends a silence.
     fn turn(&mut self, now: Instant, last: Last) -> Turn {
         let (period, between) = (self.scene.config.period, self.scene.config.link.period);
-        let spreads = period.times(2) <= between;
-        let is_busy = spreads && (last.age > between || self.scene.coordination.is_asked_at_once());
-        let is_due = self.is_started() && self.outbox.is_due(now, between, is_busy);
-        // Half a period more, because ticks may come a little early.
-        let soon = Duration::from_micros(period.times(3).as_micros() >> 1);
-        let plans = if spreads { self.outbox.is_due_in(now, soon) } else { is_due };
-        Turn { is_due, waits: is_due && spreads, plans }
+        let (scene, coordination) = (&self.scene, &self.scene.coordination);
+        let is_busy = || last.age > between || coordination.is_asked_at_once() || scene.has_late_news(now);
+        let turn = self.schedule.turn(now, period, between, is_busy);
+        let may_review = !turn.waits || coordination.is_asked_at_once();
+        Turn { reviews: may_review && coordination.is_due(now), ..turn }
     }
 
-    /// The vehicle that the ego follows, by the order at the intersections or by the driver's word. The review of the order `waits` for
-    /// the next tick, or is done if it is due. One that is asked for at once does not wait.
-    fn review(&mut self, now: Instant, last: Last, waits: bool) -> Option<usize> {
+    /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.
+    fn review(&mut self, now: Instant, last: Last, reviews: bool) -> Option<usize> {
         if self.scene.coordination.itinerary().is_some() {
             self.scene.peers.carry(now); // all of them are asked for
         }
-        if !waits || self.scene.coordination.is_asked_at_once() {
+        if reviews {
             coordinate::review(&mut self.scene, now, last.demand, &mut self.health);
         }
         self.scene.passes.turn_to(self.scene.coordination.next());
@@ -279,7 +273,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         &mut self,
         now: Instant,
         target: Option<usize>,
-        is_own_due: bool,
+        besides: usize,
         fused: Option<&(usize, Sample)>,
     ) -> (Option<Reading>, Option<Reading>) {
         let before = match self.mode {
@@ -287,7 +281,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             _ => None,
         };
         let Scene { estimator, peers, .. } = &mut self.scene;
-        let unreachable = estimator.update(now, peers, target, is_own_due, fused);
+        let unreachable = estimator.update(now, peers, target, besides, fused);
         self.health.add(Cause::Unreachable, unreachable);
         (before, target.and_then(|index| self.scene.estimated(index, now)))
     }

@@ -135,6 +135,12 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.turns.note(index);
     }
 
+    /// Whether there is news of a peer that its horizon does not have yet.
+    #[must_use]
+    pub fn has_news(&self, index: usize) -> bool {
+        self.turns.has_news(index)
+    }
+
     /// Whether a peer said how it will drive, and its predecessor is known.
     #[must_use]
     pub fn is_foreseen<const SAMPLES: usize>(&self, index: usize, peers: &Peers<PEERS, SAMPLES>) -> bool {
@@ -170,7 +176,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Brings every peer's horizon up to now. News is used in turns: that of the target at once, that of others as there is room for
-    /// it in a tick, of which the ego's own horizon takes a part if that `is_own_due`. `fused` is a peer's state by its messages and
+    /// it in a tick: what else the tick does takes as long as so many horizons `besides`. `fused` is a peer's state by its messages and
     /// another sensor together, which is news of that peer; what the peer itself says of how it will drive takes precedence. Returns how
     /// many sent horizons were not used, because their senders cannot drive them.
     pub fn update<const SAMPLES: usize>(
@@ -178,7 +184,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         now: Instant,
         peers: &Peers<PEERS, SAMPLES>,
         target: Option<usize>,
-        is_own_due: bool,
+        besides: usize,
         fused: Option<&(usize, Sample)>,
     ) -> u32 {
         self.read_at.clear();
@@ -187,7 +193,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         let corrected = fused.map(|(index, _)| *index);
         // A horizon that ends is for reproducing the paper, and need not keep to what an ECU can do in a tick.
         let room = if self.model.endless {
-            Room::of(self.room, self.length, steps_sent(self.grid.step, STEPS), is_own_due)
+            Room::of(self.room, self.length, steps_sent(self.grid.step, STEPS), besides)
         } else {
             Room::ENDLESS
         };

@@ -208,7 +208,7 @@ fn a_follower_whose_predecessor_was_never_heard_fades() {
     );
     estimator.note_change(&peers);
     estimator.note_news(1);
-    estimator.update(GRID.origin, &peers, None, false, None);
+    estimator.update(GRID.origin, &peers, None, 0, None);
     for hundredths in [0, 10, 40, 60] {
         let t = f64::from(hundredths) * 0.01;
         let at = GRID.origin.plus(Duration::from_millis(i64::from(hundredths) * 10));
@@ -239,7 +239,7 @@ fn a_follower_is_predicted_behind_its_predecessor_in_whatever_slots_they_are() {
             estimator.note_news(usize::from(slot));
         }
         estimator.note_change(&peers);
-        estimator.update(GRID.origin, &peers, None, false, None);
+        estimator.update(GRID.origin, &peers, None, 0, None);
         let end = GRID.origin.plus(Duration::from_millis(600));
         let (leads, follows) = (estimator.read(front.into(), end).unwrap(), estimator.read(back.into(), end).unwrap());
         assert_eq!(metres(leads), 5_000.0);

@@ -32,9 +32,6 @@ const EACH_LATE: usize = 4;
 /// See [`steps_sent`].
 const SENT: Duration = Duration::from_millis(10_700);
 
-/// The ego's own horizon, past its changes of target and with its messages, takes as long as so many others.
-const OWN: usize = 3;
-
 /// How many steps of this length a sent horizon may have that is as long as that of [`crate::Config::car`], where there is room for `most`.
 pub(super) fn steps_sent(step: Duration, most: usize) -> usize {
     let steps = SENT.as_micros().checked_div(step.as_micros()).unwrap_or(0);
@@ -59,12 +56,12 @@ impl Room {
     /// For all.
     pub const ENDLESS: Self = Self { left: usize::MAX, each: 0 };
 
-    /// For so many steps, with horizons of so many steps, of which those that were sent may have `sent` steps; and the ego's own beside them
-    /// if that is due.
-    pub fn of(room: usize, length: usize, sent: usize, is_own_due: bool) -> Self {
+    /// For so many steps, with horizons of so many steps, of which those that were sent may have `sent` steps. What else the tick does takes
+    /// as long as so many horizons `besides`.
+    pub fn of(room: usize, length: usize, sent: usize, besides: usize) -> Self {
         let each = length.max(sent).saturating_add(BEGINNING);
-        let own = if is_own_due { length.saturating_add(BEGINNING).saturating_mul(OWN) } else { 0 };
-        Self { left: room.saturating_sub(own), each }
+        let taken = length.saturating_add(BEGINNING).saturating_mul(besides);
+        Self { left: room.saturating_sub(taken), each }
     }
 
     /// What a horizon takes that starts anew from a sample that is so many steps old.
@@ -116,6 +113,11 @@ impl<const PEERS: usize> Turns<PEERS> {
         if let Some(news) = self.news.get_mut(index) {
             *news = true;
         }
+    }
+
+    /// Whether there is news of a peer that is not used yet.
+    pub fn has_news(&self, index: usize) -> bool {
+        self.news.get(index) == Some(&true)
     }
 
     /// What becomes of a peer's horizon in this tick.
@@ -202,8 +204,8 @@ mod tests {
         }
 
         /// The slots whose horizons start anew, and those which do once more.
-        fn tick(&mut self, length: usize, is_own_due: bool) -> (Vec<usize>, Vec<usize>) {
-            let room = Room::of(STEPS_A_TICK, length, length, is_own_due);
+        fn tick(&mut self, length: usize, besides: usize) -> (Vec<usize>, Vec<usize>) {
+            let room = Room::of(STEPS_A_TICK, length, length, besides);
             self.turns.take(room, &Chain::new(), self.target, None, |_| self.late);
             let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
             (of(Turn::News), of(Turn::Again))
@@ -214,26 +216,26 @@ mod tests {
     fn the_target_is_first_and_starts_anew_once_more_after_all_others() {
         let mut ticks = Ticks::new(Some(7));
         ticks.hear(0..8);
-        assert_eq!(ticks.tick(359, false), (vec![0, 1, 7], vec![]));
-        assert_eq!(ticks.tick(359, false), (vec![2, 3, 4], vec![]));
-        assert_eq!(ticks.tick(359, false), (vec![5, 6], vec![7]));
-        assert_eq!(ticks.tick(359, false), (vec![], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![0, 1, 7], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![2, 3, 4], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![5, 6], vec![7]));
+        assert_eq!(ticks.tick(359, 0), (vec![], vec![]));
     }
 
     #[test]
     fn where_the_own_horizon_is_due_only_the_target_has_its_turn() {
         let mut ticks = Ticks::new(Some(2));
         ticks.hear([0, 2]);
-        assert_eq!(ticks.tick(400, true), (vec![2], vec![]));
-        assert_eq!(ticks.tick(400, false), (vec![0], vec![2]));
+        assert_eq!(ticks.tick(400, 3), (vec![2], vec![]));
+        assert_eq!(ticks.tick(400, 0), (vec![0], vec![2]));
     }
 
     #[test]
     fn short_horizons_never_wait() {
         let mut ticks = Ticks::new(Some(7));
         ticks.hear(0..8);
-        assert_eq!(ticks.tick(12, true), ((0..8).collect(), vec![]));
-        assert_eq!(ticks.tick(12, true), (vec![], vec![]));
+        assert_eq!(ticks.tick(12, 3), ((0..8).collect(), vec![]));
+        assert_eq!(ticks.tick(12, 3), (vec![], vec![]));
     }
 
     #[test]
@@ -242,7 +244,7 @@ mod tests {
         let mut waited = [0; 8];
         for _ in 0..100 {
             ticks.hear(0..8);
-            let (anew, _) = ticks.tick(359, false);
+            let (anew, _) = ticks.tick(359, 0);
             for (index, waited) in waited.iter_mut().enumerate() {
                 *waited = if anew.contains(&index) { 0 } else { *waited + 1 };
                 assert!(*waited <= 3, "{index}");
@@ -273,17 +275,17 @@ mod tests {
     fn an_old_sample_takes_the_room_of_three() {
         let mut ticks = Ticks { late: 200, ..Ticks::new(Some(7)) };
         ticks.hear(0..8);
-        assert_eq!(ticks.tick(359, false), (vec![7], vec![]));
-        assert_eq!(ticks.tick(359, false), (vec![0], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![7], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![0], vec![]));
     }
 
     #[test]
     fn another_target_does_not_start_anew_for_the_old_one() {
         let mut ticks = Ticks::new(Some(7));
         ticks.hear(0..8);
-        ticks.tick(359, false);
+        ticks.tick(359, 0);
         ticks.target = Some(6);
-        assert_eq!(ticks.tick(359, false), (vec![2, 3, 6], vec![]));
-        assert_eq!(ticks.tick(359, false), (vec![4, 5], vec![6]));
+        assert_eq!(ticks.tick(359, 0), (vec![2, 3, 6], vec![]));
+        assert_eq!(ticks.tick(359, 0), (vec![4, 5], vec![6]));
     }
 }

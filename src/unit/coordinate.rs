@@ -20,16 +20,13 @@ use crate::units::{Acceleration, Distance, Position, Speed};
 /// A silent vehicle that is estimated to drive on this far ahead is not heard because it is too far away.
 const FAR_AHEAD: Distance = Distance::from_mm(250_000);
 
-/// Reviews which vehicles are ahead, when a review is due.
+/// Reviews which vehicles are ahead.
 pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     last_demand: Acceleration,
     health: &mut Health,
 ) {
-    if !scene.coordination.is_due(now) {
-        return;
-    }
     scene.estimator.read_all(now, &scene.peers);
     let Some(ego) = scene.ego_at(now, last_demand) else { return };
     let (front, speed) = (scene.front(&ego), ego.speed);

@@ -26,6 +26,7 @@ const REVIEWS_NEAR: i64 = 4;
 const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
 const REVIEWS_FAR: i64 = 16;
+const FINEST_FAR: i64 = 4;
 /// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three
 /// more reviews.
 const CHANGES: u8 = 8;
@@ -59,7 +60,8 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
         let may = view.comfort(target);
         let changes_now = (is_new || may < comfort) && changes > 0;
         let is_sought = is_new || before.is_some_and(|(earlier, _)| earlier.since(now) < NEAR);
-        if let Some((earlier, end)) = before.filter(|_| changes_now && is_sought && passed > 1) {
+        let finest = if review.since(now) < FAR { 1 } else { FINEST_FAR };
+        if let Some((earlier, end)) = before.filter(|_| changes_now && is_sought && passed > finest) {
             scene.estimator.cut_own(&end);
             (left, passed) = (passed, passed / 2);
             review = earlier.plus(REVIEW.times(passed));
@@ -81,7 +83,7 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
                 ahead if ahead < FAR => REVIEWS,
                 _ => REVIEWS_FAR,
             };
-            passed = if left > 0 { (left / 2).max(1) } else { widest };
+            passed = if left > 0 { (left / 2).max(finest) } else { widest };
             review = review.plus(REVIEW.times(passed));
         }
         scene.estimator.carry_own_on(review, last, &manner);

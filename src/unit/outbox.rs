@@ -48,16 +48,13 @@ pub(super) struct Report<'a> {
     pub pass: Option<Pass>,
 }
 
-/// When each message is due, and the end-to-end state of each message.
+/// When which message is sent with the own messages, and the end-to-end state of each message.
 #[derive(Clone, Debug)]
 pub(super) struct Outbox {
     sender: Sender<0>,
     tick: u8,
     tag: u8,
     page: u8,
-    due: Option<Instant>,
-    /// Whether the last tick left to this one what was due.
-    is_put_off: bool,
     until_parameters: u8,
     /// How many more times the driving parameters are sent at once.
     at_once: u8,
@@ -71,8 +68,6 @@ impl Outbox {
             tick: 0,
             tag: 0,
             page: 0,
-            due: None,
-            is_put_off: false,
             until_parameters: 0,
             at_once: 0,
             parameters: Held::Nothing,
@@ -102,25 +97,6 @@ impl Outbox {
     /// Whether the route is sent with an own motion of this tag.
     pub(super) fn is_route_due(tag: u8) -> bool {
         tag.is_multiple_of(ROUTE_EVERY)
-    }
-
-    /// Whether the own messages are due. A schedule that was missed starts anew from now. A tick that is busy leaves them to the next
-    /// one, which sends them whether it is busy or not.
-    pub(super) fn is_due(&mut self, now: Instant, period: Duration, is_busy: bool) -> bool {
-        let due = self.due.unwrap_or(now);
-        self.is_put_off = now >= due && is_busy && !self.is_put_off;
-        if now < due || self.is_put_off {
-            self.due = Some(due);
-            return false;
-        }
-        let next = due.plus(period);
-        self.due = Some(if next <= now { now.plus(period) } else { next });
-        true
-    }
-
-    /// Whether the own messages are due in so long.
-    pub(super) fn is_due_in(&self, now: Instant, time: Duration) -> bool {
-        self.due.is_some_and(|due| now.plus(time) >= due)
     }
 
     /// Whether the driving parameters are due: because they have changed, or because their turn has come.

@@ -244,6 +244,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
+    /// Whether the target has news from so long ago that its horizon takes long to start anew: its first news after a silence.
+    pub fn has_late_news(&self, now: Instant) -> bool {
+        self.target().is_some_and(|index| {
+            let newest = self.peers.get(index).and_then(Track::newest);
+            let is_late = newest.is_some_and(|newest| now.since(newest.at) > self.config.link.period.times(2));
+            is_late && self.estimator.has_news(index)
+        })
+    }
+
     /// The slot of the vehicle that the ego is to follow. Of several with the name that the driver says, it is the nearest ahead when it
     /// is named. After that another one takes its place only where it is certain to be between: the last place of a silent vehicle is
     /// soon behind the ego, and says nothing of which one is nearer.
