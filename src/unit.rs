@@ -11,12 +11,13 @@
 //!         drive    the demand, by the course of the mode                          course, room, controller
 //!         limit    the command: the demand, or what the limits leave of it        gate, lane, envelope
 //!         actuate  the force or torque that brings the command about              dynamics
-//!         foresee  the own horizon, when the own messages are due                 ego_horizon
-//!         plan     passes, in the tick before                                     pass
+//!         foresee  the own horizon                                                ego_horizon
+//!         plan     the passes to claim                                            pass
 //!         send     frames                                                         outbox
 //! ```
 //!
-//! From `decide` on the scene is only looked at, but `foresee` writes the own horizon into it, and `plan` the passes. ARCHITECTURE.md explains the order.
+//! Not every tick reviews, foresees and plans (`schedule`). From `decide` on the scene is only looked at, but `foresee` writes the own
+//! horizon into it, and `plan` the passes. ARCHITECTURE.md explains the order.
 
 use embedded_can::Frame as CanFrame;
 use heapless::Vec;
@@ -38,7 +39,7 @@ use gate::{Gate, Last};
 use outbox::{Outbox, Report};
 use pass::Range;
 use scene::Scene;
-use schedule::{Schedule, Turn};
+use schedule::{Schedule, Tasks};
 
 mod answer;
 mod association;
@@ -194,12 +195,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)]
     fn answer(&mut self, now: Instant, answer: &mut Answer) {
         let (now, last) = self.begin(now);
-        let turn = self.turn(now, last);
-        let Turn { reviews, plans, speaks, waits } = turn;
+        let tasks = self.tasks(now, last);
+        let Tasks { reviews, plans, speaks, waits } = tasks;
         self.scene.look(&mut self.health);
         let target = self.review(now, last, reviews);
         let fused = if waits { None } else { self.scene.fuse() };
-        let (before, reading) = self.update(now, target, turn.besides(), fused.as_ref());
+        let (before, reading) = self.update(now, target, tasks.besides(), fused.as_ref());
         self.decide(now, target, before, reading);
         let ego = self.scene.ego_at(now, last.demand);
         let demand = self.drive(now, target, ego.as_ref());
@@ -227,13 +228,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
 
     /// What this tick does of what is not done in every tick. It has much else to do after a pause, in a review that was asked for, and when
     /// its target's news ends a silence.
-    fn turn(&mut self, now: Instant, last: Last) -> Turn {
+    fn tasks(&mut self, now: Instant, last: Last) -> Tasks {
         let (period, between) = (self.scene.config.period, self.scene.config.link.period);
         let (scene, coordination) = (&self.scene, &self.scene.coordination);
         let is_busy = || last.age > between || coordination.is_asked_at_once() || scene.has_late_news(now);
-        let turn = self.schedule.turn(now, period, between, is_busy);
-        let may_review = !turn.waits || coordination.is_asked_at_once();
-        Turn { reviews: may_review && coordination.is_due(now), ..turn }
+        let tasks = self.schedule.tasks(now, period, between, is_busy);
+        let may_review = !tasks.waits || coordination.is_asked_at_once();
+        Tasks { reviews: may_review && coordination.is_due(now), ..tasks }
     }
 
     /// The vehicle that the ego follows, by the order at the intersections or by the driver's word.

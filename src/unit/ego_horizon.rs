@@ -19,8 +19,8 @@ use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 
 /// The order is reviewed in the horizon once in so many reviews: for a second, for four, and after that. Where the ego follows another
-/// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves. In the first
-/// second that is also done where the ego has to brake harder for the same vehicle.
+/// vehicle at one of these than at the one before, the review at which that begins is looked for between them, by halves; beyond four
+/// seconds to within `FINEST_FAR` reviews. In the first second that is also done where the ego has to brake harder for the same vehicle.
 const NEAR: Duration = Duration::from_millis(1_000);
 const REVIEWS_NEAR: i64 = 4;
 const FAR: Duration = Duration::from_millis(4_000);

@@ -25,7 +25,7 @@ pub(super) struct Schedule {
 
 /// What a tick does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Turn {
+pub(super) struct Tasks {
     /// It reviews the order at the intersections.
     pub reviews: bool,
     /// It plans passes.
@@ -36,7 +36,7 @@ pub(super) struct Turn {
     pub waits: bool,
 }
 
-impl Turn {
+impl Tasks {
     /// What this takes as long as so many horizons of peers.
     pub fn besides(self) -> usize {
         let own = if self.speaks { OWN } else { 0 };
@@ -49,7 +49,13 @@ impl Schedule {
     pub const NEW: Self = Self { due: None, is_planned: false, is_put_off: false };
 
     /// What the tick of now does, with own messages every so often. A schedule that was missed starts anew from now.
-    pub fn turn(&mut self, now: Instant, period: Duration, between: Duration, is_busy: impl FnOnce() -> bool) -> Turn {
+    pub fn tasks(
+        &mut self,
+        now: Instant,
+        period: Duration,
+        between: Duration,
+        is_busy: impl FnOnce() -> bool,
+    ) -> Tasks {
         let spreads = period.times(2) <= between;
         let due = self.due.unwrap_or(now);
         let is_due = now >= due;
@@ -68,7 +74,7 @@ impl Schedule {
         });
         self.is_planned = (self.is_planned || plans) && !speaks;
         self.is_put_off = (self.is_put_off || puts_off) && !speaks;
-        Turn { reviews: false, plans, speaks, waits: speaks && spreads }
+        Tasks { reviews: false, plans, speaks, waits: speaks && spreads }
     }
 }
 
@@ -85,9 +91,9 @@ mod tests {
         let (mut plans, mut speaks) = (Vec::new(), Vec::new());
         for milliseconds in at {
             let now = Instant::from_micros(u64::from(milliseconds) * 1_000);
-            let turn = schedule.turn(now, TICK, BETWEEN, || busy.contains(&milliseconds));
-            plans.extend(turn.plans.then_some(milliseconds));
-            speaks.extend(turn.speaks.then_some(milliseconds));
+            let tasks = schedule.tasks(now, TICK, BETWEEN, || busy.contains(&milliseconds));
+            plans.extend(tasks.plans.then_some(milliseconds));
+            speaks.extend(tasks.speaks.then_some(milliseconds));
         }
         (plans, speaks)
     }
@@ -117,8 +123,8 @@ mod tests {
         let mut schedule = Schedule::NEW;
         for tick in 0..5 {
             let now = Instant::ZERO.plus(BETWEEN.times(tick));
-            let turn = schedule.turn(now, BETWEEN, BETWEEN, || true);
-            assert_eq!(turn, Turn { reviews: false, plans: true, speaks: true, waits: false });
+            let tasks = schedule.tasks(now, BETWEEN, BETWEEN, || true);
+            assert_eq!(tasks, Tasks { reviews: false, plans: true, speaks: true, waits: false });
         }
     }
 }

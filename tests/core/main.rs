@@ -36,6 +36,7 @@ mod junction_turns;
 mod misbehaviour_drift;
 mod misbehaviour_named;
 mod mode_transitions;
+mod own_messages;
 mod passes_growth;
 mod passes_kept;
 mod passes_on_air;
