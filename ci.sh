@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 target=thumbv7em-none-eabihf
-image=${CARGO_TARGET_DIR:-target}/$target/release/holdover-ecu
+image=${CARGO_TARGET_DIR:-target}/$target/firmware/holdover-ecu
 steps=(fmt lint doc test dbc study live reports data cross tasks firmware vcan c package release)
 skipped=77 # exit code of a step that cannot run here
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
@@ -123,13 +123,13 @@ step_cross() {
     local other
     for other in thumbv6m-none-eabi thumbv8m.main-none-eabihf riscv32imac-unknown-none-elf; do
         if PATH=$(scripts/install-target.sh "$other"):$PATH; then
-            cargo build --locked --release --target "$other" --lib
+            cargo build --locked --profile firmware --target "$other" --lib
         else
             skip "no standard library for $other can be had on this machine"
         fi
     done
-    cargo build --locked --release --target "$target" --lib
-    cargo build --locked --release --target "$target" --bin holdover-ecu
+    cargo build --locked --profile firmware --target "$target" --lib
+    cargo build --locked --profile firmware --target "$target" --bin holdover-ecu
     # The host's binutils read any ELF file. A linker for the host is always there, and they with it.
     sizes=$(size -A "$image")
     echo
@@ -145,11 +145,8 @@ step_cross() {
     }
     printf '  %-28s %7d of at most 65536\n' 'OnboardUnit<8, 8, 400>' "$unit"
     [ "$unit" -le 65536 ]
-    cargo clippy --locked --release --target "$target" -- -D warnings
-    local board
-    for board in feather_stm32f405 pyboard nucleo_g474re; do
-        HOLDOVER_BOARD=$board cargo clippy --locked --release --target "$target" --bin holdover-ecu --features bxcan -- -D warnings
-    done
+    cargo clippy --locked --profile firmware --target "$target" -- -D warnings
+    HOLDOVER_BOARD=nucleo_g474re cargo clippy --locked --profile firmware --target "$target" --bin holdover-ecu --features bxcan -- -D warnings
 }
 
 step_tasks() {
