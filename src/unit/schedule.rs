@@ -40,7 +40,7 @@ impl Tasks {
     /// What this takes as long as so many horizons of peers.
     pub fn besides(self) -> usize {
         let own = if self.speaks { OWN } else { 0 };
-        own + usize::from(self.reviews)
+        if self.reviews { own.saturating_add(1) } else { own }
     }
 }
 

@@ -22,7 +22,7 @@ fn frames_that_an_answer_has_no_room_for_are_counted() {
         frames.resize(MAX_FRAMES - room, Frame { id: Identifiers::DEFAULT.at(0), data: [0; 8].into() }).unwrap();
         // A command and a page of health make two frames.
         unit.outbox.send_answer(&Command::NONE, None, &mut unit.health, &mut frames);
-        unit.send_own(Instant::ZERO, None, None, &mut frames);
+        unit.send_own(Instant::ZERO, None, &mut frames);
         let lost = 2usize.saturating_sub(room);
         assert_eq!(unit.health().of(Cause::TransmitOverflow) as usize, lost, "{room}");
         assert_eq!(unit.health().total() as usize, lost);
