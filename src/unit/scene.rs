@@ -248,7 +248,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     pub fn has_late_news(&self, now: Instant) -> bool {
         self.target().is_some_and(|index| {
             let newest = self.peers.get(index).and_then(Track::newest);
-            let is_late = newest.is_some_and(|newest| now.since(newest.at) > self.config.link.period.times(2));
+            let is_late = newest.is_some_and(|newest| now.since(newest.at) > self.config.link.period.times(3));
             is_late && self.estimator.has_news(index)
         })
     }

@@ -29,7 +29,7 @@ fn sent(road: &mut Road, ticks: usize) -> Vec<i64> {
 
 #[test]
 fn the_first_news_after_a_silence_has_the_tick_to_itself() {
-    for (age_ms, expected) in [(150, [0, 100, 200]), (1_000, [10, 100, 200])] {
+    for (age_ms, expected) in [(290, [0, 100, 200]), (1_000, [10, 100, 200])] {
         let mut road = following();
         assert_eq!(sent(&mut road, 300).len(), 30);
         road.senses.v2x = false;
