@@ -21,6 +21,12 @@ mod firmware {
     /// What an integrator calibrates.
     pub const CONFIG: Config = Config::car(StationHash(1));
 
+    // What the transmit path still sends is no older than the envelope allows for.
+    const _: () = match CONFIG.envelope {
+        Some(envelope) => assert!(crate::board::MOST_AGE.as_micros() <= envelope.delay.as_micros()),
+        None => {}
+    };
+
     /// Called by the board when it has started.
     pub fn run(unit: &'static mut Unit, board: Option<Board>) -> ! {
         let (Ok(()), Some(board)) = (unit.start(&CONFIG), board) else { board::stop() };

@@ -99,3 +99,36 @@ fn the_loads_of_both_buses_are_those_that_the_catalogue_makes() {
         assert!(page.contains(&stated), "docs/CAN.md does not say: {stated}");
     }
 }
+
+#[test]
+fn the_timing_contract_has_the_counts_of_the_emulator() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let page = fs::read_to_string(root.join("docs/INTEGRATION.md")).unwrap();
+    let counts = fs::read_to_string(root.join("tests/embedded/cost.csv")).unwrap();
+    let most = |drives: &[&str], row: &str| {
+        let of = |drive: &&str| {
+            let name = format!("{drive}-{row},8,359,");
+            counts.lines().find_map(|line| line.strip_prefix(&name)?.parse::<u32>().ok()).expect(&name)
+        };
+        drives.iter().map(of).max().unwrap()
+    };
+    let (without_map, all) = (["bare", "envelope", "sensor", "terse"], ["bare", "both", "sensor", "terse", "all"]);
+    let (worst, frame) = (most(&all, "worst"), most(&all, "receive"));
+    for count in [
+        worst,
+        most(&without_map, "worst"),
+        most(&without_map, "quiet"),
+        most(&all, "quiet"),
+        frame,
+        most(&all, "bus"),
+        40 * frame,
+        worst + 40 * frame,
+    ] {
+        // Two cycles for an instruction, at 168 MHz.
+        let (thousands, milliseconds) =
+            (format!("{},{:03}", count / 1_000, count % 1_000), f64::from(count) * 2.0 / 168e3);
+        let times = [format!("{milliseconds:.1} ms"), format!("{milliseconds:.2} ms")];
+        let has = |line: &str| times.iter().any(|time| line.ends_with(&format!("| {thousands} | {time} |")));
+        assert!(page.lines().any(has), "{thousands} {times:?}");
+    }
+}

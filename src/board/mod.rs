@@ -21,6 +21,8 @@ mod registers;
 #[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
 mod restarts;
 
+pub use outbox::MOST_AGE;
+
 #[cfg(any(chip = "stm32f405", chip = "stm32g474"))]
 mod stm32;
 #[cfg(any(chip = "stm32f405", chip = "stm32g474"))]

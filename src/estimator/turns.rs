@@ -4,7 +4,7 @@
 //! bounded, it has room for so many steps. The rules:
 //!
 //! * The target's news is used at once, so that after a silence the controller is led from the old horizon to the new one in one tick. So
-//!   is a view of another sensor.
+//!   is a view of another sensor. Old news that comes in the tick after other news of the target waits for one tick, if there is no room.
 //! * The other peers with news follow in the order of the chain, as many as there is room for. The rest waits, and the next tick begins with
 //!   the first of those that wait. So nobody waits for longer than all the others take.
 //! * If others had to wait, the target's horizon was computed from an old horizon of the vehicle ahead of it. So it starts anew once more
@@ -67,6 +67,10 @@ impl Room {
     /// What a horizon takes that starts anew from a sample that is so many steps old.
     fn of_one(&self, late: usize) -> usize {
         self.each.saturating_add(late.min(LATE).saturating_sub(YOUNG).saturating_mul(EACH_LATE))
+    }
+
+    fn has(&self, late: usize) -> bool {
+        self.left >= self.of_one(late)
     }
 
     fn take(&mut self, late: usize) -> bool {
@@ -135,13 +139,16 @@ impl<const PEERS: usize> Turns<PEERS> {
         corrected: Option<usize>,
         late: impl Fn(usize) -> usize,
     ) {
+        let had_turn = target.is_some_and(|index| self.of(index) == Turn::News);
         self.turns = [Turn::None; PEERS];
         if self.again == 0 && !self.news.contains(&true) {
             return;
         }
-        let has_news = target.is_some_and(|index| self.serve(index));
-        if let Some(index) = target.filter(|_| has_news) {
-            room.spend(late(index));
+        let late_target = target.map_or(0, &late);
+        let can_wait = had_turn && late_target > YOUNG && !room.has(late_target);
+        let has_news = target.is_some_and(|index| !can_wait && self.serve(index));
+        if has_news {
+            room.spend(late_target);
         }
         if let Some(index) = corrected {
             self.serve(index);
@@ -159,7 +166,7 @@ impl<const PEERS: usize> Turns<PEERS> {
         let name = target.map_or(0, |index| (index as u8).saturating_add(1));
         let is_behind = if has_news { waits.is_some() } else { self.again == name };
         self.again = if is_behind { name } else { 0 };
-        if let Some(index) = target.filter(|index| is_behind && waits.is_none() && room.take(late(*index))) {
+        if let Some(index) = target.filter(|_| is_behind && waits.is_none() && room.take(late_target)) {
             self.set(index, Turn::Again);
             self.again = 0;
         }
@@ -228,6 +235,24 @@ mod tests {
         ticks.hear([0, 2]);
         assert_eq!(ticks.tick(400, 3), (vec![2], vec![]));
         assert_eq!(ticks.tick(400, 0), (vec![0], vec![2]));
+    }
+
+    #[test]
+    fn old_news_of_the_target_in_two_ticks_in_a_row_waits_where_there_is_no_room() {
+        for (late, second) in [(200, vec![]), (9, vec![]), (8, vec![7])] {
+            let mut ticks = Ticks { late, ..Ticks::new(Some(7)) };
+            ticks.hear([7]);
+            assert_eq!(ticks.tick(359, 3), (vec![7], vec![]), "the first is used at once");
+            ticks.hear([7]);
+            assert_eq!(ticks.tick(359, 3), (second, vec![]), "{late}");
+            ticks.hear([7]);
+            assert_eq!(ticks.tick(359, 3), (vec![7], vec![]), "{late}");
+        }
+        let mut ticks = Ticks { late: 200, ..Ticks::new(Some(7)) };
+        ticks.hear([7]);
+        ticks.tick(359, 3);
+        ticks.hear([7]);
+        assert_eq!(ticks.tick(359, 0), (vec![7], vec![]), "there is room");
     }
 
     #[test]

@@ -59,9 +59,15 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
         let is_new = target != manner.target;
         let may = view.comfort(target);
         let changes_now = (is_new || may < comfort) && changes > 0;
-        let is_sought = is_new || before.is_some_and(|(earlier, _)| earlier.since(now) < NEAR);
-        let finest = if review.since(now) < FAR { 1 } else { FINEST_FAR };
-        if let Some((earlier, end)) = before.filter(|_| changes_now && is_sought && passed > finest) {
+        let (widest, finest) = match review.since(now) {
+            until if until < NEAR => (REVIEWS_NEAR, 1),
+            until if until < FAR => (REVIEWS, 1),
+            _ => (REVIEWS_FAR, FINEST_FAR),
+        };
+        let is_sought = |earlier: Instant| is_new || earlier.since(now) < NEAR;
+        if let Some((earlier, end)) =
+            before.filter(|(earlier, _)| changes_now && passed > finest && is_sought(*earlier))
+        {
             scene.estimator.cut_own(&end);
             (left, passed) = (passed, passed / 2);
             review = earlier.plus(REVIEW.times(passed));
@@ -78,11 +84,6 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
             crossing = next;
             before = Some((review, scene.estimator.own_mark()));
             left = if changes_now { 0 } else { left.saturating_sub(passed).max(0) };
-            let widest = match review.since(now) {
-                ahead if ahead < NEAR => REVIEWS_NEAR,
-                ahead if ahead < FAR => REVIEWS,
-                _ => REVIEWS_FAR,
-            };
             passed = if left > 0 { (left / 2).max(finest) } else { widest };
             review = review.plus(REVIEW.times(passed));
         }

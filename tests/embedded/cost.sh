@@ -70,11 +70,11 @@ limits() {
         END {
             fixed = count["step-fixed,1,400"]; single = count["step-f32,1,400"]; double = count["step-f64,1,400"]
             row("quiet tick, no intersection, instructions", 6000, at("quiet"))
-            row("quiet tick at an intersection, instructions", 9000, at("both-quiet", 359))
+            row("quiet tick at an intersection, with envelope and range sensor, instructions", 9000, most("quiet"))
             row("worst tick, 400 steps, no intersection, instructions", 240000, at("horizons") > at("late") ? at("horizons") : at("late"))
-            row("worst tick of any input, with map, envelope and range sensor, instructions", 240000, most("worst"))
-            row("worst `receive`, instructions", 6000, most("receive"))
-            row("per vehicle and step, with feed-forward, instructions", 62, sprintf("%.1f", (at("send") - at("send", 100)) / 300))
+            row("worst tick of all below, 359 steps, with map, envelope and range sensor, instructions", 240000, most("worst"))
+            row("worst `receive`, classic CAN, at most one view in a period, instructions", 6000, most("receive"))
+            row("per vehicle and step, with feed-forward, instructions", 60, sprintf("%.1f", (at("send") - at("send", 100)) / 300))
             row("flash without logs, bytes", 65536, at("flash"))
             row("static RAM, bytes", 49152, at("ram"))
             row("deepest stack, bytes", 4096, at("both-stack", 359) > at("stack") ? at("both-stack", 359) : at("stack"))
@@ -132,6 +132,8 @@ tables() {
             row("passes of 20 stations", "passes")
             row("samples of 0.3 s ago", "late-0.3")
             row("samples of 3 s ago, after a silence", "late-3")
+            row("these in two ticks in a row", "late-twice")
+            row("horizons behind samples of 0.31 s ago, twice", "horizons-twice")
             row("of the admitted maximum", "late-most")
             row("everything at once", "together")
             row("the same after 3 s without a tick", "pause")
@@ -176,7 +178,7 @@ tables() {
     echo
 }
 
-limits "$work/cost.csv" | awk -F'|' '{ printf "  %-60s %10s of %8s  %s\n", $1, $3, $2, $4 }'
+limits "$work/cost.csv" | awk -F'|' '{ printf "  %-86s %10s of %8s  %s\n", $1, $3, $2, $4 }'
 
 if [ "${1:-}" = --write ]; then
     cp "$work/cost.csv" cost.csv

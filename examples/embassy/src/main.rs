@@ -32,6 +32,7 @@ type Unit = OnboardUnit<8, 8, 400>;
 
 /// What an integrator calibrates.
 const CONFIG: Config = Config::car(StationHash(1));
+const PERIOD: Duration = Duration::from_millis(10);
 
 /// The unit. All zero, so it takes no room in flash.
 static UNIT: ConstStaticCell<Unit> = ConstStaticCell::new(Unit::idle());
@@ -93,7 +94,8 @@ async fn say(mut tx: BufferedCanSender) {
 
 #[embassy_executor::task]
 async fn drive(unit: &'static mut Unit, rx: BufferedCanReceiver, mut watchdog: IndependentWatchdog<'static, IWDG>) {
-    let mut period = Ticker::every(Duration::from_millis(10));
+    let mut period = Ticker::every(PERIOD);
+    let mut last = embassy_time::Instant::now();
     watchdog.unleash();
     loop {
         // A frame comes before a tick that is due at the same time.
@@ -104,7 +106,15 @@ async fn drive(unit: &'static mut Unit, rx: BufferedCanReceiver, mut watchdog: I
             }
             Either::First(Err(_)) => {} // the controller goes on by itself
             Either::Second(()) => {
-                let now = Instant::from_micros(embassy_time::Instant::now().as_micros());
+                let at = embassy_time::Instant::now();
+                // The ticker would make up for what was missed in a burst, but commands may change by the jerk in every tick.
+                let missed = ((at - last).as_ticks() / PERIOD.as_ticks()).saturating_sub(1);
+                if missed > 0 {
+                    unit.note(Incident::MissedPeriod, u32::try_from(missed).unwrap_or(u32::MAX));
+                    period.reset();
+                }
+                last = at;
+                let now = Instant::from_micros(at.as_micros());
                 let unsaid = ANSWER.try_take().map_or(0, |frames| frames.len() as u32);
                 unit.note(Incident::TransmitOverflow, unsaid);
                 let frames = &unit.tick(now).frames;

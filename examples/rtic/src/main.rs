@@ -29,6 +29,7 @@ mod app {
     use holdover::{Config, MAX_FRAMES, OnboardUnit};
 
     type Unit = OnboardUnit<8, 8, 400>;
+    const PERIOD: Duration = Duration::from_millis(10);
 
     /// What an integrator calibrates.
     const CONFIG: Config = Config::car(StationHash(1));
@@ -109,15 +110,24 @@ mod app {
 
     #[task(priority = 1, local = [watchdog], shared = [unit, waiting])]
     async fn drive(mut context: drive::Context) {
-        let mut period = Ticker::every(Duration::from_millis(10));
+        let mut period = Ticker::every(PERIOD);
+        let mut last = embassy_time::Instant::now();
         let watchdog = context.local.watchdog;
         watchdog.unleash();
         loop {
             period.next().await;
-            let now = Instant::from_micros(embassy_time::Instant::now().as_micros());
+            let at = embassy_time::Instant::now();
+            let now = Instant::from_micros(at.as_micros());
+            let missed = ((at - last).as_ticks() / PERIOD.as_ticks()).saturating_sub(1);
+            // The ticker would make up for what was missed in a burst, but commands may change by the jerk in every tick.
+            if missed > 0 {
+                period.reset();
+            }
+            last = at;
             let unsaid = context.shared.waiting.lock(|waiting| waiting.len() as u32);
             let answer = context.shared.unit.lock(|unit| {
                 unit.note(Incident::TransmitOverflow, unsaid);
+                unit.note(Incident::MissedPeriod, u32::try_from(missed).unwrap_or(u32::MAX));
                 unit.tick(now)
             });
             context.shared.waiting.lock(|waiting| {

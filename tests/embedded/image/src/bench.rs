@@ -21,6 +21,8 @@ const FULL_BUS: usize = 40;
 pub struct Traffic {
     /// In which of ten ticks all of them talk. The unit talks in tick 0.
     pub due: u64,
+    /// They talk in the tick after that too.
+    pub twice: bool,
     /// The last peer talks by itself, in tick 5.
     pub last_alone: bool,
     /// How old the peers' samples are when they arrive.
@@ -37,6 +39,7 @@ impl Traffic {
     /// All peers talk, in ticks in which the unit does not.
     pub const USUAL: Self = Self {
         due: 5,
+        twice: false,
         last_alone: false,
         age: Duration::from_millis(40),
         changed: false,
@@ -59,6 +62,11 @@ impl Traffic {
     /// The same with samples of so long ago.
     pub const fn aged(self, millis: i64) -> Self {
         Self { age: Duration::from_millis(millis), ..self }
+    }
+
+    /// The same in two ticks in a row.
+    pub const fn twice(self) -> Self {
+        Self { twice: true, ..self }
     }
 }
 
@@ -178,7 +186,8 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
         road.view(at, &mut hear);
         for peer in 0..PEERS as u8 {
             let is_alone = traffic.last_alone && usize::from(peer) == PEERS - 1;
-            if tick % 10 != if is_alone { 5 } else { traffic.due } {
+            let due = if is_alone { 5 } else { traffic.due };
+            if tick % 10 != due && !(traffic.twice && tick % 10 == due + 1) {
                 continue;
             }
             if !traffic.last_alone {

@@ -125,6 +125,8 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("first", after(0, true, Traffic::HORIZONS)),
             ("late-0.3", after(0, true, Traffic::ALL.aged(300))),
             ("late-3", after(4, true, Traffic::ALL.aged(3_000))),
+            ("late-twice", after(4, true, Traffic::ALL.aged(3_000).twice())),
+            ("horizons-twice", after(1, true, Traffic::HORIZONS.aged(310).twice())),
             ("late-most", after(stale as u64 / 1_000 + 1, true, Traffic::ALL.aged(oldest))),
             ("together", after(stale as u64 / 1_000 + 1, true, Traffic::TOGETHER.aged(oldest))),
             ("pause", after(3, false, Traffic::TOGETHER)),
