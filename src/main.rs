@@ -22,9 +22,8 @@ mod firmware {
     pub const CONFIG: Config = Config::car(StationHash(1));
 
     // What the transmit path still sends is no older than the envelope allows for.
-    const _: () = match CONFIG.envelope {
-        Some(envelope) => assert!(crate::board::MOST_AGE.as_micros() <= envelope.delay.as_micros()),
-        None => {}
+    const _: () = if let Some(envelope) = CONFIG.envelope {
+        assert!(crate::board::MOST_AGE.as_micros() <= envelope.delay.as_micros());
     };
 
     /// Called by the board when it has started.
