@@ -24,6 +24,10 @@ pub const BRAKING_MAX: Acceleration = Acceleration::from_mm_per_s2(6000);
 /// {0.5, 1, 1.5, 2, 3} s on recorded car drives.
 pub const FADE: Duration = Duration::from_millis(2000);
 
+/// News that is older than so many periods of own messages is old: to start a horizon from it takes long. Messages of a link that is on are
+/// rarely so late.
+pub const OLD_NEWS: i64 = 3;
+
 /// Length taken for a vehicle that does not say its own (a car), by the gate too: driving parameters comes later than the first motion,
 /// and to expect a lorry of 18.75 m until then is to brake hard at every association.
 pub const DEFAULT_LENGTH: Distance = Distance::from_mm(4800);

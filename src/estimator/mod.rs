@@ -34,6 +34,7 @@ use turns::{Room, Turn, Turns, steps_a_tick, steps_sent};
 use crate::config::Config;
 use crate::held::Held;
 use crate::model::{Model, Reading, Stride, VehicleModel};
+use crate::parameters::OLD_NEWS;
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant};
 use crate::units::Distance;
@@ -70,6 +71,8 @@ pub struct Estimator<const PEERS: usize, const STEPS: usize> {
     turns: Turns<PEERS>,
     /// How many steps of horizons that start anew a tick has room for.
     room: usize,
+    /// News that is older than so many steps is old.
+    old: usize,
     /// The step of the last tick.
     present: Held<i64>,
     /// If more steps than this lie between two ticks, horizons start anew.
@@ -95,6 +98,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
             aheads: [Held::Nothing; PEERS],
             turns: Turns::NONE,
             room: 0,
+            old: 0,
             present: Held::Nothing,
             pause: 0,
             readings: [Held::Nothing; PEERS],
@@ -116,6 +120,8 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.aheads = [Held::Nothing; PEERS];
         self.turns = Turns::NONE;
         self.room = steps_a_tick(config.period);
+        let old = config.link.period.times(OLD_NEWS).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0);
+        self.old = usize::try_from(old).unwrap_or(usize::MAX);
         self.present.clear();
         self.pause = config.period.times(4).as_micros().checked_div(self.grid.step.as_micros()).unwrap_or(0).max(PAUSE);
         self.read_at.clear();
@@ -207,7 +213,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
                 usize::try_from(present.saturating_sub(self.grid.at_or_before(newest.at))).unwrap_or(0)
             })
         };
-        self.turns.take(room, &self.chain, target, corrected, late);
+        self.turns.take(room, &self.chain, target, corrected, self.old, late);
         for place in 0..PEERS {
             let Some(index) = self.chain.at(place) else { continue };
             let Some(track) = peers.get(index) else { continue };

@@ -129,7 +129,8 @@ impl<const PEERS: usize> Turns<PEERS> {
         self.turns.get(index).copied().unwrap_or(Turn::None)
     }
 
-    /// Decides on a tick. News of these two does not wait. `late` tells by how many steps the newest sample of a peer is older than now.
+    /// Decides on a tick. News of these two does not wait, unless it is `old`er than so many steps. `late` tells by how many steps the newest
+    /// sample of a peer is older than now.
     #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
     pub fn take(
         &mut self,
@@ -137,6 +138,7 @@ impl<const PEERS: usize> Turns<PEERS> {
         chain: &Chain<PEERS>,
         target: Option<usize>,
         corrected: Option<usize>,
+        old: usize,
         late: impl Fn(usize) -> usize,
     ) {
         let had_turn = target.is_some_and(|index| self.of(index) == Turn::News);
@@ -145,7 +147,7 @@ impl<const PEERS: usize> Turns<PEERS> {
             return;
         }
         let late_target = target.map_or(0, &late);
-        let can_wait = had_turn && late_target > YOUNG && !room.has(late_target);
+        let can_wait = had_turn && late_target > old && !room.has(late_target);
         let has_news = target.is_some_and(|index| !can_wait && self.serve(index));
         if has_news {
             room.spend(late_target);
@@ -213,7 +215,7 @@ mod tests {
         /// The slots whose horizons start anew, and those which do once more.
         fn tick(&mut self, length: usize, besides: usize) -> (Vec<usize>, Vec<usize>) {
             let room = Room::of(STEPS_A_TICK, length, length, besides);
-            self.turns.take(room, &Chain::new(), self.target, None, |_| self.late);
+            self.turns.take(room, &Chain::new(), self.target, None, 10, |_| self.late);
             let of = |turn| (0..8).filter(|index| self.turns.of(*index) == turn).collect();
             (of(Turn::News), of(Turn::Again))
         }
@@ -239,7 +241,7 @@ mod tests {
 
     #[test]
     fn old_news_of_the_target_in_two_ticks_in_a_row_waits_where_there_is_no_room() {
-        for (late, second) in [(200, vec![]), (9, vec![]), (8, vec![7])] {
+        for (late, second) in [(200, vec![]), (11, vec![]), (10, vec![7])] {
             let mut ticks = Ticks { late, ..Ticks::new(Some(7)) };
             ticks.hear([7]);
             assert_eq!(ticks.tick(359, 3), (vec![7], vec![]), "the first is used at once");

@@ -26,6 +26,7 @@ use crate::estimator::Estimator;
 use crate::held::Held;
 use crate::model::bound::Bound;
 use crate::model::{Aim, Consensus, Reading, Remainders, State, VehicleModel, catch_up};
+use crate::parameters::OLD_NEWS;
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
@@ -248,7 +249,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     pub fn has_late_news(&self, now: Instant) -> bool {
         self.target().is_some_and(|index| {
             let newest = self.peers.get(index).and_then(Track::newest);
-            let is_late = newest.is_some_and(|newest| now.since(newest.at) > self.config.link.period.times(3));
+            let is_late = newest.is_some_and(|newest| now.since(newest.at) > self.config.link.period.times(OLD_NEWS));
             is_late && self.estimator.has_news(index)
         })
     }
