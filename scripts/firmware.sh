@@ -113,10 +113,10 @@ images() {
 
 replays_and_costs() {
     echo "-- logs replayed, against this host"
+    cargo build --locked --quiet --profile checked -p holdover-log
+    holdover_log=$(realpath -m "${CARGO_TARGET_DIR:-target}")/checked/holdover-log
     cd tests/embedded
-    cargo build --locked --quiet --release -p holdover-log
     built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
-    holdover_log=$built/release/holdover-log
     replays=$built/replay
     mkdir -p "$replays"
     "$holdover_log" record "$replays" | sed 's/^/  /'

@@ -10,14 +10,12 @@ cd "$(dirname "$0")/.."
 source scripts/need.sh
 command -v rustup >/dev/null || PATH=${CARGO_HOME:-$HOME/.cargo}/bin:$PATH
 
-profile=()
+profile=release
 [ "${1:-}" = --quick ] && {
     shift
-    export CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_OPT_LEVEL=1
-    profile=(--target-dir "${CARGO_TARGET_DIR:-target}/release-quick")
+    profile=quick
 }
 [ $# -gt 0 ] || set -- x86_64-unknown-linux-musl aarch64-unknown-linux-musl
-target_dir=${profile[1]:-${CARGO_TARGET_DIR:-target}}
 out=${CARGO_TARGET_DIR:-target}/release-archives
 version=$(cargo metadata --locked --no-deps --format-version 1 | grep -o '"name":"holdover-sim","version":"[^"]*' | cut -d'"' -f8)
 [ -n "$version" ] || { echo "the version of holdover-sim is not known" && exit 1; }
@@ -37,8 +35,8 @@ for target in "$@"; do
     rustup target add "$target" >/dev/null 2>&1 || skip "no standard library for $target can be had on this machine"
     # The crates are Rust throughout, so that Rust's own linker and its C library do for every processor.
     linker=CARGO_TARGET_$(tr 'a-z-' 'A-Z_' <<<"$target")_LINKER
-    env "$linker=rust-lld" cargo build --locked --release -p holdover-sim --target "$target" "${profile[@]}"
-    built=$target_dir/$target/release/holdover-sim
+    env "$linker=rust-lld" cargo build --locked --profile "$profile" -p holdover-sim --target "$target"
+    built=${CARGO_TARGET_DIR:-target}/$target/$profile/holdover-sim
     name=holdover-sim-$version-$target
     folder=$out/$name
     mkdir -p "$folder/completions"
