@@ -5,6 +5,7 @@
 
 pub(crate) mod bus;
 mod draw;
+mod driver;
 pub(crate) mod envelope;
 pub mod event;
 pub(crate) mod keys;
@@ -16,6 +17,7 @@ mod start;
 mod validate;
 
 pub use bus::VehicleBus;
+pub use driver::Driver;
 pub use envelope::Envelope;
 pub use event::{Change, DRIVEN_MPS2, Event, Fleet, OUTAGES_S, Part, Radio};
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
@@ -112,6 +114,8 @@ pub struct Vehicle {
     /// Share of the acceleration of the vehicle ahead that it passes on; 0 or 0.5. The latter needs `step_s` and `period_s` of at least
     /// 7.813 ms.
     pub feed_forward: f64,
+    /// Who drives it; the leader's is always its unit, or a recording.
+    pub driver: Driver,
     /// How well it knows its own motion, as it publishes it.
     pub accuracy: Accuracy,
     /// Its range sensor for the vehicle ahead, if it has one.

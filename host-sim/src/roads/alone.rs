@@ -20,16 +20,11 @@ use super::description::Traffic;
 use super::network::Network;
 use super::watch::Sighting;
 use crate::input::kind::Kind;
+use crate::sim::person::{ACCELERATION_MPS2, EMERGENCY_MPS2, Manner};
 use crate::sim::vehicle::Unit;
 
-/// Largest acceleration of the model.
-const ACCELERATION_MPS2: f64 = 1.5;
-/// Comfortable braking of the model.
-const BRAKING_MPS2: f64 = 2.0;
 /// A vehicle that would have to brake harder than this to stop before the conflict area goes on.
 const HARDEST_MPS2: f64 = 4.0;
-/// Hardest braking of every vehicle: that of a bus.
-const EMERGENCY_MPS2: f64 = 6.0;
 /// How far before the conflict area the stop line is.
 const LINE_M: f64 = 1.0;
 
@@ -60,25 +55,25 @@ impl Lost {
 /// vehicles.
 #[must_use]
 pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Traffic, waits: bool) -> f64 {
-    let free = 1.0 - (own.speed_mps / traffic.target_speed_mps).powi(4);
+    let manner = Manner {
+        wanted_mps: traffic.target_speed_mps,
+        time_gap_s: traffic.time_gap_s,
+        standstill_m: traffic.standstill_m,
+    };
     let on_road = |other: &Sighting| network.on_road(own.road, other.road, other.way_m, other.length_m);
     let ahead = all.iter().filter(|other| other.trip != own.trip).filter_map(|other| Some((other, on_road(other)?)));
     let ahead = ahead.filter(|(_, [_, front_m])| *front_m > own.way_m);
     let ahead = ahead.min_by(|(_, [_, a]), (_, [_, b])| a.total_cmp(b));
-    let behind = |gap_m: f64, speed_mps: f64, standstill_m: f64| {
-        let closing = own.speed_mps * (own.speed_mps - speed_mps) / (2.0 * (ACCELERATION_MPS2 * BRAKING_MPS2).sqrt());
-        let wanted_m = standstill_m + (own.speed_mps * traffic.time_gap_s + closing).max(0.0);
-        (wanted_m / gap_m.max(0.1)).powi(2)
-    };
     let mut presses: f64 = 0.0;
     if let Some((ahead, [rear_m, _])) = ahead {
         let gap_m = rear_m - own.way_m;
-        presses = presses.max(behind(gap_m, ahead.speed_mps, traffic.standstill_m));
+        presses = presses.max(manner.pressed(own.speed_mps, gap_m, ahead.speed_mps));
     }
     if let Some(gap_m) = to_stop_line(own, network).filter(|_| waits) {
-        presses = presses.max(behind(gap_m + 1.0, 0.0, 1.0));
+        let line = Manner { standstill_m: 1.0, ..manner };
+        presses = presses.max(line.pressed(own.speed_mps, gap_m + 1.0, 0.0));
     }
-    (ACCELERATION_MPS2 * (free - presses)).max(-EMERGENCY_MPS2)
+    (ACCELERATION_MPS2 * (manner.free(own.speed_mps) - presses)).max(-EMERGENCY_MPS2)
 }
 
 /// The acceleration of a vehicle that drives by sight. If it hears a crossing vehicle that it yields to, it accelerates

@@ -9,6 +9,7 @@ pub mod channel;
 pub mod globe;
 pub mod ground;
 pub mod modem;
+pub mod person;
 pub mod plain;
 pub mod plant;
 pub mod quantities;

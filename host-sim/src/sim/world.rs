@@ -12,8 +12,9 @@ use holdover::time::Instant;
 
 use crate::bus::Bus;
 use crate::bus::memory::MemoryNode;
-use crate::input::scenario::{Event, Scenario};
+use crate::input::scenario::{Driver, Event, Scenario};
 use crate::sim::channel::Channel;
+use crate::sim::person::Manner;
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
 use crate::sim::stages::Stages;
@@ -88,7 +89,7 @@ impl<'a> World<'a> {
             let plant = Plant::cruising(machine(scenario, index), state.position_m, state.speed_mps);
             let request = request(
                 index.checked_sub(1),
-                !is_recorded,
+                !is_recorded && described.driver == Driver::Unit,
                 scenario.leader.followers_target_speed_mps(),
                 described.time_gap_s,
             );
@@ -290,6 +291,25 @@ impl<'a> World<'a> {
         Ok(())
     }
 
+    /// Those who drive by hand look ahead and drive.
+    fn let_people_drive(&mut self) {
+        for index in 1..self.vehicles.len() {
+            let described = &self.scenario.vehicles[index];
+            if described.driver == Driver::Unit {
+                continue;
+            }
+            let manner = Manner {
+                wanted_mps: self.scenario.leader.followers_target_speed_mps(),
+                time_gap_s: described.time_gap_s,
+                standstill_m: described.standstill_m,
+            };
+            let ahead = self.vehicles[index - 1].seen_from_behind();
+            let own = &mut self.vehicles[index];
+            let gap_m = ahead.rear_m - own.plant.position_m;
+            own.take_over(manner.behind(own.plant.speed_mps, gap_m, ahead.speed_mps));
+        }
+    }
+
     /// Puts a leader that replays a recording at its recorded place.
     fn place_recorded_leader(&mut self, at_s: f64) {
         let Some(motion) = &self.scenario.leader.motion else { return };
@@ -330,6 +350,7 @@ impl Stages for World<'_> {
 
     fn act(&mut self, at_s: f64) -> io::Result<()> {
         self.vehicles.iter_mut().try_for_each(|vehicle| vehicle.tick(at_s))?;
+        self.let_people_drive();
         let mut ahead_length_m = 0.0;
         for vehicle in &mut self.vehicles {
             vehicle.intervene(ahead_length_m, self.scenario.period_s);
@@ -342,7 +363,8 @@ impl Stages for World<'_> {
         let vehicles = self.vehicles.len();
         for vehicle in &mut self.vehicles {
             vehicle.drive(at_s, self.scenario.period_s)?;
-            for (sent_s, message) in vehicle.broadcasts() {
+            let is_heard = self.scenario.vehicles[vehicle.index].driver != Driver::Unequipped;
+            for (sent_s, message) in vehicle.broadcasts().into_iter().filter(|_| is_heard) {
                 let others = (0..vehicles).filter(|to| *to != vehicle.index);
                 self.air.broadcast(sent_s, vehicle.index, others, &Rc::new(message));
             }

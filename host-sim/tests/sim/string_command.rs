@@ -45,6 +45,14 @@ fn a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_not_at_a_ten
 }
 
 #[test]
+fn with_range_sensors_a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_at_a_tenth_of_a_second_less() {
+    for gap_s in [shipped_time_gap_s(Switch::On), shipped_time_gap_s(Switch::On) - 0.1] {
+        let row = worst_place(&format!("--range-sensors on --seeds 2 --time-gaps {gap_s:.1}"));
+        assert!(rows::failures(std::slice::from_ref(&row)).is_empty(), "{row:?}");
+    }
+}
+
+#[test]
 fn without_a_loss_every_seed_is_the_same_run() {
     let of = |seed: u32| rows(&format!("--delays 0.1 --losses 0 --step-only --seed {seed} --seeds 9"));
     let [first, other] = [1, 2].map(of);
@@ -127,5 +135,33 @@ fn the_smallest_time_gap_of_each_link_is_that_from_which_on_every_row_holds() {
         assert_eq!(link.holdover_s, least(|row| row.holdover.as_ref().unwrap().ratio));
         assert_eq!(link.cacc_s, least(|row| row.cacc.as_ref().unwrap().ratio));
         assert_eq!(link.degraded_cacc_s, least(|row| row.degraded_cacc.as_ref().unwrap().ratio));
+    }
+}
+
+#[test]
+fn in_a_mixed_string_the_vehicles_that_a_unit_drives_damp_a_step_and_nobody_is_hit() {
+    for mixture in ["--people 3", "--unequipped 3", "--people 1 --unequipped 4,5"] {
+        let row =
+            rows(&format!("--delays 0.1 --losses 0.1 --step-only --seeds 1 --range-sensors on {mixture}")).remove(0);
+        assert!(rows::failures(std::slice::from_ref(&row)).is_empty(), "{mixture}: {row:?}");
+        assert_eq!((row.collisions, row.not_following, &row.cacc), (0, 0, &None), "{mixture}");
+    }
+}
+
+#[test]
+fn a_mixture_that_cannot_be_is_refused_with_option_cause_and_remedy() {
+    let cases = [
+        ("--people 0", "--people: vehicle 0 is none of the followers; give followers, from 1 to 10"),
+        ("--unequipped 11", "--unequipped: vehicle 11 is none of the followers; give followers, from 1 to 10"),
+        ("--unequipped 3", "--unequipped: nobody hears these vehicles, and nobody sees them; add `--range-sensors on`"),
+        (
+            "--people 2,3 --unequipped 3 --range-sensors on",
+            "--people: vehicle 3 is in `--unequipped` too; leave it out of one of the two",
+        ),
+    ];
+    for (arguments, message) in cases {
+        let output = string(&format!("{arguments} --no-report"));
+        assert_eq!(String::from_utf8_lossy(&output.stderr), format!("error: {message}\n"), "{arguments}");
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments}");
     }
 }

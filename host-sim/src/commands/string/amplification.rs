@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::disturbance::Disturbance;
+use crate::sim::world::{Tick, Trace};
 
 /// Least amplitude of a predecessor that is measured, in m/s.
 const LEAST_MPS: f64 = 0.02;
@@ -35,6 +36,13 @@ pub struct Speeds {
 }
 
 impl Speeds {
+    /// Those of a run.
+    #[must_use]
+    pub fn of(trace: &Trace, period_s: f64) -> Self {
+        let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
+        Self { period_s, vehicles: trace.vehicles.iter().map(speeds).collect() }
+    }
+
     /// The amplitude of each vehicle.
     #[must_use]
     pub fn amplitudes(&self, disturbance: Disturbance) -> Vec<f64> {
@@ -53,8 +61,15 @@ impl Speeds {
     /// The largest ratio of a vehicle to the vehicle ahead; `None`: no amplitude was large enough to measure.
     #[must_use]
     pub fn worst(&self, disturbance: Disturbance) -> Option<Worst> {
+        self.worst_of(disturbance, |_| true)
+    }
+
+    /// The same of some vehicles.
+    #[must_use]
+    pub fn worst_of(&self, disturbance: Disturbance, counts: impl Fn(usize) -> bool) -> Option<Worst> {
         let amplitudes = self.amplitudes(disturbance);
-        let ratios = amplitudes.windows(2).enumerate().filter(|(_, pair)| pair[0] >= LEAST_MPS);
+        let ratios =
+            amplitudes.windows(2).enumerate().filter(|(ahead, pair)| counts(ahead + 1) && pair[0] >= LEAST_MPS);
         ratios
             .map(|(ahead, pair)| Worst {
                 ratio: pair[1] / pair[0],

@@ -51,6 +51,14 @@ pub struct StringArguments {
     #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
     pub range_sensors: Switch,
 
+    /// Followers, from 1 to 10, that a person drives and that tell their states alone
+    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',')]
+    pub people: Vec<usize>,
+
+    /// Followers without a unit, that a person drives and nobody hears; with range sensors
+    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',')]
+    pub unequipped: Vec<usize>,
+
     /// Seed of the losses
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
@@ -71,12 +79,19 @@ Examples:
   holdover-sim string --time-gaps 1,1.2,1.4,1.6 --step-only --json
   holdover-sim string --delays 0,0.025,0.05 --losses 0,0.1 --seeds 5
   holdover-sim string --delays 0.05 --losses 0.1 --frequencies 0.1,0.2
+  holdover-sim string --range-sensors on --people 2,7 --unequipped 4
 
 Runs:
   Ten vehicles behind a leader at 15 m/s that says where it is, but not how it
   will drive. It slows down by 2 m/s, or its speed goes up and down at one
   frequency, by 2 m/s or as much as 1 m/s² makes of it. Every message takes the
   delay, and the share is lost at random.
+
+Mixed strings:
+  A person drives by the Intelligent Driver Model, 1.5 s behind what is really
+  there. Ratios are those of the vehicles that a unit drives. A unit behind a
+  vehicle that nobody hears sees it, and keeps 1.8 s. The other methods are not
+  run.
 
 Chance:
   Which messages are lost decides what a step passes on, so it is run with 40

@@ -8,11 +8,13 @@
 pub mod amplification;
 pub mod arguments;
 pub mod disturbance;
+pub mod mixture;
 pub mod options;
 pub mod others;
 mod page;
 pub mod ploeg;
 pub mod rows;
+mod scenario;
 pub mod table;
 
 use serde::Serialize;
@@ -31,6 +33,10 @@ struct Results<'a> {
     limit: f64,
     /// Whether every follower has a range sensor.
     range_sensors: bool,
+    /// The followers that a person drives and that tell their states.
+    people: &'a [usize],
+    /// The followers without a unit.
+    unequipped: &'a [usize],
     /// The shipped time gap of a unit without a range sensor.
     shipped_time_gap_s: f64,
     /// The shipped time gap of a unit with a range sensor.
@@ -57,6 +63,8 @@ pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let results = Results {
         limit: rows::LIMIT,
         range_sensors: options.range_sensors.is_on(),
+        people: &options.mixture.people,
+        unequipped: &options.mixture.unequipped,
         shipped_time_gap_s: options::shipped_time_gap_s(Switch::Off),
         shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(Switch::On),
         smallest_time_gap_s: rows::smallest_time_gap_s(&rows),

@@ -4,6 +4,7 @@ use holdover::parameters;
 
 use super::arguments::StringArguments;
 use super::disturbance::Disturbance;
+use super::mixture::Mixture;
 use crate::commands::ending::Destination;
 use crate::error::Error;
 use crate::input::scenario::Switch;
@@ -27,6 +28,8 @@ pub struct StringOptions {
     pub disturbances: Vec<Disturbance>,
     /// Whether every follower has a range sensor.
     pub range_sensors: Switch,
+    /// Who drives the followers.
+    pub mixture: Mixture,
     /// The first seed of the losses.
     pub seed: u64,
     /// Number of seeds, if it is given: from 1 to [`seeds::MOST`].
@@ -41,13 +44,25 @@ impl StringOptions {
     /// # Errors
     /// Impossible values, and a folder that cannot be written.
     pub fn read(arguments: StringArguments) -> Result<Self, Error> {
-        let StringArguments { time_gaps, delays, losses, frequencies, step_only, range_sensors, seed, seeds, output } =
-            arguments;
+        let StringArguments {
+            time_gaps,
+            delays,
+            losses,
+            frequencies,
+            step_only,
+            range_sensors,
+            people,
+            unequipped,
+            seed,
+            seeds,
+            output,
+        } = arguments;
         let time_gaps = if time_gaps.is_empty() { vec![shipped_time_gap_s(range_sensors)] } else { time_gaps };
         within("--time-gaps", &time_gaps, "seconds", (0.1, 3.995))?;
         within("--delays", &delays, "seconds", (0.0, 1.0))?;
         within("--losses", &losses, "shares", (0.0, 0.9))?;
         within("--frequencies", &frequencies, "Hz", (0.02, 2.0))?;
+        let mixture = Mixture::checked(people, unequipped, range_sensors)?;
         seeds::checked(seed, seeds.unwrap_or(STEP_SEEDS))?;
         let destination = output.read()?;
         let sines = frequencies.into_iter().filter(|_| !step_only).map(Disturbance::Sine);
@@ -58,6 +73,7 @@ impl StringOptions {
             losses,
             disturbances,
             range_sensors,
+            mixture,
             seed,
             seeds,
             destination,
@@ -81,11 +97,12 @@ impl StringOptions {
             if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
         let seeds = self.seeds.map_or(String::new(), |seeds| format!(" --seeds {seeds}"));
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --range-sensors {} --seed {}{seeds}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --range-sensors {}{} --seed {}{seeds}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),
             self.range_sensors,
+            self.mixture.command(),
             self.seed
         )
     }

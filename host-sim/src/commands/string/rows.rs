@@ -1,18 +1,17 @@
 //! The runs: options enter; for each time gap, delay and loss the largest ratio of all disturbances leaves, with
 //! holdover and without.
 
-use std::path::Path;
-
-use holdover::parameters::FEED_FORWARD;
 use holdover::wire::command::ModeCode;
 use serde::Serialize;
 
 use super::amplification::{Speeds, Worst};
-use super::disturbance::{CRUISE_MPS, Disturbance};
+use super::disturbance::Disturbance;
+use super::mixture::Mixture;
 use super::options::StringOptions;
 use super::others::{self, Other};
+use super::scenario::{Place, scenario};
 use crate::error::Error;
-use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario, Switch};
+use crate::input::scenario::Driver;
 use crate::measure::bootstrap::{Interval, mean, of_mean};
 use crate::measure::simulate::simulate;
 use crate::parallel;
@@ -99,9 +98,6 @@ fn means(outcomes: &[&Outcome]) -> Vec<Mean> {
     METHODS.into_iter().enumerate().map(of_method).collect()
 }
 
-/// The place of a row: time gap, delay and loss.
-type Place = (f64, f64, f64);
-
 /// The outcome of one run.
 struct Outcome {
     holdover: Option<Worst>,
@@ -146,7 +142,7 @@ pub fn run(options: &StringOptions, done: impl Fn() + Sync) -> Result<Vec<Row>, 
         }
     }
     let one = |&(place, disturbance, seed)| {
-        let outcome = outcome(place, disturbance, seed, options.range_sensors);
+        let outcome = outcome(place, disturbance, seed, options);
         done();
         outcome
     };
@@ -188,60 +184,37 @@ fn is_above(worst: &Option<Worst>) -> bool {
     worst.as_ref().is_some_and(|worst| worst.ratio > LIMIT)
 }
 
-fn outcome(
-    (time_gap_s, delay_s, loss): Place,
-    disturbance: Disturbance,
-    seed: u64,
-    sensors: Switch,
-) -> Result<Outcome, Error> {
-    let scenario = scenario((time_gap_s, delay_s, loss), disturbance, sensors)?;
+fn outcome(place: Place, disturbance: Disturbance, seed: u64, options: &StringOptions) -> Result<Outcome, Error> {
+    let mixture = &options.mixture;
+    let scenario = scenario(place, disturbance, options.range_sensors, mixture)?;
     let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
-    let speeds = |ticks: &Vec<Tick>| ticks.iter().map(|tick| tick.speed_mps).collect();
-    let units = Speeds { period_s: scenario.period_s, vehicles: trace.vehicles.iter().map(speeds).collect() };
-    let without = |other| others::run(&scenario, seed, other).worst(disturbance);
+    let units = Speeds::of(&trace, scenario.period_s);
+    // The others drive every vehicle of a string, or none.
+    let without =
+        |other| if mixture.is_mixed() { None } else { others::run(&scenario, seed, other).worst(disturbance) };
     Ok(Outcome {
-        holdover: units.worst(disturbance),
+        holdover: units.worst_of(disturbance, |vehicle| mixture.driver(vehicle) == Driver::Unit),
         as_it_stands: without(Other::AsItStands),
         age_times_speed: without(Other::AgeTimesSpeed),
         cacc: without(Other::Cacc),
         degraded_cacc: without(Other::DegradedCacc),
         collisions: summary.collisions,
-        not_following: not_following(&trace, disturbance.measured_from_s()),
+        not_following: not_following(&trace, disturbance.measured_from_s(), mixture),
     })
 }
 
-/// Number of followers whose units did not always drive by their law from this time on.
-fn not_following(trace: &Trace, from_s: f64) -> usize {
+/// Number of units that did not always drive by their law from this time on. Behind a vehicle that nobody hears that is the law of the
+/// cruise control.
+fn not_following(trace: &Trace, from_s: f64, mixture: &Mixture) -> usize {
     let begins = trace.times_s.partition_point(|at_s| *at_s < from_s - 1e-9);
-    let follows = |tick: &Tick| matches!(tick.mode, ModeCode::Cooperative | ModeCode::Holdover);
-    trace.vehicles.iter().skip(1).filter(|ticks| !ticks.iter().skip(begins).all(follows)).count()
-}
-
-/// The scenario of the string: every vehicle starts at its time gap and speed.
-///
-/// # Errors
-/// None for values within the options' limits.
-fn scenario((time_gap_s, delay_s, loss): Place, disturbance: Disturbance, sensors: Switch) -> Result<Scenario, Error> {
-    let duration_s = disturbance.duration_s();
-    let gap_m = 2.0 + CRUISE_MPS * time_gap_s;
-    // As `Config::with_range_sensor` has it.
-    let feed_forward: f64 = if sensors.is_on() { FEED_FORWARD.get().to_num() } else { 0.0 };
-    let vehicle = |gap: &str| {
-        format!(
-            "[[vehicle]]\n{gap}speed_mps = {CRUISE_MPS}\ntime_gap_s = {time_gap_s}\nfeed_forward = {feed_forward}\nposition_accuracy_m = 0.05\n\
-             speed_accuracy_mps = 0.02\n"
-        )
+    let follows = |vehicle: usize, tick: &Tick| match tick.mode {
+        ModeCode::Cooperative | ModeCode::Holdover => true,
+        ModeCode::Fallback => mixture.driver(vehicle - 1) == Driver::Unequipped,
+        ModeCode::Standby | ModeCode::Fault => false,
     };
-    let followers = vehicle(&format!("gap_m = {gap_m}\n")).repeat(MAX_VEHICLES - 1);
-    let text = format!(
-        "duration_s = {duration_s}\nego = 1\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n{}{followers}[channel]\n\
-         applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
-        vehicle(""),
-    );
-    let overrides = Overrides { range_sensors: Some(sensors), ..Overrides::MESSAGES_ALONE };
-    let mut scenario = Scenario::parse(Path::new("string"), &text, &overrides)?;
-    scenario.leader.motion = Some(disturbance.motion(scenario.period_s));
-    Ok(scenario)
+    let units =
+        trace.vehicles.iter().enumerate().skip(1).filter(|(vehicle, _)| mixture.driver(*vehicle) == Driver::Unit);
+    units.filter(|(vehicle, ticks)| !ticks.iter().skip(begins).all(|tick| follows(*vehicle, tick))).count()
 }
 
 /// The failures: the largest ratio with holdover, if it is above the limit, and strings that did not drive.

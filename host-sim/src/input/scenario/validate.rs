@@ -1,6 +1,7 @@
 //! From the keys of a scenario file to a checked [`Scenario`]: text and command line enter; a scenario or an error
 //! leaves.
 
+use super::driver::{self, Driver};
 use super::keys::{Document, Found, Number, Section, whole};
 use super::set::Sets;
 use super::{
@@ -260,6 +261,7 @@ fn vehicle(
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
         feed_forward: section.number(&FEED_FORWARD)?.value,
+        driver: if drives == Drives::Behind { driver::driver(&mut section)? } else { Driver::Unit },
         accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
         range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind, said)?,
     };
