@@ -34,9 +34,8 @@ pub struct Law {
     pub time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
-    /// Whether the gains come from the table of eq. 6, which is proved at time gaps of 1 s and 1.6 s, with lags up to 0.5 s, and at 1 s
-    /// with feed-forward too;
-    /// otherwise they are the following two. Where there is no association the two are what is published.
+    /// Whether the gains come from the tables of eq. 6, which are proved with lags up to 0.5 s and time gaps up to 2 s: without feed-forward
+    /// from 1 s on, and with it from 0.7 s on. Otherwise they are the following two. Where there is no association the two are what is published.
     pub table: bool,
     /// Gain `k`; 0.01 to 3.999 /s².
     pub gain: Gain,

@@ -79,11 +79,11 @@ pub struct Body {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// Desired time gap in ms; 1600 by default. With a range sensor 1000 will do (`range_sensor`, and `feed_forward_milli` of 500).
+    /// Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
     pub time_gap_ms: u32,
     /// Distance kept at standstill in mm.
     pub standstill_mm: u32,
-    /// 1: the gains come from the table of eq. 6; 0: they are the following two.
+    /// 1: the gains come from the tables of eq. 6; 0: they are the following two.
     pub gain_table: u8,
     /// Gain in 1/(1000 s^2).
     pub gain_milli: u32,

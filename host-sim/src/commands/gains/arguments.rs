@@ -9,7 +9,7 @@ use crate::commands::ending::OutputArguments;
 #[derive(Clone, Debug, Args)]
 #[command(mut_arg("out", |out| out.default_value("holdover-report/gains")))]
 pub struct GainsArguments {
-    /// Write the table to this file, as Rust
+    /// Write the tables to this file, as Rust
     #[arg(long, value_name = "FILE.rs")]
     pub write: Option<PathBuf>,
 
@@ -21,19 +21,20 @@ pub struct GainsArguments {
 /// The end of `gains --help`.
 pub const AFTER_HELP: &str = "\
 Examples:
-  holdover-sim gains                     prove the table, and draw it
+  holdover-sim gains                     prove the tables, and draw them
   holdover-sim gains --write src/controller/gain_table.rs
-                                         make the table that the core ships
+                                         make the tables that the core ships
 
-The table:
+The tables:
   The gain k over own speed, target's speed and headway at the moment of
-  association, and a curve of the damping over k. It is made for a time gap of
-  1 s, that of the scenarios, and proved there, at the shipped one of 1.6 s, and
-  at 1 s with half of the acceleration ahead passed on (feed-forward 0.5), which
-  is shipped for vehicles with a range sensor.
+  association, and a curve of the damping g over k. One is for the law of eq. 5,
+  made for a time gap of 1 s, that of the scenarios. The other is for that law
+  with half of the acceleration ahead passed on (feed-forward f = 0.5), as
+  vehicles with a range sensor drive, and made for 0.7 s. Both are proved at
+  every tenth of a second from there to 2 s.
 
 Limits of every pair on the curve, thousandth by thousandth:
-  string stability  t_g >= sqrt(g² + 2 (1 - f)/k) - g, with the feed-forward f;
+  string stability  t_g >= sqrt(g² + 2 (1 - f)/k) - g;
                     the largest amplification 1 without lag and with
                     0.3 s, 1.002 with 0.5 s
   margins           40 degrees and 0.2 s, with a lag of 0.5 s
@@ -51,7 +52,8 @@ The demand keeps to 2.5 and -4 m/s² and 5 m/s³ by construction.
 
 Other time gaps:
   String stability holds at every larger one, which is proved too. Settling and
-  margins do not: at 3.995 s the phase margin is below 40 degrees.
+  margins do not: without feed-forward the phase margin is below 40 degrees at
+  3.995 s.
 
 Exit codes:
   0  every limit holds

@@ -4,19 +4,18 @@
 use serde::Serialize;
 
 use super::approach::{Approach, Situation};
-use super::linear::{DESIGN_TIME_GAP_S, Pair};
+use super::design::Design;
+use super::linear::Pair;
 
 /// How far the gap may fall below both the gap at the start and the final gap, in metres.
 pub const OVERSHOOT_M: f64 = 0.25;
 /// Braking from the start on, as a magnitude. If it keeps out of the gap, everything is required.
 const MODERATE_MPS2: f64 = 3.0;
-/// Latest settling time at the time gap that the gains are chosen for, in seconds.
+/// Latest settling time at a time gap of 1 s, in seconds.
 const SETTLED_S: f64 = 45.0;
 /// Number of factors of e from the largest distance to make up to the distance that counts as settled: `ln(260/0.25)`.
 /// A car at rest, 120 m behind a target at 28 m/s, loses 28²/(2 · 2.5) m and a second of 28 m/s until it is as fast.
 const FACTORS: f64 = 7.0;
-/// `k` of a situation in which the vehicle need not react.
-const USUAL_GAIN: f64 = 0.5;
 
 /// The requirement of a situation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -37,7 +36,7 @@ pub enum Asked {
 /// factor of e.
 #[must_use]
 pub fn settled_by_s(time_gap_s: f64) -> f64 {
-    SETTLED_S + (time_gap_s - DESIGN_TIME_GAP_S) * FACTORS
+    SETTLED_S + (time_gap_s - 1.0) * FACTORS
 }
 
 /// A cell.
@@ -83,38 +82,40 @@ impl Asked {
 }
 
 impl Cell {
-    /// The best pair at the time gap that the gains are chosen for. Of the pairs that meet the requirement, it is the
-    /// most comfortable one. If none does, it is the pair with the largest gap.
+    /// The best pair at the smallest time gap of a design, of those whose requirements hold at all its time gaps; of all pairs, if there
+    /// is none. Where everything is required it is the most comfortable one. Elsewhere it is the pair with the largest gap.
     #[must_use]
-    pub fn best(situation: Situation, pairs: &[Pair]) -> Option<Self> {
-        let asked = Asked::of(&situation, DESIGN_TIME_GAP_S);
-        let rank = |pair: Pair| Self { situation, pair }.judged(asked, DESIGN_TIME_GAP_S).rank(pair);
-        let best = pairs.iter().map(|&pair| (rank(pair), pair)).min_by(|a, b| a.0.total_cmp(&b.0));
-        best.map(|(_, pair)| Self { situation, pair })
+    pub fn best(situation: Situation, design: &Design, pairs: &[Pair]) -> Option<Self> {
+        let mut cells: Vec<(f64, Self)> = pairs
+            .iter()
+            .map(|&pair| {
+                let cell = Self { situation, pair };
+                (cell.at(design.smallest_gap_s()).cost(pair.gain - design.usual_gain), cell)
+            })
+            .collect();
+        cells.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let holds = |cell: &Self| design.time_gaps_s().all(|time_gap_s| cell.at(time_gap_s).holds);
+        cells.iter().find(|(_, cell)| holds(cell)).or(cells.first()).map(|(_, cell)| *cell)
     }
 
     /// The result at a time gap.
     #[must_use]
     pub fn at(&self, time_gap_s: f64) -> Judged {
-        self.judged(Asked::of(&self.situation, time_gap_s), time_gap_s)
-    }
-
-    fn judged(&self, asked: Asked, time_gap_s: f64) -> Judged {
+        let asked = Asked::of(&self.situation, time_gap_s);
         let approach = self.situation.by_law(self.pair.at(time_gap_s));
         Judged { approach, asked, holds: asked.holds(&approach, time_gap_s) }
     }
 }
 
 impl Judged {
-    /// The cost of a pair; smaller is better.
-    fn rank(&self, pair: Pair) -> f64 {
+    /// The cost of a pair whose `k` differs by so much from the usual one; smaller is better.
+    fn cost(&self, unusual: f64) -> f64 {
         let Approach { least_gap_m, braking_mps2, acceleration_mps2, settled_s, .. } = self.approach;
         if !self.holds || self.asked != Asked::Everything {
             return (if self.holds { 1e6 } else { 1e9 }) - 1e3 * least_gap_m;
         }
         // Peaks as fractions of the limits; ten seconds count as much as one limit. If nothing else differs, the usual
         // gain wins.
-        let unusual = (pair.gain - USUAL_GAIN).abs();
-        braking_mps2 / 4.0 + acceleration_mps2 / 2.5 + settled_s / 10.0 + unusual
+        braking_mps2 / 4.0 + acceleration_mps2 / 2.5 + settled_s / 10.0 + unusual.abs()
     }
 }

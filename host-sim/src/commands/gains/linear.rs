@@ -4,14 +4,6 @@
 //! With the actuators' lag `T` and feed-forward `φ`, the law transmits a predecessor's motion by `G(s) = [φ s² + k (1 + γ s)]/(T s³ + s² +
 //! k (t_g + γ) s + k)`. Its own loop is `L(s) = k (1 + (t_g + γ) s)/(s² (1 + T s))`.
 
-/// The time gap `t_g` that the gains are chosen for, in seconds. It is the smallest at which they are proved, and that
-/// of the scenarios.
-///
-/// A small gap makes string stability hard, and if it holds at one gap it holds at every larger one
-/// ([`Law::is_string_stable_at_larger_time_gaps`]). No other property does. With a larger gap the loop's crossover
-/// frequency is higher, where a delay costs more phase and finally the lag does too, and the loop settles later. So the
-/// shipped gap is proved as well.
-pub const DESIGN_TIME_GAP_S: f64 = 1.0;
 /// The slowest actuators, those of a bus, in seconds.
 pub const LAZIEST_S: f64 = 0.5;
 /// The largest `|G(jω)|` without lag and with a car's: 1, except for the rounding of this computation.
@@ -90,13 +82,16 @@ impl Law {
     /// The largest `|G(jω)|` over frequencies from 0.01 to 30 rad/s.
     #[must_use]
     pub fn largest_gain(self, lag_s: f64) -> f64 {
+        frequencies().map(|frequency| self.gain_at(frequency, lag_s)).fold(0.0, f64::max)
+    }
+
+    /// `|G(jω)|` at a frequency in rad/s.
+    #[must_use]
+    pub fn gain_at(self, frequency: f64, lag_s: f64) -> f64 {
         let Pair { gain: k, damping_s } = self.pair;
-        let square = |w: f64| {
-            let passed = (k - self.feed_forward * w * w).powi(2) + (k * damping_s * w).powi(2);
-            let (real, imaginary) = (k - w * w, k * self.lead_s() * w - lag_s * w * w * w);
-            passed / (real * real + imaginary * imaginary)
-        };
-        frequencies().map(square).fold(0.0, f64::max).sqrt()
+        let w = frequency;
+        let passed = (k - self.feed_forward * w * w).hypot(k * damping_s * w);
+        passed / (k - w * w).hypot(k * self.lead_s() * w - lag_s * w * w * w)
     }
 
     /// Phase margin in radians and delay margin in seconds.

@@ -1,13 +1,14 @@
-//! `gains`: eq. 6. Only options enter. The table of gains that the core ships leaves, with the proof of every cell at
-//! the time gap that the table is made for, at the shipped one, and at that of a vehicle with a range sensor, a report with a picture of it, and the verdict.
+//! `gains`: eq. 6. Only options enter. The two tables of gains that the core ships leave, for the law of eq. 5 and for that with feed-forward,
+//! with the proof of every cell at every tenth of a second of the time gap, a report with pictures of them, and the verdict.
 //!
 //! ```text
-//! sound pairs -> curve -> cells (on all cores) -> proofs -> source, JSON, report
+//! design -> curve -> cells (on all cores) -> proofs -> source, JSON, report
 //! ```
 
 pub mod approach;
 pub mod arguments;
 pub mod cell;
+pub mod design;
 pub mod grid;
 pub mod linear;
 mod page;
@@ -16,8 +17,6 @@ pub mod source;
 
 use std::path::PathBuf;
 
-use holdover::parameters;
-use holdover::units::Seconds;
 use serde::Serialize;
 
 use crate::commands::ending::Destination;
@@ -28,6 +27,7 @@ use crate::places::can_be_file;
 use crate::verdict::Verdict;
 use arguments::GainsArguments;
 use cell::Cell;
+use design::Design;
 use proof::Proof;
 
 /// The output of the command.
@@ -54,91 +54,106 @@ impl GainsOptions {
     }
 }
 
-/// The table and its proofs.
+/// A table and its proofs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
+    /// What it is made for.
+    pub design: Design,
     /// `γ` in ms over `k`.
     pub curve: Vec<u32>,
     /// Cells by own speed, target's speed and headway.
     pub cells: Vec<Cell>,
-    /// Proofs at the time gap that the table is made for, at the shipped one, and at that of a vehicle with a range sensor, which feeds
-    /// forward.
-    pub proofs: [Proof; 3],
-    /// The requirements that do not hold.
-    pub failures: Vec<String>,
+    /// Proofs at each time gap of the design, the smallest first.
+    pub proofs: Vec<Proof>,
 }
 
 /// The results, as JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Results<'a> {
+    tables: Vec<TableResults<'a>>,
+    failures: Vec<String>,
+}
+
+/// The results of a table, as JSON.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct TableResults<'a> {
+    feed_forward: f64,
     cells: usize,
     curve_gain_milli: Vec<u32>,
     curve_damping_milli: &'a [u32],
     proofs: &'a [Proof],
-    failures: &'a [String],
 }
 
 impl Table {
-    /// Searches and proves the table.
+    /// Searches and proves a table.
     #[must_use]
-    pub fn made() -> Self {
-        let curve = grid::curve();
-        let cells = grid::cells(&curve);
-        let seconds = |gap: Seconds| f64::from(gap.to_millis()) / 1e3;
-        let with_sensor = (seconds(parameters::TIME_GAP_WITH_SENSOR), parameters::FEED_FORWARD.get().to_num());
-        let shipped = [(linear::DESIGN_TIME_GAP_S, 0.0), (seconds(parameters::TIME_GAP), 0.0), with_sensor];
-        let proofs = shipped.map(|(time_gap_s, feed_forward)| Proof::at(time_gap_s, feed_forward, &curve, &cells));
-        let failures = proofs.iter().flat_map(|proof| proof.failures.clone()).collect();
-        Self { curve, cells, proofs, failures }
+    pub fn made(design: Design) -> Self {
+        let curve = grid::curve(&design);
+        let cells = grid::cells(&design, &curve);
+        let proofs = design.time_gaps_s().map(|time_gap_s| Proof::at(time_gap_s, &design, &curve, &cells)).collect();
+        Self { design, curve, cells, proofs }
     }
 
-    fn results(&self) -> Results<'_> {
-        let gain = |point| grid::CURVE_FIRST_MILLI + point * grid::CURVE_STEP_MILLI;
-        Results {
+    /// Both: that of the law of eq. 5, and that of the law with feed-forward.
+    #[must_use]
+    pub fn both() -> [Self; 2] {
+        [Self::made(design::PLAIN), Self::made(design::fed())]
+    }
+
+    fn results(&self) -> TableResults<'_> {
+        let gain = |point| self.design.first_milli + point * self.design.step_milli;
+        TableResults {
+            feed_forward: self.design.feed_forward,
             cells: self.cells.len(),
-            curve_gain_milli: (0..).map(gain).take(self.curve.len()).collect(),
+            curve_gain_milli: (0..design::POINTS).map(gain).collect(),
             curve_damping_milli: &self.curve,
             proofs: &self.proofs,
-            failures: &self.failures,
         }
     }
 }
 
-/// Makes and proves the table, and writes the output that the options ask for.
+/// The requirements that do not hold, of all tables.
+#[must_use]
+pub fn failures(tables: &[Table]) -> Vec<String> {
+    tables.iter().flat_map(|table| &table.proofs).flat_map(|proof| proof.failures.clone()).collect()
+}
+
+/// Makes and proves the tables, and writes the output that the options ask for.
 ///
 /// # Errors
 /// Output that cannot be written.
 pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
-    let table = Table::made();
-    let results = table.results();
-    let delivered = options.destination.deliver(&results, &text(&results), "", || page::render(&table));
+    let tables = Table::both();
+    let results = Results { tables: tables.iter().map(Table::results).collect(), failures: failures(&tables) };
+    let delivered = options.destination.deliver(&results, &text(&results), "", || page::render(&tables));
     if let Some(file) = &options.write {
-        Draft::whole(file, &source::text(&table.curve, &table.cells))?;
+        Draft::whole(file, &source::text(&tables))?;
         output::say(&format!("table: {}", file.display()));
     }
     delivered?;
-    Ok(Verdict::of(results.failures))
+    Ok(Verdict::of(&results.failures))
 }
 
 fn text(results: &Results) -> String {
-    let proofs: String = results.proofs.iter().map(of_proof).collect();
-    let verdict = Verdict::of(results.failures).line(results.failures);
+    let tables: String = results.tables.iter().map(of_table).collect();
+    let verdict = Verdict::of(&results.failures).line(&results.failures);
+    format!("{tables}{verdict}\n")
+}
+
+fn of_table(table: &TableResults) -> String {
+    let TableResults { feed_forward, cells, curve_gain_milli, curve_damping_milli, proofs } = table;
+    let rows: String = proofs.iter().map(of_proof).collect();
     format!(
-        "{} cells; curve: k {:?}/1000, damping {:?} ms\n{proofs}{verdict}\n",
-        results.cells, results.curve_gain_milli, results.curve_damping_milli,
+        "feed-forward {feed_forward}: {cells} cells; curve: k {curve_gain_milli:?}/1000, damping {curve_damping_milli:?} ms\n\
+         time gap   cells      amplification, lag 0, 0.3, 0.5 s   margins          settled, limit    overshoot  braking\n{rows}\n"
     )
 }
 
 fn of_proof(proof: &Proof) -> String {
     let [none, car, lazy] = proof.largest_amplification;
-    let nearest = proof.smallest_gap_m.map_or(String::new(), |gap_m| format!("; no collision: {gap_m:.2} m left"));
     format!(
-        "time gap {} s, feed-forward {}: everything is asked of {} cells, no collision of {}, nothing of {}\n  \
-         largest amplification: {none:.5} without lag, {car:.5} at 0.3 s, {lazy:.5} at 0.5 s\n  \
-         least margins: {:.1} degrees, {:.2} s\n  \
-         everything: settled in {:.1} s of {:.1} s, {:.2} m into the gap, braking {:.2} m/s²{nearest}\n",
+        "{:6.1} s   {:3} {:2} {:2}  {none:10.5}{car:10.5}{lazy:10.5}     {:.1} deg, {:.2} s   {:.1} s, {:.1} s   {:.2} m     {:.2} m/s²\n",
         proof.time_gap_s,
-        proof.feed_forward,
         proof.everything_asked,
         proof.no_collision_asked,
         proof.nothing_asked,

@@ -1,9 +1,9 @@
-//! The proof of the table at one time gap, with or without feed-forward: curve and cells enter; the worst figures leave, and the requirements that do
-//! not hold.
+//! The proof of a table at one time gap: its design, curve and cells enter; the worst figures leave, and the requirements that do not hold.
 
 use serde::Serialize;
 
 use super::cell::{Asked, Cell, Judged, settled_by_s};
+use super::design::Design;
 use super::grid;
 use super::linear::{CAR_S, LAZIEST_S, Law};
 use crate::parallel;
@@ -13,8 +13,6 @@ use crate::parallel;
 pub struct Proof {
     /// The time gap.
     pub time_gap_s: f64,
-    /// The share of the predecessor's acceleration that is passed on.
-    pub feed_forward: f64,
     /// Cells of which everything is required.
     pub everything_asked: usize,
     /// Cells of which no collision is required.
@@ -43,10 +41,12 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// The proof at a time gap and with this feed-forward, on all cores.
+    /// The proof at a time gap, on all cores.
     #[must_use]
-    pub fn at(time_gap_s: f64, feed_forward: f64, curve: &[u32], cells: &[Cell]) -> Self {
-        let laws: Vec<Law> = grid::pairs(curve).into_iter().map(|pair| pair.at(time_gap_s).fed(feed_forward)).collect();
+    pub fn at(time_gap_s: f64, design: &Design, curve: &[u32], cells: &[Cell]) -> Self {
+        let feed_forward = design.feed_forward;
+        let pairs = grid::pairs(design, curve);
+        let laws: Vec<Law> = pairs.into_iter().map(|pair| pair.at(time_gap_s).fed(feed_forward)).collect();
         let sound = parallel::each(&laws, |law| law.is_sound());
         let unsound = laws.iter().zip(sound).filter(|(_, is_sound)| !is_sound).map(|(law, _)| {
             format!(
@@ -70,7 +70,6 @@ impl Proof {
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         Self {
             time_gap_s,
-            feed_forward,
             everything_asked: of(Asked::Everything).count(),
             no_collision_asked: of(Asked::NoCollision).count(),
             nothing_asked: of(Asked::Nothing).count(),
@@ -90,6 +89,7 @@ impl Proof {
 #[cfg(test)]
 mod tests {
     use super::super::approach::Situation;
+    use super::super::design::PLAIN;
     use super::super::linear::Pair;
     use super::*;
 
@@ -101,20 +101,20 @@ mod tests {
 
     #[test]
     fn a_cell_that_misses_its_limit_is_named_with_the_time_gap() {
-        let curve = grid::curve();
-        let proof = Proof::at(1.6, 0.0, &curve, &[LATE]);
+        let curve = grid::curve(&PLAIN);
+        let proof = Proof::at(1.6, &PLAIN, &curve, &[LATE]);
         assert!(proof.failures.is_empty(), "{:?}", proof.failures);
         assert!(proof.longest_settling_s > 45.0, "what 1 s allows is not enough: {proof:?}");
         let slow = Cell { pair: Pair { gain: 0.275, damping_s: 6.0 }, ..LATE };
         assert_eq!(
-            Proof::at(1.6, 0.0, &curve, &[slow]).failures,
+            Proof::at(1.6, &PLAIN, &curve, &[slow]).failures,
             ["Everything does not hold at 0 m/s behind 28 m/s, 120 m, and a time gap of 1.6 s"]
         );
     }
 
     #[test]
     fn at_a_time_gap_that_is_too_large_the_margins_of_the_curve_fail() {
-        let proof = Proof::at(3.995, 0.0, &grid::curve(), &[]);
+        let proof = Proof::at(3.995, &PLAIN, &grid::curve(&PLAIN), &[]);
         assert!(!proof.failures.is_empty() && (36.9..37.1).contains(&proof.least_phase_margin_deg), "{proof:?}");
         // String stability holds nevertheless.
         assert!(proof.largest_amplification.into_iter().all(|largest| largest <= 1.000_1), "{proof:?}");

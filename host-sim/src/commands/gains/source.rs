@@ -1,22 +1,23 @@
-//! The source text of the table: curve and cells enter; the text of `src/controller/gain_table.rs` leaves.
+//! The source text of the tables: they enter; the text of `src/controller/gain_table.rs` leaves.
 
 use std::fmt::Write;
 
+use super::Table;
 use super::cell::Cell;
-use super::grid::{
-    CURVE_FIRST_MILLI, CURVE_STEP_MILLI, GAIN_STEP_MILLI, HEADWAY_FIRST_M, HEADWAY_STEP_M, HEADWAYS, SPEED_STEP_MPS,
-    SPEEDS,
-};
+use super::design::POINTS;
+use super::grid::{GAIN_STEP_MILLI, HEADWAY_FIRST_M, HEADWAY_STEP_M, HEADWAYS, SPEED_STEP_MPS, SPEEDS};
 
 const HEAD: &str = "\
-//! The table of eq. 6. Generated, and every cell proved, by `holdover-sim gains --write src/controller/gain_table.rs`; do not
-//! edit. The gain over both speeds and the headway, and the damping over the gain.
+//! The tables of eq. 6. Generated, and every cell proved, by `holdover-sim gains --write src/controller/gain_table.rs`; do not
+//! edit.
+
+use super::gains::Table;
 
 ";
 
 /// The text.
 #[must_use]
-pub fn text(curve: &[u32], cells: &[Cell]) -> String {
+pub fn text(tables: &[Table]) -> String {
     let mut text = String::from(HEAD);
     // Writing to a string cannot fail.
     let mut constant = |doc: &str, name: &str, kind: &str, value: u32| {
@@ -27,24 +28,37 @@ pub fn text(curve: &[u32], cells: &[Cell]) -> String {
     constant("Headways, from front bumper to front bumper: so many.", "HEADWAYS", "usize", HEADWAYS as u32);
     constant("The first of them, in mm.", "HEADWAY_FIRST_MM", "i32", HEADWAY_FIRST_M * 1000);
     constant("Their steps, in mm.", "HEADWAY_STEP_MM", "i32", HEADWAY_STEP_M * 1000);
-    constant("The first `k` of the curve, in 1/(1000 s²).", "CURVE_FIRST_MILLI", "u16", CURVE_FIRST_MILLI);
-    constant("Its steps.", "CURVE_STEP_MILLI", "u16", CURVE_STEP_MILLI);
+    constant("Points of a curve.", "POINTS", "usize", POINTS);
+    for table in tables {
+        write(&mut text, table);
+    }
+    text
+}
+
+fn write(text: &mut String, table: &Table) {
+    let Table { design, curve, cells, .. } = table;
     let points: Vec<String> = curve.iter().map(|damping| spelled(*damping)).collect();
-    let _ = writeln!(text, "/// `γ` over `k`, in ms.");
-    let _ = writeln!(text, "pub(super) const CURVE: [u16; {}] = [{}];", curve.len(), points.join(", "));
-    let _ = writeln!(text, "/// `k` in steps of {GAIN_STEP_MILLI}/(1000 s²) by own speed, target's speed and headway.");
+    let gap_s = design.smallest_gap_s();
+    let _ = writeln!(
+        text,
+        "/// Of the law with a feed-forward of {}, from a time gap of {gap_s} s on.",
+        design.feed_forward
+    );
     let _ = writeln!(text, "#[rustfmt::skip]");
-    let _ = writeln!(text, "pub(super) const GAINS: [[[u8; HEADWAYS]; SPEEDS]; SPEEDS] = [");
+    let _ = writeln!(text, "pub(super) static {}: Table = Table {{", design.name);
+    let _ = writeln!(text, "    first_milli: {},", design.first_milli);
+    let _ = writeln!(text, "    step_milli: {},", design.step_milli);
+    let _ = writeln!(text, "    curve: [{}],", points.join(", "));
+    let _ = writeln!(text, "    gains: [");
     for own in cells.chunks(SPEEDS * HEADWAYS) {
-        let _ = writeln!(text, "    [");
+        let _ = writeln!(text, "        [");
         for target in own.chunks(HEADWAYS) {
             let row: Vec<String> = target.iter().map(|cell| step(cell).to_string()).collect();
-            let _ = writeln!(text, "        [{}],", row.join(", "));
+            let _ = writeln!(text, "            [{}],", row.join(", "));
         }
-        let _ = writeln!(text, "    ],");
+        let _ = writeln!(text, "        ],");
     }
-    let _ = writeln!(text, "];");
-    text
+    let _ = writeln!(text, "    ],\n}};");
 }
 
 /// `k` of a cell, in the table's steps.
