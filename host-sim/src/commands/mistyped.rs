@@ -64,6 +64,7 @@ fn wanted(refusal: &Refusal) -> String {
             "give a whole number from 0 on".into()
         }
         "invalid float literal" => "give a number".into(),
+        remedy if remedy.starts_with("give ") => remedy.into(),
         why => format!("give another value ({why})"),
     }
 }

@@ -13,6 +13,7 @@ mod plant;
 pub mod saved;
 pub(crate) mod sensors;
 pub(crate) mod set;
+mod share;
 mod start;
 mod validate;
 
@@ -21,6 +22,7 @@ pub use driver::Driver;
 pub use envelope::Envelope;
 pub use event::{Change, DRIVEN_MPS2, Event, Fleet, OUTAGES_S, Part, Radio};
 pub use sensors::{Accuracy, Faults, Fitted, RangeSensor};
+pub use share::SensorShare;
 
 use crate::error::Error;
 use crate::input::impairment::{ChannelModel, Impairment};
@@ -163,7 +165,7 @@ pub struct Overrides {
     /// `--envelope`.
     pub envelope: Option<Switch>,
     /// `--range-sensors`.
-    pub range_sensors: Option<Switch>,
+    pub range_sensors: Option<SensorShare>,
     /// Each `--set`, as typed: `key=value`.
     pub set: Vec<String>,
 }
@@ -177,7 +179,7 @@ impl Overrides {
         leader_motion: None,
         channel_trace: None,
         envelope: Some(Switch::Off),
-        range_sensors: Some(Switch::Off),
+        range_sensors: Some(SensorShare::NONE),
         set: Vec::new(),
     };
 }

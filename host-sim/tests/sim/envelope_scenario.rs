@@ -1,7 +1,7 @@
 //! What the keys of the envelope and of the sensors mean, and what is said of ones that cannot be.
 
 use holdover::config::Envelope;
-use holdover_sim::input::scenario::{Faults, Overrides, RangeSensor, Scenario, Switch};
+use holdover_sim::input::scenario::{Faults, Overrides, RangeSensor, Scenario, SensorShare, Switch};
 use std::path::Path;
 
 fn parse(text: &str) -> Result<Scenario, String> {
@@ -59,7 +59,7 @@ fn everybody_who_follows_has_a_range_sensor_unless_said_otherwise() {
     let (sees_up_to_m, faults) = (200.0, Faults::NONE);
     let sensor = |distance_m, speed_mps| Some(RangeSensor { distance_m, speed_mps, sees_up_to_m, faults });
     assert_eq!(sensors(given), [None, sensor(0.25, 0.1), sensor(0.5, 0.3), None]);
-    for (said, follower) in [(Switch::On, sensor(0.25, 0.1)), (Switch::Off, None)] {
+    for (said, follower) in [(SensorShare::ALL, sensor(0.25, 0.1)), (SensorShare::NONE, None)] {
         let overrides = Overrides { range_sensors: Some(said), ..Overrides::default() };
         let scenario =
             Scenario::parse(Path::new("s.toml"), "[[vehicle]]\n[[vehicle]]\nrange_sensor = false", &overrides);

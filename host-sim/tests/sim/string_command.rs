@@ -7,7 +7,7 @@ use holdover_sim::commands::cli::Cli;
 use holdover_sim::commands::options::Options;
 use holdover_sim::commands::string::options::{StringOptions, shipped_time_gap_s};
 use holdover_sim::commands::string::rows::{self, LIMIT, Row};
-use holdover_sim::input::scenario::Switch;
+use holdover_sim::input::scenario::SensorShare;
 
 fn options(arguments: &str) -> StringOptions {
     let words = ["holdover-sim", "string"].into_iter().chain(arguments.split_whitespace());
@@ -39,14 +39,15 @@ fn a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_not_at_a_ten
     let shipped = worst_place("--seed 5 --seeds 2");
     assert!(ratio(&shipped) <= 1.0039 + 0.00005, "{shipped:?}");
     assert!(rows::failures(std::slice::from_ref(&shipped)).is_empty(), "{shipped:?}");
-    let less = worst_place(&format!("--seed 6 --seeds 1 --time-gaps {:.1}", shipped_time_gap_s(Switch::Off) - 0.1));
+    let less =
+        worst_place(&format!("--seed 6 --seeds 1 --time-gaps {:.1}", shipped_time_gap_s(SensorShare::NONE) - 0.1));
     assert!(ratio(&less) > LIMIT && ratio(&less) <= 1.0228 + 0.0001, "{less:?}");
     assert_eq!(rows::failures(std::slice::from_ref(&less)).len(), 1, "{less:?}");
 }
 
 #[test]
 fn with_range_sensors_a_step_over_the_worst_link_is_damped_at_the_shipped_time_gap_and_at_a_tenth_of_a_second_less() {
-    for gap_s in [shipped_time_gap_s(Switch::On), shipped_time_gap_s(Switch::On) - 0.1] {
+    for gap_s in [shipped_time_gap_s(SensorShare::ALL), shipped_time_gap_s(SensorShare::ALL) - 0.1] {
         let row = worst_place(&format!("--range-sensors on --seeds 2 --time-gaps {gap_s:.1}"));
         assert!(rows::failures(std::slice::from_ref(&row)).is_empty(), "{row:?}");
     }
@@ -113,10 +114,19 @@ fn range_sensors_are_on_or_off_and_each_has_a_shipped_time_gap() {
         let gap = if on { "shipped_time_gap_with_sensor_s" } else { "shipped_time_gap_s" };
         assert!(said[gap].is_number() && said["rows"][0]["time_gap_s"] == said[gap], "{arguments}: {said}");
     }
-    let wrong = string("--range-sensors maybe");
-    assert_eq!(wrong.status.code(), Some(2));
-    let line = String::from_utf8(wrong.stderr).unwrap();
-    assert!(line.contains("--range-sensors") && line.lines().count() == 1, "{line}");
+    for wrong in ["maybe", "1.5", "-1", "half"] {
+        let output = string(&format!("--range-sensors={wrong}"));
+        assert_eq!(output.status.code(), Some(2));
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(line, format!("error: --range-sensors: is \"{wrong}\"; give on, off or a share from 0 to 1\n"));
+    }
+}
+
+#[test]
+fn half_of_the_vehicles_with_range_sensors_keep_to_the_limit_at_the_time_gap_of_those_without() {
+    let row = rows("--delays 0.1 --losses 0.1 --step-only --seeds 1 --range-sensors 0.5").remove(0);
+    assert!(rows::failures(std::slice::from_ref(&row)).is_empty(), "{row:?}");
+    assert_eq!(row.time_gap_s, shipped_time_gap_s(SensorShare::NONE));
 }
 
 #[test]
@@ -153,7 +163,10 @@ fn a_mixture_that_cannot_be_is_refused_with_option_cause_and_remedy() {
     let cases = [
         ("--people 0", "--people: vehicle 0 is none of the followers; give followers, from 1 to 10"),
         ("--unequipped 11", "--unequipped: vehicle 11 is none of the followers; give followers, from 1 to 10"),
-        ("--unequipped 3", "--unequipped: nobody hears these vehicles, and nobody sees them; add `--range-sensors on`"),
+        (
+            "--unequipped 3",
+            "--unequipped: nobody hears vehicle 3, and the vehicle behind it does not see it; add `--range-sensors on`",
+        ),
         (
             "--people 2,3 --unequipped 3 --range-sensors on",
             "--people: vehicle 3 is in `--unequipped` too; leave it out of one of the two",

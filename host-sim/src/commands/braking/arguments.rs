@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::commands::ending::OutputArguments;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 
 /// The arguments of `braking`.
 #[derive(Clone, Debug, Args)]
@@ -33,9 +33,9 @@ pub struct BrakingArguments {
     #[arg(long, value_name = "SHARE", default_value = "0.1", allow_negative_numbers = true)]
     pub loss: f64,
 
-    /// Whether every follower has a range sensor
-    #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "on")]
-    pub range_sensors: Switch,
+    /// Whether every follower has a range sensor, or a share of them, from 0 to 1
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "on")]
+    pub range_sensors: SensorShare,
 
     /// Seed of losses and views, and of the order of the bodies
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]

@@ -25,6 +25,8 @@ use rows::Row;
 struct Results<'a> {
     /// Whether every follower has a range sensor.
     range_sensors: bool,
+    /// The share of the followers that have one.
+    range_sensor_share: f64,
     /// Speed from which the leader brakes.
     speed_mps: f64,
     /// Length of the silence.
@@ -48,7 +50,8 @@ pub fn run(options: &BrakingOptions) -> Result<Verdict, Error> {
     progress.finish();
     let failures = rows::failures(&rows);
     let results = Results {
-        range_sensors: options.range_sensors.is_on(),
+        range_sensors: options.range_sensors.is_all(),
+        range_sensor_share: options.range_sensors.share(),
         speed_mps: options.speed_mps,
         silence_s: options.silence_s,
         delay_s: options.delay_s,

@@ -4,7 +4,7 @@ use super::arguments::BrakingArguments;
 use crate::commands::ending::Destination;
 use crate::commands::string::options::{shipped_time_gap_s, within};
 use crate::error::Error;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 use crate::seeds;
 
 /// The measurement, and where its results go.
@@ -23,7 +23,7 @@ pub struct BrakingOptions {
     /// Fraction of messages lost outside the silence.
     pub loss: f64,
     /// Whether every follower has a range sensor.
-    pub range_sensors: Switch,
+    pub range_sensors: SensorShare,
     /// The first seed.
     pub seed: u64,
     /// Number of seeds; at least 1.

@@ -131,11 +131,11 @@ fn scenario(
 ) -> Result<Scenario, Error> {
     let BrakingOptions { speed_mps, silence_s, delay_s, loss, range_sensors, .. } = options;
     let gap_m = 2.0 + speed_mps * time_gap_s;
-    // As `Config::with_range_sensor` has it.
-    let feed_forward: f64 = if range_sensors.is_on() { FEED_FORWARD.get().to_num() } else { 0.0 };
     let common = format!("speed_mps = {speed_mps}\nposition_accuracy_m = 0.05\nspeed_accuracy_mps = 0.02\n");
     let turn = ((options.seed % 15) + number) as usize;
     let follower = |index: usize| {
+        // As `Config::with_range_sensor` has it.
+        let feed_forward: f64 = if range_sensors.has(index + 1) { FEED_FORWARD.get().to_num() } else { 0.0 };
         let (body, lag_s) = (BODIES[(index + turn) % BODIES.len()], LAGS_S[(index + turn) % LAGS_S.len()]);
         format!(
             "[[vehicle]]\nkind = \"{body}\"\nlag_s = {lag_s}\ngap_m = {gap_m}\ntime_gap_s = {time_gap_s}\n\

@@ -4,6 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 use crate::commands::identifiers::IdentifierArguments;
+use crate::input::scenario::SensorShare;
 
 /// Identity of the unit. `hil` uses the same arguments for the device under test.
 #[derive(Clone, Debug, Default, Args)]
@@ -19,6 +20,10 @@ pub struct UnitArguments {
     /// Where the messages lie on the bus.
     #[command(flatten)]
     pub identifiers: IdentifierArguments,
+
+    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario says
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, conflicts_with = "station")]
+    pub range_sensors: Option<SensorShare>,
 
     /// The bus is CAN FD, whatever the scenario says
     #[arg(long)]

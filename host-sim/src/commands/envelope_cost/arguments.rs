@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 use crate::commands::ending::OutputArguments;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 
 /// The arguments of `envelope-cost`.
 #[derive(Clone, Debug, Args)]
@@ -38,9 +38,10 @@ pub struct EnvelopeCostArguments {
     #[arg(long, value_name = "FILE.csv")]
     pub channel_trace: Option<PathBuf>,
 
-    /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says
-    #[arg(long, value_name = "on|off", hide_possible_values = true)]
-    pub range_sensors: Option<Switch>,
+    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario
+    /// says
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true)]
+    pub range_sensors: Option<SensorShare>,
 
     /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
     #[arg(long)]

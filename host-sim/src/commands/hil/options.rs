@@ -38,7 +38,8 @@ impl HilOptions {
     /// # Errors
     /// Impossible values, values that do not fit together, and an unusable scenario.
     pub fn read(arguments: HilArguments) -> Result<Self, Error> {
-        let overrides = Overrides { seed: arguments.seed, ..Overrides::default() };
+        let (seed, range_sensors) = (arguments.seed, arguments.unit.range_sensors);
+        let overrides = Overrides { seed, range_sensors, ..Overrides::default() };
         let scenario = scenario(&arguments.scenario, &overrides)?;
         if let Some(vehicle) = arguments.unit.vehicle {
             let error =

@@ -1,7 +1,7 @@
 //! The arguments of `run`, as they are typed.
 
 use crate::commands::ending::OutputArguments;
-use crate::input::scenario::Switch;
+use crate::input::scenario::{SensorShare, Switch};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -85,9 +85,10 @@ pub struct RunSettings {
     )]
     pub envelope: Option<Switch>,
 
-    /// Whether every vehicle that follows another has a range sensor, or none, instead of what the scenario says
-    #[arg(long, value_name = "on|off", hide_possible_values = true)]
-    pub range_sensors: Option<Switch>,
+    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario
+    /// says
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true)]
+    pub range_sensors: Option<SensorShare>,
 
     /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
     #[arg(long)]

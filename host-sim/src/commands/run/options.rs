@@ -103,8 +103,8 @@ fn typed(overrides: &Overrides) -> Vec<String> {
     let step = overrides.step_s.map(|step_s| format!("--step {step_s}"));
     let motion = file("--leader-motion", &overrides.leader_motion);
     let trace = file("--channel-trace", &overrides.channel_trace);
-    let [envelope, sensors] = [("--envelope=", overrides.envelope), ("--range-sensors ", overrides.range_sensors)]
-        .map(|(option, switch)| switch.map(|switch| format!("{option}{switch}")));
+    let envelope = overrides.envelope.map(|switch| format!("--envelope={switch}"));
+    let sensors = overrides.range_sensors.map(|share| format!("--range-sensors {share}"));
     let set = overrides.set.iter().map(|set| format!("--set {}", shell_word(set)));
     [step, motion, trace, envelope, sensors].into_iter().flatten().chain(set).collect()
 }

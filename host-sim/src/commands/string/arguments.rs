@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::commands::ending::OutputArguments;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 
 /// The arguments of `string`.
 #[derive(Clone, Debug, Args)]
@@ -47,9 +47,9 @@ pub struct StringArguments {
     #[arg(long, conflicts_with = "frequencies")]
     pub step_only: bool,
 
-    /// Whether every follower has a range sensor
-    #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
-    pub range_sensors: Switch,
+    /// Whether every follower has a range sensor, or a share of them, from 0 to 1
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "off")]
+    pub range_sensors: SensorShare,
 
     /// Followers, from 1 to 10, that a person drives and that tell their states alone
     #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',')]

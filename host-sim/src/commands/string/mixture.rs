@@ -1,7 +1,7 @@
 //! Who drives the ten followers: lists of vehicles enter; the driver of each leaves.
 
 use crate::error::Error;
-use crate::input::scenario::{Driver, MAX_VEHICLES, Switch};
+use crate::input::scenario::{Driver, MAX_VEHICLES, SensorShare};
 
 /// The followers that people drive; a unit drives every other one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ impl Mixture {
     ///
     /// # Errors
     /// A vehicle that is not a follower, or is in both lists; and a vehicle that nobody hears or sees.
-    pub fn checked(people: Vec<usize>, unequipped: Vec<usize>, sensors: Switch) -> Result<Self, Error> {
+    pub fn checked(people: Vec<usize>, unequipped: Vec<usize>, sensors: SensorShare) -> Result<Self, Error> {
         for (option, list) in [("--people", &people), ("--unequipped", &unequipped)] {
             if let Some(wrong) = list.iter().find(|vehicle| !(1..MAX_VEHICLES).contains(*vehicle)) {
                 let remedy = format!("give followers, from 1 to {}", MAX_VEHICLES - 1);
@@ -28,8 +28,8 @@ impl Mixture {
             let cause = format!("vehicle {both} is in `--unequipped` too");
             return Err(Error::new(cause, "leave it out of one of the two").in_option("--people"));
         }
-        if !unequipped.is_empty() && !sensors.is_on() {
-            let cause = "nobody hears these vehicles, and nobody sees them";
+        if let Some(unseen) = unequipped.iter().find(|vehicle| !sensors.has(*vehicle + 1)) {
+            let cause = format!("nobody hears vehicle {unseen}, and the vehicle behind it does not see it");
             return Err(Error::new(cause, "add `--range-sensors on`").in_option("--unequipped"));
         }
         Ok(Self { people, unequipped })

@@ -20,7 +20,7 @@ pub mod table;
 use serde::Serialize;
 
 use crate::error::Error;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 use crate::progress::Progress;
 use crate::verdict::Verdict;
 use options::StringOptions;
@@ -33,6 +33,8 @@ struct Results<'a> {
     limit: f64,
     /// Whether every follower has a range sensor.
     range_sensors: bool,
+    /// The share of the followers that have one.
+    range_sensor_share: f64,
     /// The followers that a person drives and that tell their states.
     people: &'a [usize],
     /// The followers without a unit.
@@ -62,11 +64,12 @@ pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
     let failures = rows::failures(&rows);
     let results = Results {
         limit: rows::LIMIT,
-        range_sensors: options.range_sensors.is_on(),
+        range_sensors: options.range_sensors.is_all(),
+        range_sensor_share: options.range_sensors.share(),
         people: &options.mixture.people,
         unequipped: &options.mixture.unequipped,
-        shipped_time_gap_s: options::shipped_time_gap_s(Switch::Off),
-        shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(Switch::On),
+        shipped_time_gap_s: options::shipped_time_gap_s(SensorShare::NONE),
+        shipped_time_gap_with_sensor_s: options::shipped_time_gap_s(SensorShare::ALL),
         smallest_time_gap_s: rows::smallest_time_gap_s(&rows),
         smallest: rows::smallest(&rows),
         seed: options.seed,

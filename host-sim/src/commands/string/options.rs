@@ -7,7 +7,7 @@ use super::disturbance::Disturbance;
 use super::mixture::Mixture;
 use crate::commands::ending::Destination;
 use crate::error::Error;
-use crate::input::scenario::Switch;
+use crate::input::scenario::SensorShare;
 use crate::seeds;
 
 /// Default number of seeds of a step, whose result depends on chance.
@@ -27,7 +27,7 @@ pub struct StringOptions {
     /// The disturbances by the leader.
     pub disturbances: Vec<Disturbance>,
     /// Whether every follower has a range sensor.
-    pub range_sensors: Switch,
+    pub range_sensors: SensorShare,
     /// Who drives the followers.
     pub mixture: Mixture,
     /// The first seed of the losses.
@@ -108,10 +108,10 @@ impl StringOptions {
     }
 }
 
-/// The time gap that is shipped for a unit without a range sensor, and for one with it.
+/// The time gap that is shipped where every vehicle has a range sensor, and where some have none.
 #[must_use]
-pub fn shipped_time_gap_s(sensors: Switch) -> f64 {
-    let time_gap = if sensors.is_on() { parameters::TIME_GAP_WITH_SENSOR } else { parameters::TIME_GAP };
+pub fn shipped_time_gap_s(sensors: SensorShare) -> f64 {
+    let time_gap = if sensors.is_all() { parameters::TIME_GAP_WITH_SENSOR } else { parameters::TIME_GAP };
     f64::from(time_gap.to_millis()) / 1e3
 }
 

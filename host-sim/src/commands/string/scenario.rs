@@ -8,7 +8,7 @@ use holdover::parameters::FEED_FORWARD;
 use super::disturbance::{CRUISE_MPS, Disturbance};
 use super::mixture::Mixture;
 use crate::error::Error;
-use crate::input::scenario::{Driver, MAX_VEHICLES, Overrides, Scenario, Switch};
+use crate::input::scenario::{Driver, MAX_VEHICLES, Overrides, Scenario, SensorShare};
 use crate::sim::person::Manner;
 
 /// The place of a row: time gap, delay and loss.
@@ -30,19 +30,19 @@ const UNHEARD_GAP_S: f64 = 1.8;
 pub fn scenario(
     (time_gap_s, delay_s, loss): Place,
     disturbance: Disturbance,
-    sensors: Switch,
+    sensors: SensorShare,
     mixture: &Mixture,
 ) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
-    // As `Config::with_range_sensor` has it.
-    let feed_forward: f64 = if sensors.is_on() { FEED_FORWARD.get().to_num() } else { 0.0 };
     let common = format!("speed_mps = {CRUISE_MPS}\nposition_accuracy_m = 0.05\nspeed_accuracy_mps = 0.02\n");
     let by_hand = |driver: &str| {
         let manner = Manner { wanted_mps: FREE_MPS, time_gap_s: PERSONS_GAP_S, standstill_m: STANDSTILL_M };
         let gap_m = manner.steady_gap_m(CRUISE_MPS);
         format!("driver = \"{driver}\"\ngap_m = {gap_m}\ntime_gap_s = {PERSONS_GAP_S}\n")
     };
-    let by_unit = |kept_s: f64| {
+    let by_unit = |vehicle: usize, kept_s: f64| {
+        // As `Config::with_range_sensor` has it.
+        let feed_forward: f64 = if sensors.has(vehicle) { FEED_FORWARD.get().to_num() } else { 0.0 };
         let gap_m = STANDSTILL_M + CRUISE_MPS * kept_s;
         format!("gap_m = {gap_m}\ntime_gap_s = {time_gap_s}\nfeed_forward = {feed_forward}\n")
     };
@@ -51,8 +51,8 @@ pub fn scenario(
         let drives = match mixture.driver(vehicle) {
             Driver::Unequipped => by_hand("unequipped"),
             Driver::Person => by_hand("person"),
-            Driver::Unit if is_unheard => by_unit(time_gap_s.max(UNHEARD_GAP_S)),
-            Driver::Unit => by_unit(time_gap_s),
+            Driver::Unit if is_unheard => by_unit(vehicle, time_gap_s.max(UNHEARD_GAP_S)),
+            Driver::Unit => by_unit(vehicle, time_gap_s),
         };
         format!("[[vehicle]]\n{drives}{common}")
     };

@@ -4,7 +4,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 use crate::commands::ending::OutputArguments;
-use crate::input::scenario::Switch;
+use crate::input::scenario::{SensorShare, Switch};
 
 /// The arguments of `sweep`.
 #[derive(Clone, Debug, Args)]
@@ -44,9 +44,9 @@ pub struct SweepArguments {
     )]
     pub envelope: Switch,
 
-    /// Whether every vehicle that follows another has a range sensor
-    #[arg(long, value_name = "on|off", hide_possible_values = true, default_value = "off")]
-    pub range_sensors: Switch,
+    /// Whether every vehicle that follows another has a range sensor, or a share of them, from 0 to 1
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "off")]
+    pub range_sensors: SensorShare,
 
     /// Refuse recordings that say what no vehicle and no link does, instead of warning of them
     #[arg(long)]

@@ -2,7 +2,7 @@
 //! leave. Of a corridor: the table `[sensors]` enters; the share of vehicles that have a range sensor leaves, and what
 //! it sees.
 
-use super::Switch;
+use super::SensorShare;
 use super::keys::{Document, Number, Section};
 use crate::error::Error;
 use serde::Serialize;
@@ -96,7 +96,7 @@ pub fn range_sensor(
     document: &Document,
     section: &mut Section,
     follows: bool,
-    said: Option<Switch>,
+    said: Option<bool>,
 ) -> Result<Option<RangeSensor>, Error> {
     let fitted = section.flag("range_sensor")?;
     let (distance, speed) = (section.number(&RANGE)?, section.number(&RANGE_SPEED)?);
@@ -111,7 +111,7 @@ pub fn range_sensor(
             Err(document.error_at(distance.line.or(speed.line), cause, remedy))
         }
         _ => {
-            let is_fitted = said.map_or(fitted.is_none_or(|fitted| fitted.value), Switch::is_on);
+            let is_fitted = said.unwrap_or(fitted.is_none_or(|fitted| fitted.value));
             Ok((follows && is_fitted).then_some(RangeSensor {
                 distance_m: distance.value,
                 speed_mps: speed.value,
@@ -123,7 +123,7 @@ pub fn range_sensor(
 }
 
 /// The range sensors of a corridor: the table `[sensors]`. What the command line says overrides its share.
-pub fn fitted(mut section: Section, said: Option<Switch>) -> Result<Fitted, Error> {
+pub fn fitted(mut section: Section, said: Option<SensorShare>) -> Result<Fitted, Error> {
     let share = section.number(&SHARE)?.value;
     let (dropouts, dropout) = (section.number(&DROPOUTS)?, section.number(&DROPOUT)?);
     let sensor = RangeSensor {
@@ -138,6 +138,6 @@ pub fn fitted(mut section: Section, said: Option<Switch>) -> Result<Fitted, Erro
         },
     };
     section.finish()?;
-    let share = said.map_or(share, |said| if said.is_on() { 1.0 } else { 0.0 });
+    let share = said.map_or(share, SensorShare::share);
     Ok(Fitted { share, sensor })
 }

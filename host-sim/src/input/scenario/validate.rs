@@ -5,7 +5,7 @@ use super::driver::{self, Driver};
 use super::keys::{Document, Found, Number, Section, whole};
 use super::set::Sets;
 use super::{
-    Fleet, Leader, MAX_VEHICLES, Overrides, Scenario, Span, Start, Switch, Vehicle, bus, envelope, event, plant,
+    Fleet, Leader, MAX_VEHICLES, Overrides, Scenario, SensorShare, Span, Start, Vehicle, bus, envelope, event, plant,
     sensors, start,
 };
 use crate::error::{Error, quoted};
@@ -172,7 +172,7 @@ fn vehicles(
     document: &Document,
     top: &mut Section,
     motion: Option<&Motion>,
-    said: Option<Switch>,
+    said: Option<SensorShare>,
 ) -> Result<Vec<Vehicle>, Error> {
     let recorded_mps = motion.map(|motion| motion.rows()[0].speed_mps.max(0.0));
     let middle = recorded_mps.unwrap_or(SPEED.default);
@@ -195,7 +195,7 @@ fn vehicles(
     let mut vehicles = Vec::new();
     for (index, section) in sections.into_iter().enumerate() {
         let drives = if index > 0 { Drives::Behind } else { Drives::first(motion.is_some()) };
-        vehicles.push(vehicle(document, section, drives, spread, said)?);
+        vehicles.push(vehicle(document, section, drives, spread, said.map(|share| share.has(index)))?);
     }
     start::check(&vehicles).map_err(|start::Misplaced { vehicle, cause, remedy }| {
         document.error_at(lines.get(vehicle).copied().flatten(), cause, remedy)
@@ -228,7 +228,7 @@ fn vehicle(
     mut section: Section,
     drives: Drives,
     speeds: Span,
-    said: Option<Switch>,
+    said: Option<bool>,
 ) -> Result<Vehicle, Error> {
     let position = section.span(&POSITION)?;
     let gap = section.span(&GAP)?;
