@@ -22,7 +22,7 @@ pub struct UnitArguments {
     pub identifiers: IdentifierArguments,
 
     /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario says
-    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, conflicts_with = "station")]
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true)]
     pub range_sensors: Option<SensorShare>,
 
     /// The bus is CAN FD, whatever the scenario says
