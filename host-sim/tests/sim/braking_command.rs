@@ -55,7 +55,7 @@ fn the_report_has_the_command_and_both_sides() {
     assert_eq!(output.status.code(), Some(0), "{}", text(output.stderr));
     let page = std::fs::read_to_string(folder.path().join("report/index.html")).unwrap();
     assert!(page.contains(
-        "holdover-sim braking --braking 5 --time-gaps 1 --speed 15 --silence 4 --delay 0.1 --loss 0.1 --range-sensors on \
+        "holdover-sim braking --braking 5 --time-gaps 0.8 --speed 15 --silence 4 --delay 0.1 --loss 0.1 --range-sensors on \
          --seed 1 --seeds 1"
     ));
     let table = text(output.stdout);
