@@ -432,11 +432,11 @@ typedef struct holdover_body_t {
 
 // The law of eqs 5 and 7.
 typedef struct holdover_law_t {
-  // Desired time gap in ms; 1600 by default. With a range sensor 1000 will do (`range_sensor`, and `feed_forward_milli` of 500).
+  // Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
   uint32_t time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;
-  // 1: the gains come from the table of eq. 6; 0: they are the following two.
+  // 1: the gains come from the tables of eq. 6; 0: they are the following two.
   uint8_t gain_table;
   // Gain in 1/(1000 s^2).
   uint32_t gain_milli;

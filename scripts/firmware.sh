@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # firmware.sh: the firmware builds in every form, nothing in it can panic, it ticks in the emulator, replayed logs give the
-# same frames as on this host, and what it costs is no more than it was. `./ci.sh firmware` runs it. The logs and the costs are of a
-# workspace of their own, and are run beside the images: most of either is one compiler that has one processor.
+# same frames as on this host, and what it costs is no more than it was. `./ci.sh firmware` runs it. The costs are of a
+# workspace of their own. Logs and costs are run beside the images: most of either is one compiler that has one processor.
 # Exit code 77: something that it needs is not there, and cannot be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,7 +1,7 @@
 /*
  * A vehicle's way through four intersections, as it was recorded on its bus, is given to a unit, and what the unit sends is written to
  * a file: `log.bin` of the present folder enters, `sent.bin` leaves. tests/embedded/README.md says how a log is recorded, and
- * tests/embedded/replay/ what stands in it. It begins with the unit's configuration and map.
+ * tests/replay/ what stands in it. It begins with the unit's configuration and map.
  *
  * A project of your own has its map as constants. Here it is read, so it needs room.
  */

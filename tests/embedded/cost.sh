@@ -11,7 +11,6 @@ target=thumbv7em-none-eabihf
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Of this package alone, so that what the host's programs want of the core is not in it.
 cargo build --locked --quiet --profile firmware --target $target -p holdover-image --bin cost
 timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial none \
     -semihosting-config enable=on,target=native -icount shift=6,align=off,sleep=off \

@@ -58,7 +58,7 @@ pub enum Command {
     /// Measure the cost of the envelope: runs without and with it over silences of several lengths, on all cores
     #[command(alias = "price", after_help = envelope_cost::arguments::AFTER_HELP)]
     EnvelopeCost(EnvelopeCostArguments),
-    /// Make the table of gains that the core ships, eq. 6, and prove every cell of it
+    /// Make the tables of gains that the core ships, eq. 6, and prove every cell of them
     #[command(after_help = gains::arguments::AFTER_HELP)]
     Gains(GainsArguments),
     /// Measure how a string of ten vehicles damps a disturbance by its leader, over delays and losses, on all cores

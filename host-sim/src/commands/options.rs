@@ -53,7 +53,7 @@ pub enum Options {
     Sweep(SweepOptions),
     /// Measure the cost of the envelope.
     EnvelopeCost(EnvelopeCostOptions),
-    /// Make and prove the table of gains.
+    /// Make and prove the tables of gains.
     Gains(GainsOptions),
     /// Measure string stability.
     String(StringOptions),

@@ -306,7 +306,7 @@ impl<'a> World<'a> {
             let ahead = self.vehicles[index - 1].seen_from_behind();
             let own = &mut self.vehicles[index];
             let gap_m = ahead.rear_m - own.plant.position_m;
-            own.take_over(manner.behind(own.plant.speed_mps, gap_m, ahead.speed_mps));
+            own.drive_by_hand(manner.behind(own.plant.speed_mps, gap_m, ahead.speed_mps));
         }
     }
 

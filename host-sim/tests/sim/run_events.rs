@@ -163,3 +163,38 @@ fn the_envelope_is_switched_at_once_and_back() {
     let again = trace(&format!("{CALM}{sensors}{off}{silence}{on}"));
     assert_eq!((limited(&again, (5.5, 9.0)), limited(&again, (9.0, 11.0))), (0.0, 1.0));
 }
+
+#[test]
+fn whom_a_person_always_drives_an_event_drives_until_it_lets_go() {
+    let vehicles = "[[vehicle]]\n[[vehicle]]\ndriver = \"person\"\n[[vehicle]]\n";
+    let calm = format!("ego = 2\n{CALM}{vehicles}");
+    let brakes =
+        "[[event]]\nat_s = 8\nvehicle = 1\ndrive_mps2 = -2\n[[event]]\nat_s = 10\nvehicle = 1\nrelease = true\n";
+    let (undisturbed, braked) = (trace(&calm), trace(&format!("{calm}{brakes}")));
+    let braking = |tick: &holdover_sim::sim::world::Tick| -tick.acceleration_mps2;
+    assert!(largest(&undisturbed, 1, (8.5, 10.0), braking) < 1.0);
+    assert!(largest(&braked, 1, (8.5, 10.0), braking) > 1.5, "the event brakes");
+    let forward = |tick: &holdover_sim::sim::world::Tick| tick.acceleration_mps2;
+    assert!(largest(&braked, 1, (10.0, 14.0), forward) > 0.5, "the person drives on, behind a gap that has grown");
+    for run in [&undisturbed, &braked] {
+        assert!(run.vehicles[1].iter().all(|tick| tick.mode == ModeCode::Standby), "its unit never drives");
+    }
+}
+
+#[test]
+fn people_drive_followers_that_are_not_the_ego() {
+    for (text, wanted) in [
+        ("[[vehicle]]\ndriver = \"unit\"\n[[vehicle]]\n", "live.toml:2: the leader (vehicle 0) has a `driver`, and "),
+        (
+            "ego = 1\n[[vehicle]]\n[[vehicle]]\ndriver = \"person\"\n",
+            "live.toml:1: vehicle 1 is the ego, and a person drives it; ",
+        ),
+        (
+            "[[vehicle]]\n[[vehicle]]\ndriver = \"robot\"\n",
+            "live.toml:3: `driver` is \"robot\"; give \"unit\", \"person\" or \"unequipped\"",
+        ),
+    ] {
+        let said = refusal(text);
+        assert!(said.starts_with(wanted), "{said}");
+    }
+}

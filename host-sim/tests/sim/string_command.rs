@@ -165,7 +165,12 @@ fn a_mixture_that_cannot_be_is_refused_with_option_cause_and_remedy() {
         ("--unequipped 11", "--unequipped: vehicle 11 is none of the followers; give followers, from 1 to 10"),
         (
             "--unequipped 3",
-            "--unequipped: nobody hears vehicle 3, and the vehicle behind it does not see it; add `--range-sensors on`",
+            "--unequipped: the unit behind vehicle 3 neither hears it nor sees it; give `--range-sensors on`",
+        ),
+        ("--people -1", "--people: is \"-1\"; give a whole number from 0 on"),
+        (
+            "--people 1,2,3,4,5,6 --unequipped 7,8,9,10 --range-sensors on",
+            "no vehicle is left that a unit drives; leave one of them out of `--people` and `--unequipped`",
         ),
         (
             "--people 2,3 --unequipped 3 --range-sensors on",
@@ -177,4 +182,25 @@ fn a_mixture_that_cannot_be_is_refused_with_option_cause_and_remedy() {
         assert_eq!(String::from_utf8_lossy(&output.stderr), format!("error: {message}\n"), "{arguments}");
         assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{arguments}");
     }
+}
+
+#[test]
+fn behind_the_last_vehicle_and_behind_people_nobody_needs_a_sensor() {
+    for arguments in
+        ["--unequipped 10", "--unequipped 4 --people 5", "--unequipped 9,10,10 --people 1 --range-sensors on"]
+    {
+        let mixture = options(arguments).mixture;
+        assert!(mixture.is_mixed() && mixture.unequipped.len() < 3, "{arguments}: {mixture:?}");
+    }
+}
+
+#[test]
+fn methods_that_are_not_run_have_no_smallest_time_gap() {
+    let rows = rows("--delays 0 --losses 0 --step-only --time-gaps 1.2,1.6 --people 3");
+    let smallest = rows::smallest(&rows);
+    assert!(smallest.iter().all(|link| link.holdover_s.is_some()), "{smallest:?}");
+    assert!(
+        smallest.iter().all(|link| link.cacc_s.or(link.as_it_stands_s).or(link.degraded_cacc_s).is_none()),
+        "{smallest:?}"
+    );
 }

@@ -22,7 +22,7 @@ pub struct BrakingOptions {
     pub delay_s: f64,
     /// Fraction of messages lost outside the silence.
     pub loss: f64,
-    /// Whether every follower has a range sensor.
+    /// The share of the followers that have a range sensor.
     pub range_sensors: SensorShare,
     /// The first seed.
     pub seed: u64,

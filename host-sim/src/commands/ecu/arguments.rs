@@ -21,10 +21,6 @@ pub struct UnitArguments {
     #[command(flatten)]
     pub identifiers: IdentifierArguments,
 
-    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario says
-    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true)]
-    pub range_sensors: Option<SensorShare>,
-
     /// The bus is CAN FD, whatever the scenario says
     #[arg(long)]
     pub fd: bool,
@@ -44,6 +40,10 @@ pub struct EcuArguments {
     /// Tick by the bus's time synchronisation instead of by a clock
     #[arg(long)]
     pub lock_step: bool,
+
+    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario says
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, conflicts_with = "station")]
+    pub range_sensors: Option<SensorShare>,
 
     /// The unit.
     #[command(flatten)]

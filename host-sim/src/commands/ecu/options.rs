@@ -31,7 +31,7 @@ impl EcuOptions {
     /// # Errors
     /// Impossible values, and an unusable scenario.
     pub fn read(arguments: &EcuArguments) -> Result<Self, Error> {
-        let overrides = Overrides { range_sensors: arguments.unit.range_sensors, ..Overrides::default() };
+        let overrides = Overrides { range_sensors: arguments.range_sensors, ..Overrides::default() };
         let scenario = scenario(&arguments.scenario, &overrides)?;
         let config = unit(&scenario, &arguments.unit)?;
         Ok(Self { bus: arguments.bus.clone(), config, lock_step: arguments.lock_step })

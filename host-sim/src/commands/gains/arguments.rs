@@ -41,8 +41,8 @@ Limits of every pair on the curve, thousandth by thousandth:
 Limits of every cell, for a car that comes up to a target of constant speed:
   where braking at 3 m/s² from the start would do
                     the gap never falls by more than 0.25 m below the smaller
-                    of that at the start and that in the end; settled in 45 s,
-                    and 7 s more for each second of time gap above 1 s: the
+                    of that at the start and that in the end; settled in 45 s
+                    at a time gap of 1 s, and 7 s later for each second more: the
                     distance left dies out with a time constant that has the
                     gap in it, and from 260 m to 0.25 m is 7 factors of e
   where braking at 4 m/s² would avoid a collision

@@ -33,7 +33,7 @@ use proof::Proof;
 /// The output of the command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GainsOptions {
-    /// File for the table as Rust.
+    /// File for the tables as Rust.
     pub write: Option<PathBuf>,
     /// Where its results go.
     pub destination: Destination,
@@ -128,7 +128,7 @@ pub fn run(options: &GainsOptions) -> Result<Verdict, Error> {
     let delivered = options.destination.deliver(&results, &text(&results), "", || page::render(&tables));
     if let Some(file) = &options.write {
         Draft::whole(file, &source::text(&tables))?;
-        output::say(&format!("table: {}", file.display()));
+        output::say(&format!("tables: {}", file.display()));
     }
     delivered?;
     Ok(Verdict::of(&results.failures))

@@ -1,4 +1,4 @@
-//! The report of the gains: the table enters, an HTML page with heat maps leaves.
+//! The report of the gains: the tables enter, an HTML page with heat maps leaves.
 
 use super::Table;
 use super::cell::{Asked, Cell, OVERSHOOT_M};

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::judge::LATENCY_P99_MS;
 use crate::commands::ecu::arguments::UnitArguments;
+use crate::input::scenario::SensorShare;
 
 /// The arguments of `hil`.
 #[derive(Clone, Debug, Args)]
@@ -25,6 +26,10 @@ pub struct HilArguments {
     /// The device; its twin has the same configuration.
     #[command(flatten)]
     pub unit: UnitArguments,
+
+    /// Whether every vehicle that follows another has a range sensor, or none, or a share from 0 to 1, instead of what the scenario says
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true)]
+    pub range_sensors: Option<SensorShare>,
 
     /// Start the device by this command, and end it after the run
     #[arg(long, value_name = "COMMAND")]

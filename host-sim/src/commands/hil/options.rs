@@ -38,7 +38,7 @@ impl HilOptions {
     /// # Errors
     /// Impossible values, values that do not fit together, and an unusable scenario.
     pub fn read(arguments: HilArguments) -> Result<Self, Error> {
-        let (seed, range_sensors) = (arguments.seed, arguments.unit.range_sensors);
+        let (seed, range_sensors) = (arguments.seed, arguments.range_sensors);
         let overrides = Overrides { seed, range_sensors, ..Overrides::default() };
         let scenario = scenario(&arguments.scenario, &overrides)?;
         if let Some(vehicle) = arguments.unit.vehicle {

@@ -52,11 +52,11 @@ pub struct StringArguments {
     pub range_sensors: SensorShare,
 
     /// Followers, from 1 to 10, that a person drives and that tell their states alone
-    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',')]
+    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub people: Vec<usize>,
 
     /// Followers without a unit, that a person drives and nobody hears; with range sensors
-    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',')]
+    #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub unequipped: Vec<usize>,
 
     /// Seed of the losses
@@ -90,8 +90,11 @@ Runs:
 Mixed strings:
   A person drives by the Intelligent Driver Model, 1.5 s behind what is really
   there. Ratios are those of the vehicles that a unit drives. A unit behind a
-  vehicle that nobody hears sees it, and keeps 1.8 s. The other methods are not
-  run.
+  vehicle that nobody hears sees it, and keeps 1.8 s, or the time gap if that is
+  more. The other methods are not run.
+
+Range sensors on a share of the followers are spread evenly, the first follower
+has one, and the time gap by default is that of a unit without one.
 
 Chance:
   Which messages are lost decides what a step passes on, so it is run with 40

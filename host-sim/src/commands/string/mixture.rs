@@ -16,8 +16,13 @@ impl Mixture {
     /// Checks the lists.
     ///
     /// # Errors
-    /// A vehicle that is not a follower, or is in both lists; and a vehicle that nobody hears or sees.
-    pub fn checked(people: Vec<usize>, unequipped: Vec<usize>, sensors: SensorShare) -> Result<Self, Error> {
+    /// A vehicle that is not a follower, or is in both lists; lists of all vehicles; and a unit behind a vehicle that it neither hears nor
+    /// sees.
+    pub fn checked(mut people: Vec<usize>, mut unequipped: Vec<usize>, sensors: SensorShare) -> Result<Self, Error> {
+        for list in [&mut people, &mut unequipped] {
+            list.sort_unstable();
+            list.dedup();
+        }
         for (option, list) in [("--people", &people), ("--unequipped", &unequipped)] {
             if let Some(wrong) = list.iter().find(|vehicle| !(1..MAX_VEHICLES).contains(*vehicle)) {
                 let remedy = format!("give followers, from 1 to {}", MAX_VEHICLES - 1);
@@ -28,11 +33,26 @@ impl Mixture {
             let cause = format!("vehicle {both} is in `--unequipped` too");
             return Err(Error::new(cause, "leave it out of one of the two").in_option("--people"));
         }
-        if let Some(unseen) = unequipped.iter().find(|vehicle| !sensors.has(*vehicle + 1)) {
-            let cause = format!("nobody hears vehicle {unseen}, and the vehicle behind it does not see it");
-            return Err(Error::new(cause, "add `--range-sensors on`").in_option("--unequipped"));
+        let mixture = Self { people, unequipped };
+        let Some(_) = mixture.first_unit() else {
+            let remedy = "leave one of them out of `--people` and `--unequipped`";
+            return Err(Error::new("no vehicle is left that a unit drives", remedy));
+        };
+        let is_lost = |vehicle: &&usize| {
+            let behind = **vehicle + 1;
+            behind < MAX_VEHICLES && mixture.driver(behind) == Driver::Unit && !sensors.has(behind)
+        };
+        if let Some(lost) = mixture.unequipped.iter().find(is_lost) {
+            let cause = format!("the unit behind vehicle {lost} neither hears it nor sees it");
+            return Err(Error::new(cause, "give `--range-sensors on`").in_option("--unequipped"));
         }
-        Ok(Self { people, unequipped })
+        Ok(mixture)
+    }
+
+    /// The first follower that a unit drives.
+    #[must_use]
+    pub fn first_unit(&self) -> Option<usize> {
+        (1..MAX_VEHICLES).find(|vehicle| self.driver(*vehicle) == Driver::Unit)
     }
 
     /// Whether people drive some of the vehicles.

@@ -26,7 +26,7 @@ pub struct StringOptions {
     pub losses: Vec<f64>,
     /// The disturbances by the leader.
     pub disturbances: Vec<Disturbance>,
-    /// Whether every follower has a range sensor.
+    /// The share of the followers that have a range sensor.
     pub range_sensors: SensorShare,
     /// Who drives the followers.
     pub mixture: Mixture,

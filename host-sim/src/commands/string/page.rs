@@ -2,7 +2,7 @@
 
 use super::options::{StringOptions, shipped_time_gap_s};
 use super::rows::{LIMIT, Mean, Row, Smallest, smallest};
-use super::table::{ratio, runs};
+use super::table::{not_run, ratio, runs};
 use crate::measure::bootstrap::spelled;
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
@@ -10,6 +10,9 @@ use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
 const WHAT: &str = "Ten vehicles follow a leader that is disturbed. Shown is the largest ratio, over all disturbances, of a \
                     vehicle’s speed amplitude to its predecessor’s. Below 1 a disturbance dies out along the string; above \
                     1 it grows, and the last vehicle brakes for what the first hardly felt.";
+
+const MIXED: &str = "People drive some of the vehicles, and the command below says which. The ratios are those of the others, which a unit \
+                     drives. The other methods are not run, because each of them drives every vehicle of a string.";
 
 const CHANCE: &str = "Which messages are lost decides what a step passes on, so the largest ratio grows with the number of \
                       seeds, and the verdict is of these runs and no others.";
@@ -20,12 +23,15 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Pag
     let passed = format!("With holdover no ratio is above {LIMIT} in {}.", runs(options, rows));
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
     page.paragraph(WHAT);
+    if options.mixture.is_mixed() {
+        page.paragraph(MIXED);
+    }
     page.paragraph(&format!("{}. {CHANCE}", runs(options, rows)));
     table(&mut page, rows);
     means(&mut page, rows);
     page.command(&options.command());
     if options.time_gaps_s.len() > 1 {
-        smallest_gaps(&mut page, rows);
+        smallest_gaps(&mut page, options, rows);
         over_time_gap(&mut page, options, rows);
     }
     for &time_gap_s in &options.time_gaps_s {
@@ -111,15 +117,16 @@ fn guide() -> Guide {
     Guide { at: LIMIT, label: format!("limit {LIMIT}") }
 }
 
-fn smallest_gaps(page: &mut Page, rows: &[Row]) {
+fn smallest_gaps(page: &mut Page, options: &StringOptions, rows: &[Row]) {
     let caption =
         format!("Smallest time gap of those that were run, in s, at and above which the ratio is at most {LIMIT}.");
-    let said = |gap: Option<f64>| Cell::number(gap.map_or("none".into(), |gap| gap.to_string()));
+    let or = |gap: Option<f64>, nothing: &str| Cell::number(gap.map_or(nothing.to_owned(), |gap| gap.to_string()));
+    let said = |gap: Option<f64>| or(gap, not_run(options));
     let cells = |link: &Smallest| {
         vec![
             Cell::number(link.delay_s.to_string()),
             Cell::number(link.loss.to_string()),
-            said(link.holdover_s),
+            or(link.holdover_s, "none"),
             said(link.as_it_stands_s),
             said(link.age_times_speed_s),
             said(link.cacc_s),

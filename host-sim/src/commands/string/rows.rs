@@ -280,7 +280,8 @@ pub fn smallest(rows: &[Row]) -> Vec<Smallest> {
     }
     let of_link = |(delay_s, loss): (f64, f64)| {
         let here: Vec<Row> = rows.iter().filter(|row| (row.delay_s, row.loss) == (delay_s, loss)).cloned().collect();
-        let other = |of: fn(&Row) -> &Option<Worst>| smallest_where(&here, |row| !is_above(of(row)));
+        let other =
+            |of: fn(&Row) -> &Option<Worst>| smallest_where(&here, |row| of(row).is_some() && !is_above(of(row)));
         Smallest {
             delay_s,
             loss,

@@ -20,7 +20,7 @@ const FREE_MPS: f64 = 50.0;
 const STANDSTILL_M: f64 = 2.0;
 /// Time gap of a person.
 const PERSONS_GAP_S: f64 = 1.5;
-/// Time gap of a unit that sees the vehicle ahead, and never hears it: that of its cruise control.
+/// Time gap of a unit that sees the vehicle ahead, and never hears it: that of its cruise control, unless its own is larger.
 const UNHEARD_GAP_S: f64 = 1.8;
 
 /// The scenario.
@@ -56,9 +56,10 @@ pub fn scenario(
         };
         format!("[[vehicle]]\n{drives}{common}")
     };
+    let ego = mixture.first_unit().unwrap_or(1);
     let followers: String = (1..MAX_VEHICLES).map(follower).collect();
     let text = format!(
-        "duration_s = {duration_s}\nego = 1\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n[[vehicle]]\n{common}{followers}[channel]\n\
+        "duration_s = {duration_s}\nego = {ego}\n[leader]\ntarget_speed_mps = {CRUISE_MPS}\n[[vehicle]]\n{common}{followers}[channel]\n\
          applies_to = \"all\"\ndelay_mean_s = {delay_s}\ndelay_std_s = 0\nloss = {loss}\noutages = []\n",
     );
     let overrides = Overrides { range_sensors: Some(sensors), ..Overrides::MESSAGES_ALONE };

@@ -47,7 +47,7 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
         );
     }
     if options.time_gaps_s.len() > 1 {
-        gaps(&mut text, rows);
+        gaps(&mut text, options, rows);
     }
     match smallest_time_gap_s(rows) {
         Some(gap) => {
@@ -66,22 +66,30 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
 }
 
 /// The smallest time gaps at each link.
-fn gaps(text: &mut String, rows: &[Row]) {
+fn gaps(text: &mut String, options: &StringOptions, rows: &[Row]) {
     // Writing to a string cannot fail.
     let _ = writeln!(
         text,
         "\nsmallest time gap tried, s, at and above which the ratio is at most {LIMIT}\n{:<10}{:<6}{:>9}{:>14}{:>17}{:>8}{:>10}",
         "delay, s", "loss", "holdover", "as it stands", "age times speed", "CACC", "degraded"
     );
-    let said = |gap: Option<f64>| gap.map_or("none".into(), |gap| gap.to_string());
+    let or = |gap: Option<f64>, nothing: &str| gap.map_or(nothing.to_owned(), |gap| gap.to_string());
+    let not_run = not_run(options);
     for Smallest { delay_s, loss, holdover_s, as_it_stands_s, age_times_speed_s, cacc_s, degraded_cacc_s } in
         smallest(rows)
     {
-        let [ours, stands, moved, cacc, degraded] =
-            [holdover_s, as_it_stands_s, age_times_speed_s, cacc_s, degraded_cacc_s].map(said);
+        let ours = or(holdover_s, "none");
+        let [stands, moved, cacc, degraded] =
+            [as_it_stands_s, age_times_speed_s, cacc_s, degraded_cacc_s].map(|gap| or(gap, not_run));
         let _ = writeln!(text, "{delay_s:<10}{loss:<6}{ours:>9}{stands:>14}{moved:>17}{cacc:>8}{degraded:>10}");
     }
     text.push('\n');
+}
+
+/// What is said where another method has no smallest time gap: in a mixed string it was not run.
+#[must_use]
+pub fn not_run(options: &StringOptions) -> &'static str {
+    if options.mixture.is_mixed() { "-" } else { "none" }
 }
 
 /// The verdict, and what it is based on.

@@ -1,6 +1,6 @@
 //! The key `driver` of a vehicle: a word enters; who drives leaves.
 
-use super::keys::Section;
+use super::keys::{Document, Section};
 use crate::error::Error;
 
 /// Who drives a vehicle, and what others hear of it.
@@ -15,10 +15,18 @@ pub enum Driver {
     Unequipped,
 }
 
-/// Reads the word; the unit by default.
-pub fn driver(section: &mut Section) -> Result<Driver, Error> {
+/// Reads the word; the unit by default. Nobody drives the leader by it.
+pub fn driver(document: &Document, section: &mut Section, follows: bool) -> Result<Driver, Error> {
     const KEY: &str = "driver";
     let Some(value) = section.value(KEY) else { return Ok(Driver::default()) };
+    if !follows {
+        let cause = "the leader (vehicle 0) has a `driver`, and nobody is ahead of it";
+        return Err(document.error_at(
+            section.line_of(value),
+            cause,
+            "give it a recorded `motion` in [leader], or remove it",
+        ));
+    }
     match value.get_ref().as_str() {
         Some("unit") => Ok(Driver::Unit),
         Some("person") => Ok(Driver::Person),

@@ -188,7 +188,7 @@ impl Event {
                 if self.vehicle.map_or(sensors.contains(&true), has_one) {
                     return Ok(());
                 }
-                let remedy = "give it one in the scenario (`range_sensor = true`), or leave out `--range-sensors off`";
+                let remedy = "give it one in the scenario (`range_sensor = true`), or give `--range-sensors on`";
                 Err(Error::new("a range sensor is switched on where none is fitted", remedy))
             }
             Change::Switch(..) => Ok(()),

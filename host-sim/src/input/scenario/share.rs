@@ -25,11 +25,12 @@ impl SensorShare {
         self == Self::ALL
     }
 
-    /// Whether the follower with this number has one; the first is 1. They are spread evenly along the string.
+    /// Whether the follower with this number has one; the first is 1. They are spread evenly along the string, and the first has one
+    /// unless none has.
     #[must_use]
     pub fn has(self, follower: usize) -> bool {
-        // A share is a decimal, and a product of it a hair less than the whole number that is meant.
-        let upto = |follower: usize| (follower as f64 * self.0 + 1e-9).floor();
+        // A share is a decimal, and a product of it a hair off the whole number that is meant.
+        let upto = |follower: usize| (follower as f64 * self.0 - 1e-9).ceil().max(0.0);
         follower > 0 && upto(follower) > upto(follower - 1)
     }
 }
@@ -43,7 +44,9 @@ impl FromStr for SensorShare {
             "off" => Some(0.0),
             _ => text.parse().ok().filter(|share| (0.0..=1.0).contains(share)),
         };
-        share.map(Self).ok_or_else(|| "give on, off or a share from 0 to 1".into())
+        share
+            .map(|share: f64| Self(share + 0.0)) // no -0
+            .ok_or_else(|| "give on, off or a share from 0 to 1".into())
     }
 }
 
@@ -66,9 +69,10 @@ mod tests {
         for (text, fitted) in [
             ("off", vec![]),
             ("0", vec![]),
-            ("0.3", vec![4, 7, 10]),
-            ("0.5", vec![2, 4, 6, 8, 10]),
-            ("0.7", vec![2, 3, 5, 6, 8, 9, 10]),
+            ("0.05", vec![1]),
+            ("0.3", vec![1, 4, 7]),
+            ("0.5", vec![1, 3, 5, 7, 9]),
+            ("0.7", vec![1, 2, 3, 5, 6, 8, 9]),
             ("on", (1..=10).collect()),
             ("1", (1..=10).collect()),
         ] {
@@ -79,7 +83,7 @@ mod tests {
 
     #[test]
     fn it_is_spelled_as_it_is_read_and_anything_else_is_refused() {
-        for (typed, spelled) in [("on", "on"), ("1.0", "on"), ("0", "off"), ("0.25", "0.25")] {
+        for (typed, spelled) in [("on", "on"), ("1.0", "on"), ("0", "off"), ("-0", "off"), ("0.25", "0.25")] {
             assert_eq!(typed.parse::<SensorShare>().unwrap().to_string(), spelled);
         }
         for wrong in ["", "On", "1.01", "-0.1", "NaN", "half", "50%"] {

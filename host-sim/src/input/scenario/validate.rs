@@ -62,7 +62,12 @@ pub fn scenario(file: &Path, text: &str, overrides: &Overrides) -> Result<Scenar
     let leader = leader(&document, top.section("leader")?, overrides)?;
     let vehicles = vehicles(&document, &mut top, leader.motion.as_ref(), overrides.range_sensors)?;
     let channel = top.section("channel")?;
+    let line_of_ego = ego.as_ref().and_then(|ego| ego.line);
     let ego = index_of_ego(&document, ego, vehicles.len())?;
+    if vehicles[ego].driver != Driver::Unit {
+        let cause = format!("vehicle {ego} is the ego, and a person drives it");
+        return Err(document.error_at(line_of_ego, cause, "give an `ego` that its unit drives"));
+    }
     let channel = self::channel(&document, channel, overrides, ego, vehicles.len())?;
     let envelope = envelope::read(top.section("envelope")?, overrides.envelope)?;
     let bus = bus::read(top.section("bus")?)?;
@@ -261,7 +266,7 @@ fn vehicle(
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
         feed_forward: section.number(&FEED_FORWARD)?.value,
-        driver: if drives == Drives::Behind { driver::driver(&mut section)? } else { Driver::Unit },
+        driver: driver::driver(document, &mut section, drives == Drives::Behind)?,
         accuracy: sensors::accuracy(&mut section, drives == Drives::Recording)?,
         range_sensor: sensors::range_sensor(document, &mut section, drives == Drives::Behind, said)?,
     };

@@ -21,6 +21,8 @@ use crate::sim::time::{EPOCH_US, gnss};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Intervention {
     hands: Hands,
+    /// Whether what the person asks for was said from outside, and holds until it is let go.
+    is_told: bool,
     /// Whether the driver's request is to be sent before its time.
     asks: bool,
     is_blind: bool,
@@ -95,13 +97,25 @@ impl Vehicle {
     /// A person drives from now on, and asks for this acceleration. The driver's request says so at once, and a unit that does not drive
     /// tells nobody how it will.
     pub fn take_over(&mut self, wanted_mps2: f64) {
+        self.intervention.is_told = true;
         self.intervention.asks |= self.engaged;
         self.intervention.hands = Hands::Persons(wanted_mps2);
         self.engage(false);
     }
 
-    /// The person lets go, and the unit takes over.
+    /// A person who always drives asks for this acceleration, unless another one was said from outside.
+    pub fn drive_by_hand(&mut self, wanted_mps2: f64) {
+        if !self.intervention.is_told {
+            self.intervention.hands = Hands::Persons(wanted_mps2);
+        }
+    }
+
+    /// The person lets go, and the unit takes over; or the person who always drives, drives on as before.
     pub fn let_go(&mut self) {
+        self.intervention.is_told = false;
+        if !self.request.engaged {
+            return;
+        }
         if let Hands::Persons(wanted_mps2) = self.intervention.hands {
             self.intervention.hands = Hands::Given(wanted_mps2);
             self.intervention.asks = true;
