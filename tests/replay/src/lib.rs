@@ -5,7 +5,7 @@
 //! log:  head (configuration, map)  ->  OnboardUnit::{start, set_out}
 //!       record, record, ...        ->  OnboardUnit::{receive, tick}  ->  record, record, ...
 //! ```
-//! A head is a series of [words](words). What is in it is what the recorded unit has, so the recorder alone says what is replayed.
+//! A head is a series of [words]. What is in it is what the recorded unit has, so the recorder alone says what is replayed.
 #![no_std]
 
 mod config;
