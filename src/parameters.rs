@@ -89,8 +89,9 @@ pub const DAMPING: Seconds = Seconds::from_millis(2000);
 /// whatever is late by up to 0.2 s and lost up to 40 %, in 40 draws each; `holdover-sim string` measures it.
 pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 
-/// The same for a vehicle with a range sensor, which sees the braking ahead before it is heard: `holdover-sim string --range-sensors on`. The
-/// sensor there looks 50 times a second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
+/// The time gap of a vehicle with a range sensor, which sees the braking ahead before it is heard: a tenth of a second more than the
+/// smallest that keeps to that limit with feed-forward, by `holdover-sim string --range-sensors on`. The sensor there looks 50 times a
+/// second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
 pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(800);
 
 /// The share of the predecessor's acceleration that a vehicle with a range sensor passes on, `φ`. A message carries whether it does.
