@@ -173,7 +173,7 @@ typedef int32_t holdover_status_t;
 // A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s^2 or than emergency
 // braking.
 #define HOLDOVER_CONFIG_LIMITS ((holdover_status_t)-39)
-// `time_gap` is outside 0.1 to 3.995 s.
+// `time_gap` or `silent_time_gap` is outside 0.1 to 3.995 s.
 #define HOLDOVER_CONFIG_TIME_GAP ((holdover_status_t)-40)
 // `standstill` is outside 0 to 10.23 m.
 #define HOLDOVER_CONFIG_STANDSTILL ((holdover_status_t)-41)
@@ -434,6 +434,9 @@ typedef struct holdover_body_t {
 typedef struct holdover_law_t {
   // Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
   uint32_t time_gap_ms;
+  // Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. No
+  // more than `time_gap_ms`: it does not open.
+  uint32_t silent_time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;
   // 1: the gains come from the tables of eq. 6; 0: they are the following two.
@@ -788,17 +791,18 @@ HOLDOVER_ASSERT(offsetof(holdover_body_t, ratio_milli) == 4U, "holdover_body_t.r
 HOLDOVER_ASSERT(offsetof(holdover_body_t, drag_milli) == 8U, "holdover_body_t.drag_milli");
 HOLDOVER_ASSERT(offsetof(holdover_body_t, friction_milli) == 12U, "holdover_body_t.friction_milli");
 HOLDOVER_ASSERT(offsetof(holdover_body_t, mechanical_n) == 16U, "holdover_body_t.mechanical_n");
-HOLDOVER_ASSERT(sizeof(holdover_law_t) == 40U, "sizeof holdover_law_t");
+HOLDOVER_ASSERT(sizeof(holdover_law_t) == 44U, "sizeof holdover_law_t");
 HOLDOVER_ASSERT(offsetof(holdover_law_t, time_gap_ms) == 0U, "holdover_law_t.time_gap_ms");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, standstill_mm) == 4U, "holdover_law_t.standstill_mm");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_table) == 8U, "holdover_law_t.gain_table");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_milli) == 12U, "holdover_law_t.gain_milli");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, damping_ms) == 16U, "holdover_law_t.damping_ms");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, feed_forward_milli) == 20U, "holdover_law_t.feed_forward_milli");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, free_road_acceleration_mm_s2) == 24U, "holdover_law_t.free_road_acceleration_mm_s2");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, target_speed_mm_s) == 28U, "holdover_law_t.target_speed_mm_s");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, catch_up_milli) == 32U, "holdover_law_t.catch_up_milli");
-HOLDOVER_ASSERT(offsetof(holdover_law_t, max_speed_mm_s) == 36U, "holdover_law_t.max_speed_mm_s");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, silent_time_gap_ms) == 4U, "holdover_law_t.silent_time_gap_ms");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, standstill_mm) == 8U, "holdover_law_t.standstill_mm");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_table) == 12U, "holdover_law_t.gain_table");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, gain_milli) == 16U, "holdover_law_t.gain_milli");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, damping_ms) == 20U, "holdover_law_t.damping_ms");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, feed_forward_milli) == 24U, "holdover_law_t.feed_forward_milli");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, free_road_acceleration_mm_s2) == 28U, "holdover_law_t.free_road_acceleration_mm_s2");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, target_speed_mm_s) == 32U, "holdover_law_t.target_speed_mm_s");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, catch_up_milli) == 36U, "holdover_law_t.catch_up_milli");
+HOLDOVER_ASSERT(offsetof(holdover_law_t, max_speed_mm_s) == 40U, "holdover_law_t.max_speed_mm_s");
 HOLDOVER_ASSERT(sizeof(holdover_model_t) == 10U, "sizeof holdover_model_t");
 HOLDOVER_ASSERT(offsetof(holdover_model_t, lag) == 0U, "holdover_model_t.lag");
 HOLDOVER_ASSERT(offsetof(holdover_model_t, limits) == 1U, "holdover_model_t.limits");
@@ -835,7 +839,7 @@ HOLDOVER_ASSERT(offsetof(holdover_envelope_t, speed_mm_s) == 16U, "holdover_enve
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, margin_mm) == 20U, "holdover_envelope_t.margin_mm");
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, delay_us) == 24U, "holdover_envelope_t.delay_us");
 HOLDOVER_ASSERT(offsetof(holdover_envelope_t, lag_tolerance_milli) == 28U, "holdover_envelope_t.lag_tolerance_milli");
-HOLDOVER_ASSERT(sizeof(holdover_config_t) == 328U, "sizeof holdover_config_t");
+HOLDOVER_ASSERT(sizeof(holdover_config_t) == 332U, "sizeof holdover_config_t");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, station) == 0U, "holdover_config_t.station");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, range_sensor) == 1U, "holdover_config_t.range_sensor");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, base_id) == 2U, "holdover_config_t.base_id");
@@ -849,9 +853,9 @@ HOLDOVER_ASSERT(offsetof(holdover_config_t, body) == 168U, "holdover_config_t.bo
 HOLDOVER_ASSERT(offsetof(holdover_config_t, correction) == 188U, "holdover_config_t.correction");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, passes) == 189U, "holdover_config_t.passes");
 HOLDOVER_ASSERT(offsetof(holdover_config_t, law) == 192U, "holdover_config_t.law");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, prediction) == 232U, "holdover_config_t.prediction");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, link) == 252U, "holdover_config_t.link");
-HOLDOVER_ASSERT(offsetof(holdover_config_t, envelope) == 296U, "holdover_config_t.envelope");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, prediction) == 236U, "holdover_config_t.prediction");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, link) == 256U, "holdover_config_t.link");
+HOLDOVER_ASSERT(offsetof(holdover_config_t, envelope) == 300U, "holdover_config_t.envelope");
 HOLDOVER_ASSERT(sizeof(holdover_frame_t) == 16U, "sizeof holdover_frame_t");
 HOLDOVER_ASSERT(offsetof(holdover_frame_t, id) == 0U, "holdover_frame_t.id");
 HOLDOVER_ASSERT(offsetof(holdover_frame_t, extended) == 4U, "holdover_frame_t.extended");

@@ -32,6 +32,9 @@ pub struct Prediction {
 pub struct Law {
     /// Desired time gap, `t_g`; 0.1 to 3.995 s.
     pub time_gap: Seconds,
+    /// Time gap to which that opens, slowly, while the vehicle ahead is neither heard nor seen; 0.1 to 3.995 s. It closes again with news.
+    /// No more than `time_gap`: it does not open. See [`parameters::OPENS_AFTER`] and [`parameters::OPENS_BY`].
+    pub silent_time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
     /// Whether the gains come from the tables of eq. 6, which are proved with lags up to 0.5 s and time gaps up to 2 s: without feed-forward
@@ -190,6 +193,7 @@ impl Config {
         correction: false,
         law: Law {
             time_gap: Seconds::ZERO,
+            silent_time_gap: Seconds::ZERO,
             standstill: Distance::ZERO,
             table: false,
             gain: Gain::ZERO,
@@ -242,6 +246,7 @@ impl Config {
             correction: true,
             law: Law {
                 time_gap: parameters::TIME_GAP,
+                silent_time_gap: parameters::SILENT_TIME_GAP,
                 standstill: Distance::from_mm(2000),
                 table: true,
                 gain: parameters::GAIN,

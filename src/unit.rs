@@ -48,6 +48,7 @@ mod course;
 mod ego_horizon;
 mod gate;
 mod lane;
+mod opening;
 mod outbox;
 mod pass;
 mod room;
@@ -212,6 +213,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let own = speaks.then(|| self.foresee(now, last, target));
             if plans {
                 self.plan(now, ego.as_ref());
+                match self.mode {
+                    Mode::Standby => self.scene.opening.forget(),
+                    _ => self.scene.note_silence(now, target),
+                }
             }
             self.send(now, own.as_ref().map(Option::as_ref), answer);
         }

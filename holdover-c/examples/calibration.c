@@ -28,6 +28,7 @@ __attribute__((section(".calibration"))) const volatile holdover_config_t calibr
     .passes = 1,
     .law = {
         .time_gap_ms = 1600,
+        .silent_time_gap_ms = 1800,
         .standstill_mm = 2000,
         .gain_table = 1,
         .gain_milli = 500,

@@ -76,7 +76,7 @@ pub enum Status {
     /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s^2 or than emergency
     /// braking.
     ConfigLimits = -39,
-    /// `time_gap` is outside 0.1 to 3.995 s.
+    /// `time_gap` or `silent_time_gap` is outside 0.1 to 3.995 s.
     ConfigTimeGap = -40,
     /// `standstill` is outside 0 to 10.23 m.
     ConfigStandstill = -41,

@@ -43,6 +43,7 @@ fn fields() -> Vec<Field> {
         correction,
         passes,
         law.time_gap_ms,
+        law.silent_time_gap_ms,
         law.standstill_mm,
         law.gain_table,
         law.gain_milli,

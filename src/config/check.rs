@@ -29,7 +29,7 @@ pub enum ConfigError {
     /// A limit is zero, negative or beyond the wire's range, or normal braking is harder than 6 m/s² or than emergency
     /// braking.
     Limits,
-    /// `time_gap` is outside 0.1 to 3.995 s.
+    /// `time_gap` or `silent_time_gap` is outside 0.1 to 3.995 s.
     TimeGap,
     /// `standstill` is outside 0 to 10.23 m.
     Standstill,
@@ -68,7 +68,7 @@ impl core::fmt::Display for ConfigError {
             Self::Length => "length is outside 0 to 40.95 m",
             Self::Lag => "lag is outside 0 to 1.998 s",
             Self::Limits => "a limit is out of range (0 < braking <= 6 m/s² and <= emergency braking <= 20.46 m/s²; jerk <= 51.15 m/s³, and more than 2 mm/s² in a period, by which a command changes at least)",
-            Self::TimeGap => "time_gap is outside 0.1 to 3.995 s",
+            Self::TimeGap => "time_gap or silent_time_gap is outside 0.1 to 3.995 s",
             Self::Standstill => "standstill is outside 0 to 10.23 m",
             Self::Gain => "gain is outside 0.01 to 3.999 /s², or damping outside 0 to 3.999 s",
             Self::FeedForward => "feed_forward is neither 0 nor 0.5, or is 0.5 with a step or a period below 7.813 ms",
@@ -167,7 +167,7 @@ impl Config {
         let law = &self.law;
         let ensure = |holds: bool, error: ConfigError| if holds { Ok(()) } else { Err(error) };
         let gaps = Seconds::from_millis(100)..=Seconds::from_millis(3995);
-        ensure(gaps.contains(&law.time_gap), ConfigError::TimeGap)?;
+        ensure(gaps.contains(&law.time_gap) && gaps.contains(&law.silent_time_gap), ConfigError::TimeGap)?;
         ensure((Distance::ZERO..=Distance::from_mm(10_230)).contains(&law.standstill), ConfigError::Standstill)?;
         let gains = Gain::from_milli(10)..=Gain::from_milli(3999);
         let dampings = Seconds::ZERO..=Seconds::from_millis(3999);

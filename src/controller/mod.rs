@@ -90,7 +90,7 @@ const BRAKING_GROWTH: Jerk = Jerk::from_mm_per_s3(500);
 const CRUISE: Consensus = Consensus {
     gain: Gain::from_milli(150),
     damping: Seconds::from_millis(3_999),
-    time_gap: Seconds::from_millis(1_800),
+    time_gap: crate::parameters::SILENT_TIME_GAP,
     feed_forward: Fraction::ZERO,
 };
 

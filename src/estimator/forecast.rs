@@ -98,6 +98,7 @@ impl<const STEPS: usize> Forecast<'_, STEPS> {
     }
 
     /// Carries a horizon on from its last step to the step `end`.
+    #[inline(always)]
     pub fn carry(&self, horizon: &mut Horizon<STEPS>, end: i64) {
         if !horizon.is_empty() {
             let (from, state, anchor) = (horizon.last(), horizon.tip(), *horizon.anchor());

@@ -5,7 +5,7 @@ use super::{End, Estimator, Horizon};
 use crate::model::{Reading, Stride, VehicleModel};
 use crate::peers::{Peers, Sample};
 use crate::time::Instant;
-use crate::units::{Distance, Position};
+use crate::units::{Distance, Position, Seconds};
 
 /// How the ego drives, over a step of its own horizon.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,16 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         Manner { target, vehicle, length_ahead, stride: vehicle.over(self.grid.step, length_ahead, &self.model) }
     }
 
+    /// The same where the time gap is larger by this.
+    #[cold]
+    #[inline(never)]
+    #[must_use]
+    pub fn opened(&self, manner: &Manner, by: Seconds) -> Manner {
+        let vehicle = manner.vehicle.opened(by);
+        let stride = manner.stride.with_aim_of(&vehicle, self.grid.step, manner.length_ahead, &self.model);
+        Manner { vehicle, stride, ..*manner }
+    }
+
     /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.
     pub fn foresee_own(&mut self, now: Instant, until: Option<Instant>, sample: &Sample, manner: &Manner) {
         let present = self.grid.at_or_before(now);
@@ -43,6 +53,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     }
 
     /// Carries the ego's own horizon on up to an instant, but no farther than this step.
+    #[inline(always)]
     pub fn carry_own_on(&mut self, until: Instant, end: i64, manner: &Manner) {
         let end = self.grid.at_or_before(until).min(end);
         self.own_forecast(manner, self.length, |forecast, own| forecast.carry(own, end));
@@ -60,6 +71,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         self.grid.at_or_before(now).saturating_add(steps(self.length)).saturating_sub(1)
     }
 
+    #[inline(always)]
     fn own_forecast(
         &mut self,
         manner: &Manner,

@@ -8,7 +8,7 @@ use super::state::{State, Step, TargetStep};
 use super::switches::Model;
 use crate::parameters::{FADE, FREE_ROAD_ACCELERATION};
 use crate::time::Duration;
-use crate::units::{Acceleration, Distance, Fraction, Jerk, Speed};
+use crate::units::{Acceleration, Distance, Fraction, Jerk, Seconds, Speed};
 use crate::wire::Predecessor;
 use crate::wire::driving_parameters::{DrivingParameters, Limits};
 
@@ -90,7 +90,15 @@ impl VehicleModel {
     /// The constants of a step of this length, behind a predecessor of this length. The latter is not used without a predecessor.
     #[must_use]
     pub fn over(&self, step: Duration, length_ahead: Distance, model: &Model) -> Stride {
-        let course = match self.aim {
+        let course = self.course(step, length_ahead, model);
+        let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
+        let fading = Model { lag: true, ..*model };
+        let model = if matches!(course, Course::Fade) { &fading } else { model };
+        Stride { course, actuator: Actuator::over(step, lag, &self.limits, model) }
+    }
+
+    fn course(&self, step: Duration, length_ahead: Distance, model: &Model) -> Course {
+        match self.aim {
             Aim::Fade => Course::Fade,
             Aim::Lead { largest, target_speed } => Course::Lead(Leader::new(largest, target_speed)),
             Aim::Follow { law, standstill, catch_up } => {
@@ -98,11 +106,17 @@ impl VehicleModel {
                 let catch_up = model.limits.then_some(catch_up);
                 Course::Follow(Follower::over(step, &law, spacing, catch_up))
             }
-        };
-        let lag = if matches!(course, Course::Fade) { FADE } else { self.lag };
-        let fading = Model { lag: true, ..*model };
-        let model = if matches!(course, Course::Fade) { &fading } else { model };
-        Stride { course, actuator: Actuator::over(step, lag, &self.limits, model) }
+        }
+    }
+
+    /// The same vehicle with a time gap that is larger by this, if it follows.
+    #[must_use]
+    pub fn opened(&self, by: Seconds) -> Self {
+        let mut opened = *self;
+        if let Aim::Follow { law, .. } = &mut opened.aim {
+            law.time_gap = law.time_gap.plus(by);
+        }
+        opened
     }
 }
 
@@ -129,6 +143,12 @@ pub struct Stride {
 }
 
 impl Stride {
+    /// The same of a vehicle that is after something else.
+    #[must_use]
+    pub fn with_aim_of(&self, vehicle: &VehicleModel, step: Duration, length_ahead: Distance, model: &Model) -> Self {
+        Self { course: vehicle.course(step, length_ahead, model), ..*self }
+    }
+
     /// The demand of this step: the desired acceleration, but no more than the cap, and within the vehicle's limits. The acceleration of
     /// a follower without a predecessor fades out.
     #[inline(always)]

@@ -84,7 +84,11 @@ fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> Course {
     let next = now.plus(scene.config.period);
     let target = target.and_then(|index| {
-        let (before, reading) = (scene.estimated(index, now)?, scene.estimated(index, next)?);
+        let (before, mut reading) = (scene.estimated(index, now)?, scene.estimated(index, next)?);
+        // An opened time gap is a target that much nearer: the constants of the law stay.
+        if let Some((opened, ego)) = scene.opening.in_force(next).zip(ego) {
+            reading.position = reading.position.ahead(ego.speed.over(opened).negated());
+        }
         Some(Target { reading, gained: reading.speed.minus(before.speed), length: scene.peers.length_of(index) })
     });
     let cap = ego.map_or(cap, |ego| room::careful(scene, now, ego).min(cap));

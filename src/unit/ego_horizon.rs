@@ -8,11 +8,12 @@
 
 use heapless::Vec;
 
+use super::opening::PIECE;
 use super::scene::Scene;
 use super::vantage::{Candidate, Vantage};
 use crate::controller::Gains;
 use crate::coordination::{Entry, REVIEW};
-use crate::estimator::End;
+use crate::estimator::{End, Manner};
 use crate::model::Reading;
 use crate::peers::Sample;
 use crate::time::{Duration, Instant};
@@ -41,6 +42,13 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
 ) {
     let mut manner = scene.estimator.manner(scene.ego_model_now(gains), target, &scene.peers);
     let review = scene.coordination.next_review().filter(|_| scene.is_decided_by_order());
+    if scene.opening.is_opened() {
+        if review.is_none() {
+            return foresee_opened(scene, now, sample, &manner);
+        }
+        // Until the target changes it is taken as opened by what it is now.
+        manner = scene.estimator.opened(&manner, scene.opening.within_piece(Duration::ZERO));
+    }
     scene.estimator.foresee_own(now, review, sample, &manner);
     let Some(mut review) = review.map(|review| review.max(now)) else { return };
     let (mut crossing, mut comfort) = (scene.coordination.next(), scene.coordination.choice().comfort);
@@ -91,6 +99,26 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     }
 }
 
+/// The same where the ego follows one vehicle throughout and its time gap is opened: piece by piece.
+#[cold]
+#[inline(never)]
+fn foresee_opened<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &mut Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    sample: &Sample,
+    manner: &Manner,
+) {
+    let mut ends = PIECE;
+    let first = scene.estimator.opened(manner, scene.opening.within_piece(Duration::ZERO));
+    scene.estimator.foresee_own(now, Some(now.plus(ends)), sample, &first);
+    let last = scene.estimator.own_end_of(now);
+    while scene.estimator.is_own_short(last) {
+        let next = scene.estimator.opened(manner, scene.opening.within_piece(ends));
+        ends = ends.plus(PIECE);
+        scene.estimator.carry_own_on(now.plus(ends), last, &next);
+    }
+}
+
 /// The gains of an association that begins there.
 fn gains_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
@@ -113,7 +141,8 @@ struct Minded {
     /// Its place in the order, and whether that is ahead of the ego's at the next crossing.
     entry: Option<Entry>,
     is_ahead: bool,
-    length: Distance,
+    /// The way from its front to its rear.
+    to_rear: Distance,
 }
 
 /// The vehicles that the ego may follow at some time, with `next` as its next crossing: a vehicle that is ahead on its leg now, because
@@ -139,9 +168,9 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             [false, false] => comes,
         };
         if is_minded {
-            let (crossing, length) = (approach.crossing, scene.peers.length_of(index));
+            let (crossing, to_rear) = (approach.crossing, scene.peers.length_of(index).negated());
             let left_at = scene.coordination.end_of(crossing).map(|end| end.ahead(approach.shift));
-            let one = Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, length };
+            let one = Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, to_rear };
             let _ = minded.push(one); // no more than slots
         }
     }
@@ -160,7 +189,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let (scene, coordination) = (view.scene, &view.scene.coordination);
     let is_later = view.next != coordination.next();
     let (mut order, mut lane) = (None::<(Candidate, &Entry)>, None::<(Candidate, usize)>);
-    for Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, length } in minded {
+    for Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, to_rear } in minded {
         // The entry is asked for first, because it needs no horizon.
         let entry = entry.as_ref().filter(|entry| {
             let is_ahead = is_later || *is_ahead;
@@ -170,7 +199,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             continue;
         }
         let Some(reading) = scene.estimator.read_step(*index, step) else { continue };
-        let peer = Candidate { index: *index, reading, rear: reading.position.ahead(length.negated()) };
+        let peer = Candidate { index: *index, reading, rear: reading.position.ahead(*to_rear) };
         let has_left = left_at.is_some_and(|end| peer.rear >= end);
         let [before, after] = *is_on_lane;
         let is_on_lane = if has_left { after } else { before };

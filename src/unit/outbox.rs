@@ -310,7 +310,7 @@ fn parameters<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         },
         target_speed: scene.target_speed(),
         catch_up: law.catch_up,
-        time_gap: consensus.time_gap,
+        time_gap: scene.time_gap().plus(scene.opening.told()),
         gain: consensus.gain,
         damping: consensus.damping,
         feed_forward: consensus.feed_forward,

@@ -16,6 +16,7 @@ mod range;
 mod sight;
 mod unknown;
 
+use super::opening::Opening;
 use super::vantage::Vantage;
 use crate::clock::Clock;
 use crate::config::Config;
@@ -26,7 +27,7 @@ use crate::estimator::Estimator;
 use crate::held::Held;
 use crate::model::bound::Bound;
 use crate::model::{Aim, Consensus, Reading, Remainders, State, VehicleModel, catch_up};
-use crate::parameters::OLD_NEWS;
+use crate::parameters::{OLD_NEWS, OPENS_AFTER};
 use crate::peers::{Peers, Sample, Track};
 use crate::time::{Duration, Instant, Stamp};
 use crate::units::{Acceleration, Distance, Position, Seconds, Speed};
@@ -71,6 +72,8 @@ pub(super) struct Scene<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     pub named: Named,
     /// The passes at the next intersection.
     pub passes: Passes,
+    /// By how much the time gap is opened.
+    pub opening: Opening,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, SAMPLES, STEPS> {
@@ -91,6 +94,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             unknown: Unknown::NONE,
             named: Named::Nobody,
             passes: Passes::NONE,
+            opening: Opening::NONE,
         }
     }
 
@@ -110,6 +114,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.unknown = Unknown::NONE;
         self.named = Named::Nobody;
         self.passes = const { Passes::NONE };
+        self.opening.forget();
     }
 
     /// Whether GNSS time is known.
@@ -190,7 +195,23 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.request.as_ref().is_some() && now.since(self.requested_at) > self.config.link.request_timeout
     }
 
-    /// How the ego drives by the law: with these gains and this standstill distance behind a target, or on a free road.
+    /// Opens or closes the time gap from now on; without a target, it closes.
+    #[inline(never)]
+    pub fn note_silence(&mut self, now: Instant, target: Option<usize>) {
+        let unheard = target.and_then(|index| self.peers.get(index)?.link().silence(now));
+        let is_unheard = unheard.is_some_and(|unheard| unheard > OPENS_AFTER);
+        let is_unseen = || self.ranging.unseen(now).is_none_or(|unseen| unseen > OPENS_AFTER);
+        // A vehicle that comes by another leg is none that the ego keeps a time gap to yet.
+        let is_on_lane = || self.coordination.itinerary().is_none() || self.visible() == target;
+        let opens = is_unheard && is_unseen() && is_on_lane();
+        if opens || self.opening.is_opened() {
+            let most = self.config.law.silent_time_gap.minus(self.time_gap());
+            self.opening.go_on(now, opens, Duration::from_millis(most.to_millis().into()));
+        }
+    }
+
+    /// How the ego drives by the law, at the time gap that is wanted: with these gains and this standstill distance behind a target, or on a
+    /// free road.
     pub fn ego_model(&self, behind: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
         let (law, target_speed) = (&self.config.law, self.target_speed());
         let aim = match behind {

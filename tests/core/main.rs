@@ -56,6 +56,7 @@ mod request_timeout_braking;
 mod reserved_values;
 mod set_speed;
 mod set_speed_lowered;
+mod silent_time_gap;
 mod slot_before_motion;
 mod timeouts;
 mod unit_config;

@@ -85,6 +85,7 @@ impl TryFrom<Law> for config::Law {
     fn try_from(plain: Law) -> Result<Self, Status> {
         Ok(Self {
             time_gap: Seconds::from_millis(milli(plain.time_gap_ms)),
+            silent_time_gap: Seconds::from_millis(milli(plain.silent_time_gap_ms)),
             standstill: Distance::from_mm(milli(plain.standstill_mm)),
             table: switch(plain.gain_table)?,
             gain: Gain::from_milli(milli(plain.gain_milli)),
@@ -208,6 +209,7 @@ impl From<&config::Law> for Law {
     fn from(typed: &config::Law) -> Self {
         Self {
             time_gap_ms: magnitude(typed.time_gap.to_millis()),
+            silent_time_gap_ms: magnitude(typed.silent_time_gap.to_millis()),
             standstill_mm: magnitude(typed.standstill.to_mm()),
             gain_table: u8::from(typed.table),
             gain_milli: magnitude(typed.gain.to_milli()),

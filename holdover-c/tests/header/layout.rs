@@ -40,7 +40,7 @@ pub fn layouts() -> Vec<Layout> {
         }
         plain Body "holdover_body_t" { mass_kg, ratio_milli, drag_milli, friction_milli, mechanical_n }
         plain Law "holdover_law_t" {
-            time_gap_ms, standstill_mm, gain_table, gain_milli, damping_ms, feed_forward_milli, free_road_acceleration_mm_s2,
+            time_gap_ms, silent_time_gap_ms, standstill_mm, gain_table, gain_milli, damping_ms, feed_forward_milli, free_road_acceleration_mm_s2,
             target_speed_mm_s, catch_up_milli, max_speed_mm_s,
         }
         plain Model "holdover_model_t" {

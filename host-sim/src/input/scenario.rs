@@ -109,6 +109,8 @@ pub struct Vehicle {
     pub difference: Difference,
     /// Time gap, `t_g`; 0.1 to 3.995 s.
     pub time_gap_s: f64,
+    /// Time gap to which that opens while the vehicle ahead is neither heard nor seen; 0.1 to 3.995 s.
+    pub silent_time_gap_s: f64,
     /// Standstill distance, `s_0`; 0 to 10.23 m.
     pub standstill_m: f64,
     /// Share by which it exceeds the speed that it wants on a free road to catch up with the vehicle ahead; 0 to 0.75.

@@ -115,6 +115,7 @@ pub fn config(corridor: &Corridor, conditions: &Conditions, identity: Identity, 
     config.body = kind.body();
     config.limits = kind.limits();
     config.law.time_gap = seconds(traffic.time_gap_s);
+    config.law.silent_time_gap = seconds(traffic.silent_time_gap_s);
     config.law.standstill = distance(traffic.standstill_m);
     config.law.catch_up = share(traffic.catch_up);
     config.law.feed_forward = thousandths(traffic.feed_forward);

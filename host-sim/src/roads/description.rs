@@ -85,6 +85,8 @@ pub struct Traffic {
     pub entry_speed_mps: Span,
     /// Time gap, `t_g`.
     pub time_gap_s: f64,
+    /// Time gap to which that opens while the vehicle ahead is neither heard nor seen.
+    pub silent_time_gap_s: f64,
     /// Standstill distance, `s_0`.
     pub standstill_m: f64,
     /// Share by which every vehicle exceeds that target speed to catch up with the vehicle ahead.

@@ -25,6 +25,7 @@ const EGO_AFTER: Number = Number { key: "ego_after_s", unit: "seconds", limits: 
 const TARGET: Number = Number { key: "target_speed_mps", unit: "m/s", limits: 1.0..=50.0, default: 11.0 };
 const ENTRY: Number = Number { key: "entry_speed_mps", unit: "m/s", limits: 1.0..=50.0, default: 10.0 };
 const TIME_GAP: Number = Number { key: "time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.0 };
+const SILENT_TIME_GAP: Number = Number { key: "silent_time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.8 };
 const CATCH_UP: Number = Number { key: "catch_up", unit: "a share", limits: 0.0..=0.75, default: 0.2 };
 const FEED_FORWARD: Number = Number { key: "feed_forward", unit: "a share", limits: 0.0..=0.5, default: 0.0 };
 const STANDSTILL: Number = Number { key: "standstill_m", unit: "metres", limits: 0.0..=10.23, default: 2.0 };
@@ -165,6 +166,7 @@ fn traffic(document: &Document, mut section: Section) -> Result<Traffic, Error> 
         target_speed_mps: section.number(&TARGET)?.value,
         entry_speed_mps: entry.unwrap_or(Span { low: 9.0, high: 11.0 }),
         time_gap_s: section.number(&TIME_GAP)?.value,
+        silent_time_gap_s: section.number(&SILENT_TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
         feed_forward: section.number(&FEED_FORWARD)?.value,

@@ -223,6 +223,11 @@ impl Ranging {
         self.newest.set(sight);
     }
 
+    /// For how long the sensor has seen no vehicle; `None` if it never saw one.
+    pub(in crate::unit) fn unseen(&self, now: Instant) -> Option<Duration> {
+        self.seen.get().map(|at| now.since(at))
+    }
+
     /// Takes in a view of a vehicle that crosses the ego's way in the next conflict area, and is not one that was heard in there. It is not
     /// remembered like others: it drives out of the way.
     pub(in crate::unit) fn see_crossing(&mut self, sight: Sight) {

@@ -30,6 +30,7 @@ const LENGTH: Number = Number { key: "length_m", unit: "metres", limits: 0.5..=4
 const LAG: Number = Number { key: "lag_s", unit: "seconds", limits: 0.0..=1.998, default: 0.3 };
 const PLANT_LAG: Number = Number { key: "plant_lag_s", unit: "seconds", limits: 0.0..=5.0, default: 0.3 };
 const TIME_GAP: Number = Number { key: "time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.0 };
+const SILENT_TIME_GAP: Number = Number { key: "silent_time_gap_s", unit: "seconds", limits: 0.1..=3.995, default: 1.8 };
 const CATCH_UP: Number = Number { key: "catch_up", unit: "a share", limits: 0.0..=0.75, default: 0.2 };
 const FEED_FORWARD: Number = Number { key: "feed_forward", unit: "a share", limits: 0.0..=0.5, default: 0.0 };
 const STANDSTILL: Number = Number { key: "standstill_m", unit: "metres", limits: 0.0..=10.23, default: 2.0 };
@@ -263,6 +264,7 @@ fn vehicle(
         plant_lag_s: if plant_lag.line.is_some() { plant_lag.value } else { lag_s },
         difference: plant::difference(section.section("plant")?)?,
         time_gap_s: section.number(&TIME_GAP)?.value,
+        silent_time_gap_s: section.number(&SILENT_TIME_GAP)?.value,
         standstill_m: section.number(&STANDSTILL)?.value,
         catch_up: section.number(&CATCH_UP)?.value,
         feed_forward: section.number(&FEED_FORWARD)?.value,

@@ -30,6 +30,7 @@ pub fn config(scenario: &Scenario, index: usize) -> Config {
     config.body = vehicle.kind.body();
     config.limits = vehicle.kind.limits();
     config.law.time_gap = seconds(vehicle.time_gap_s);
+    config.law.silent_time_gap = seconds(vehicle.silent_time_gap_s);
     config.law.standstill = distance(vehicle.standstill_m);
     config.law.catch_up = share(vehicle.catch_up);
     config.law.feed_forward = thousandths(vehicle.feed_forward);
