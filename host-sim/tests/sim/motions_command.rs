@@ -6,9 +6,10 @@ use std::sync::LazyLock;
 use holdover_sim::commands::motions::motion::TargetMotion;
 use holdover_sim::commands::motions::rows::{self, MethodFigures, Outcome, Row};
 use holdover_sim::commands::motions::table;
+use holdover_sim::input::scenario::SensorShare;
 use serde_json::Value;
 
-static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| rows::run(1, 50, || {}).unwrap());
+static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| rows::run(1, 50, SensorShare::NONE, || {}).unwrap());
 
 fn row(motion: TargetMotion) -> &'static Row {
     ROWS.iter().find(|row| row.motion == motion).unwrap()
@@ -130,5 +131,27 @@ fn impossible_numbers_are_bad_input_with_a_remedy() {
         assert_eq!(output.status.code(), Some(2), "{arguments}");
         let error = String::from_utf8(output.stderr).unwrap();
         assert!(error.contains(says) && error.trim_end().lines().count() == 1, "{error}");
+    }
+}
+
+#[test]
+fn a_target_that_is_seen_is_not_lost_in_a_silence() {
+    let of = |arguments: &str| {
+        let output = motions(&format!("--silences 10 --json --no-report {arguments}"), "2");
+        assert_eq!(output.status.code(), Some(0));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let rms = |results: &Value, row: usize, method: usize| {
+        results["rows"][row]["methods"][method]["rms_position_m"].as_f64().unwrap()
+    };
+    let (unseen, seen) = (of(""), of("--range-sensors on"));
+    assert_eq!((unseen["range_sensor_share"].as_f64(), seen["range_sensor_share"].as_f64()), (Some(0.0), Some(1.0)));
+    for row in 0..5 {
+        // A view errs by up to 0.25 m.
+        assert!(rms(&seen, row, 0) < 0.25, "{}", seen["rows"][row]["motion"]);
+        // The others hear what they heard.
+        for method in 1..8 {
+            assert_eq!(rms(&seen, row, method), rms(&unseen, row, method), "{}", seen["rows"][row]["motion"]);
+        }
     }
 }

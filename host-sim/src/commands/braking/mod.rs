@@ -6,6 +6,7 @@
 //! ```
 
 pub mod arguments;
+mod avoidable;
 pub mod leader;
 pub mod options;
 mod page;

@@ -27,29 +27,31 @@ pub fn render(options: &BrakingOptions, rows: &[Row], failures: &[String]) -> Pa
 }
 
 fn table(page: &mut Page, rows: &[Row]) {
-    let header = ["Time gap", "Leader, m/s²", "Envelope", "Gap, m", "Braking, m/s²", "Jerk, m/s³", "Collisions"];
+    let header =
+        ["Time gap", "Leader, m/s²", "Envelope", "Gap, m", "Braking, m/s²", "Jerk, m/s³", "Collisions", "Avoidable"];
     let names = |row: &Row, who: &str| [format!("{} s", row.time_gap_s), row.braking_mps2.to_string(), who.into()];
-    let felt = |names: [String; 3], gap: String, comfort: &Comfort, collisions: Cell| {
+    let felt = |names: [String; 3], gap: String, comfort: &Comfort, collisions: [Cell; 2]| {
         let mut cells = names.map(Cell::text).to_vec();
         cells.extend([
             Cell::number(gap),
             Cell::number(significant(comfort.hardest_braking_mps2, 3)),
             Cell::number(significant(comfort.largest_jerk_mps3, 3)),
-            collisions,
         ]);
+        cells.extend(collisions);
         cells
     };
     let side = |row: &Row, envelope: &str, side: &Side| {
         let gap = side.min_gap_m.map_or("–".into(), |gap| significant(gap, 3));
         let collisions = Cell::judged(count(side.collisions as u64), side.collisions == 0);
-        felt(names(row, envelope), gap, &side.comfort, collisions)
+        felt(names(row, envelope), gap, &side.comfort, [collisions, Cell::number(count(side.avoidable as u64))])
     };
     let group = |row: &Row| {
-        let leader = felt(names(row, "(leader)"), "–".into(), &row.leader, Cell::text(""));
+        let leader = felt(names(row, "(leader)"), "–".into(), &row.leader, ["", ""].map(Cell::text));
         [leader, side(row, "off", &row.off), side(row, "on", &row.on)]
     };
     let caption = "The worst of all runs. Jerk is the largest change of acceleration within 0.1 s, while a vehicle moves. There is \
-                   no smallest gap where vehicles met.";
+                   no smallest gap where vehicles met. A collision was avoidable if the vehicle behind could have come to rest by the \
+                   limits of its law, had it begun to brake when the one ahead did.";
     page.table(caption, &header, &rows.iter().flat_map(group).collect::<Vec<_>>());
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use holdover::parameters::FEED_FORWARD;
 use serde::Serialize;
 
+use super::avoidable::{Limits, is_avoidable};
 use super::leader::{self, BRAKES_AT_S};
 use super::options::BrakingOptions;
 use crate::error::Error;
@@ -53,6 +54,8 @@ pub struct Comfort {
 pub struct Side {
     /// Pairs that met, in all runs together.
     pub collisions: usize,
+    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it known of the braking ahead at once.
+    pub avoidable: usize,
     /// Smallest bumper gap; `None`: vehicles met.
     pub min_gap_m: Option<f64>,
     /// The comfort of the followers, the worst of all.
@@ -111,11 +114,30 @@ fn outcome(options: &BrakingOptions, place: (f64, f64), number: u64, is_engaged:
         leader: trace.vehicles.first().map(comfort).unwrap_or_default(),
         side: Side {
             collisions: summary.collisions,
+            avoidable: avoidable(&scenario, &trace.vehicles),
             min_gap_m: summary.min_gap_m,
             comfort: followers,
             bound_violations: summary.bound.violations,
         },
     })
+}
+
+/// In how many pairs that met the vehicle behind could have come to rest.
+fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>]) -> usize {
+    let from = (BRAKES_AT_S / scenario.period_s) as usize;
+    let could_stop = |pair: &[Vec<Tick>], index: usize| {
+        let [ahead, behind] = pair else { return false };
+        let (length_m, described) = (scenario.vehicles[index].length_m, &scenario.vehicles[index + 1]);
+        let met = ahead.iter().zip(behind).any(|(ahead, behind)| ahead.position_m - length_m <= behind.position_m);
+        let law = described.kind.limits();
+        let limits = Limits {
+            braking_mps2: law.braking.get().to_num(),
+            jerk_mps3: law.jerk.get().to_num(),
+            lag_s: described.plant_lag_s,
+        };
+        met && is_avoidable(ahead, behind, length_m, from, &limits, scenario.period_s)
+    };
+    vehicles.windows(2).enumerate().filter(|(index, pair)| could_stop(pair, *index)).count()
 }
 
 /// The scenario of one run: every vehicle starts at its time gap and speed. The braking begins in the middle of one of as many equal parts
@@ -184,6 +206,7 @@ impl Side {
         let collisions = sides().map(|side| side.collisions).sum();
         Self {
             collisions,
+            avoidable: sides().map(|side| side.avoidable).sum(),
             min_gap_m: sides().filter_map(|side| side.min_gap_m).reduce(f64::min).filter(|_| collisions == 0),
             comfort: sides().map(|side| side.comfort).fold(Comfort::default(), Comfort::worst),
             bound_violations: sides().map(|side| side.bound_violations).sum(),
@@ -237,8 +260,13 @@ mod tests {
 
     #[test]
     fn where_vehicles_met_there_is_no_smallest_gap() {
-        let side =
-            |collisions, min_gap_m| Side { collisions, min_gap_m, comfort: Comfort::default(), bound_violations: 0 };
+        let side = |collisions, min_gap_m| Side {
+            collisions,
+            avoidable: 0,
+            min_gap_m,
+            comfort: Comfort::default(),
+            bound_violations: 0,
+        };
         let outcomes =
             [side(0, Some(1.5)), side(1, Some(-3.0))].map(|side| Outcome { leader: Comfort::default(), side });
         assert_eq!(Side::of(outcomes.iter()).min_gap_m, None);

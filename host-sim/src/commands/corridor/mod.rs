@@ -20,7 +20,7 @@ use crate::commands::mcap_road::RoadMcap;
 use crate::commands::motions::rows::{self, Row};
 use crate::draft::Draft;
 use crate::error::Error;
-use crate::input::scenario::{Envelope, Faults, Fitted};
+use crate::input::scenario::{Envelope, Faults, Fitted, SensorShare};
 use crate::output;
 use crate::progress::{LongRuns, Progress};
 use crate::roads::conditions::Conditions;
@@ -181,7 +181,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
         }
     }
     progress.finish();
-    let motions = if is_drawn { rows::run(first, SILENCES, || {})? } else { Vec::new() };
+    let motions = if is_drawn { rows::run(first, SILENCES, SensorShare::NONE, || {})? } else { Vec::new() };
 
     let mut failures = verdict::failures(&options.corridor.limits, &sides);
     failures.extend(verdict::of_shares(&without_passes));

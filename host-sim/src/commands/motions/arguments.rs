@@ -3,6 +3,7 @@
 use clap::Args;
 
 use crate::commands::ending::OutputArguments;
+use crate::input::scenario::SensorShare;
 
 /// The arguments of `motions`.
 #[derive(Clone, Debug, Args)]
@@ -17,6 +18,10 @@ pub struct MotionsArguments {
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
 
+    /// Whether every vehicle that follows has a range sensor, or a share of them, from 0 to 1; the other methods have none
+    #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "off")]
+    pub range_sensors: SensorShare,
+
     /// Where its results go.
     #[command(flatten)]
     pub output: OutputArguments,
@@ -28,6 +33,7 @@ Examples:
   holdover-sim motions                           50 silences of each motion
   holdover-sim motions --silences 10 --json
   holdover-sim motions --seed 100 --out m        others, their report in m/
+  holdover-sim motions --range-sensors on        the unit sees its target too
 
 Runs:
   The last vehicle listens to the one ahead of it, the target, over a channel

@@ -32,6 +32,8 @@ use rows::Row;
 /// The results, as JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 struct Results<'a> {
+    /// The share of the followers that have a range sensor.
+    range_sensor_share: f64,
     rows: &'a [Row],
 }
 
@@ -41,9 +43,10 @@ struct Results<'a> {
 /// A configuration that the units refuse, and output that cannot be written.
 pub fn run(options: &MotionsOptions) -> Result<Verdict, Error> {
     let progress = Progress::new(TargetMotion::ALL.len() as u64 * u64::from(options.silences));
-    let rows = rows::run(options.seed, options.silences, || progress.inc())?;
+    let rows = rows::run(options.seed, options.silences, options.range_sensors, || progress.inc())?;
     progress.finish();
     let page = || page::render(options, &rows);
-    options.destination.deliver(&Results { rows: &rows }, &table::text(&rows), "", page)?;
+    let results = Results { range_sensor_share: options.range_sensors.share(), rows: &rows };
+    options.destination.deliver(&results, &table::text(&rows), "", page)?;
     Ok(Verdict::Pass)
 }

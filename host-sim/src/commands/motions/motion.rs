@@ -10,7 +10,7 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::input::recording::{Motion, MotionRow};
-use crate::input::scenario::{Overrides, Scenario};
+use crate::input::scenario::{Overrides, Scenario, SensorShare};
 
 /// Length of the silence.
 pub const SILENCE_S: f64 = 4.0;
@@ -85,7 +85,7 @@ impl TargetMotion {
     ///
     /// # Errors
     /// None, as long as the text below is a valid scenario.
-    pub fn scenario(self, phase: u32) -> Result<Scenario, Error> {
+    pub fn scenario(self, phase: u32, range_sensors: SensorShare) -> Result<Scenario, Error> {
         let from_s = self.silent_from_s(phase);
         let (listener, ahead) = match self {
             Self::FreeAcceleration => (1, vehicle("speed_mps = [1.0, 4.0]")),
@@ -102,7 +102,8 @@ impl TargetMotion {
             vehicle("speed_mps = 10.0\ngap_m = 60.0\ntime_gap_s = 3.9"),
             from_s + SILENCE_S,
         );
-        let mut scenario = Scenario::parse(Path::new("motions"), &text, &Overrides::MESSAGES_ALONE)?;
+        let overrides = Overrides { range_sensors: Some(range_sensors), ..Overrides::MESSAGES_ALONE };
+        let mut scenario = Scenario::parse(Path::new("motions"), &text, &overrides)?;
         scenario.leader.motion = self.driven(phase, &scenario);
         Ok(scenario)
     }
@@ -167,7 +168,7 @@ mod tests {
     fn a_drivers_positions_speeds_and_accelerations_belong_together() {
         for motion in [TargetMotion::Sine, TargetMotion::Braking, TargetMotion::HardBraking] {
             for phase in 0..PHASES {
-                let drive = motion.scenario(phase).unwrap().leader.motion.unwrap();
+                let drive = motion.scenario(phase, SensorShare::NONE).unwrap().leader.motion.unwrap();
                 for pair in drive.rows().windows(2) {
                     let (a, b) = (pair[0], pair[1]);
                     let way = 0.5 * (a.speed_mps + b.speed_mps) * 0.01;
@@ -185,7 +186,7 @@ mod tests {
         for phase in 0..PHASES {
             for motion in [TargetMotion::Braking, TargetMotion::HardBraking] {
                 let from_s = motion.silent_from_s(phase);
-                let drive = motion.scenario(phase).unwrap().leader.motion.unwrap();
+                let drive = motion.scenario(phase, SensorShare::NONE).unwrap().leader.motion.unwrap();
                 assert_eq!(drive.at(from_s + 0.09).speed_mps, CRUISE_MPS);
                 let last = drive.at(from_s + SILENCE_S - 0.1).speed_mps;
                 assert!(if motion == TargetMotion::Braking { last < 10.0 } else { last < 1e-9 }, "{motion} {last}");

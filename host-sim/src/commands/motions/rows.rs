@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::motion::{PHASES, SILENCE_S, TargetMotion};
 use super::silence::{self, Errors, METHODS, NAMES};
 use crate::error::Error;
+use crate::input::scenario::SensorShare;
 use crate::measure::bootstrap::{Interval, Squares, interval};
 use crate::measure::metrics::{ErrorStatistics, rms};
 use crate::parallel;
@@ -75,14 +76,14 @@ fn key<S: serde::Serializer>(motion: &TargetMotion, serializer: S) -> Result<S::
     serializer.serialize_str(motion.key())
 }
 
-/// Runs this many silences of each motion on all cores, each with a seed of its own from `seed` on. `done` is called
-/// after each silence.
+/// Runs this many silences of each motion on all cores, each with a seed of its own from `seed` on. The units have range sensors as this
+/// share says; the other methods hear messages alone. `done` is called after each silence.
 ///
 /// # Errors
 /// The errors of [`silence::run`].
-pub fn run(seed: u64, silences: u32, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
+pub fn run(seed: u64, silences: u32, range_sensors: SensorShare, done: impl Fn() + Sync) -> Result<Vec<Row>, Error> {
     let one = |motion, number: u32| {
-        let errors = silence::run(motion, number % PHASES, seed.wrapping_add(u64::from(number)));
+        let errors = silence::run(motion, number % PHASES, seed.wrapping_add(u64::from(number)), range_sensors);
         done();
         errors
     };

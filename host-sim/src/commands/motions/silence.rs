@@ -10,7 +10,7 @@ use std::path::Path;
 use super::consensus::Consensus;
 use super::motion::TargetMotion;
 use crate::error::Error;
-use crate::input::scenario::Scenario;
+use crate::input::scenario::{Scenario, SensorShare};
 use crate::measure::baseline::{self, Baseline, Estimate};
 use crate::measure::heard::Heard;
 use crate::measure::observer::Tap;
@@ -38,8 +38,8 @@ pub struct Errors {
 ///
 /// # Errors
 /// A configuration that the units refuse, errors of the bus, and a target that was never heard.
-pub fn run(motion: TargetMotion, phase: u32, seed: u64) -> Result<Vec<Errors>, Error> {
-    let scenario = motion.scenario(phase)?;
+pub fn run(motion: TargetMotion, phase: u32, seed: u64, range_sensors: SensorShare) -> Result<Vec<Errors>, Error> {
+    let scenario = motion.scenario(phase, range_sensors)?;
     let world = World::new(&scenario, seed, None).map_err(|cause| {
         Error::new(format!("the units refuse it: {cause}"), "report this").in_file(Path::new("motions"))
     })?;

@@ -1,0 +1,105 @@
+//! Whether a vehicle that ran into the one ahead could have come to rest before. The drives of both enter; yes or no leaves.
+//!
+//! It brakes as hard as its law may, from the instant at which the vehicle ahead begins to brake: no follower can know of it earlier, and
+//! what the law demands is limited in strength and in its change.
+
+use crate::sim::world::Tick;
+
+/// What the law may demand, and how it comes about.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Hardest braking, as a magnitude.
+    pub braking_mps2: f64,
+    /// Fastest change of a demand.
+    pub jerk_mps3: f64,
+    /// Time constant of the actuators.
+    pub lag_s: f64,
+}
+
+/// A vehicle that slows down by more than this brakes.
+const BRAKES_MPS2: f64 = 0.1;
+
+/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it known of the braking at once. `from` is
+/// the tick from which on the leader brakes. A vehicle ahead that never brakes is one to keep off from.
+#[must_use]
+pub fn is_avoidable(
+    ahead: &[Tick],
+    behind: &[Tick],
+    length_m: f64,
+    from: usize,
+    limits: &Limits,
+    period_s: f64,
+) -> bool {
+    let brakes = |tick: &Tick| tick.acceleration_mps2 < -BRAKES_MPS2;
+    let Some(begins) = (from..ahead.len()).find(|tick| brakes(&ahead[*tick])) else { return true };
+    let Some(start) = behind.get(begins) else { return true };
+    let kept = (-period_s / limits.lag_s).exp();
+    let (mut position_m, mut speed_mps) = (start.position_m, start.speed_mps);
+    let (mut acceleration_mps2, mut demand_mps2) = (start.acceleration_mps2, start.command_mps2);
+    ahead[begins..].iter().skip(1).all(|ahead| {
+        demand_mps2 = (demand_mps2 - limits.jerk_mps3 * period_s).max(-limits.braking_mps2);
+        acceleration_mps2 = demand_mps2 + (acceleration_mps2 - demand_mps2) * kept;
+        let before_mps = speed_mps;
+        speed_mps = (speed_mps + acceleration_mps2 * period_s).max(0.0);
+        position_m += 0.5 * (before_mps + speed_mps) * period_s;
+        ahead.position_m - length_m > position_m
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use holdover::wire::command::ModeCode;
+
+    const PERIOD_S: f64 = 0.001;
+    const LIMITS: Limits = Limits { braking_mps2: 4.0, jerk_mps3: 5.0, lag_s: 1e-6 };
+
+    /// At 15 m/s from this place; brakes with this from 1 s on.
+    fn drive(from_m: f64, braking_mps2: f64) -> Vec<Tick> {
+        let tick = |n: u32| {
+            let braked_s = (f64::from(n) * PERIOD_S - 1.0).clamp(0.0, 15.0 / braking_mps2.max(1e-9));
+            let driven_m = 15.0 * (f64::from(n) * PERIOD_S).min(1.0 + braked_s);
+            Tick {
+                position_m: from_m + driven_m - 0.5 * braking_mps2 * braked_s * braked_s,
+                speed_mps: 15.0 - braking_mps2 * braked_s,
+                acceleration_mps2: if braked_s > 0.0 && braked_s * braking_mps2 < 15.0 { -braking_mps2 } else { 0.0 },
+                command_mps2: 0.0,
+                limited: false,
+                mode: ModeCode::Cooperative,
+                target: None,
+            }
+        };
+        (0..15_000).map(tick).collect()
+    }
+
+    /// The gap that is needed behind a vehicle of 5 m that stops with 6 m/s².
+    fn needed_m() -> f64 {
+        // The demand grows over 0.8 s to 4 m/s²: 15 · 0.8 - 5 · 0.8³/6 m, down to 13.4 m/s; then 13.4²/8 m.
+        let own_m = 15.0 * 0.8 - 5.0 * 0.512 / 6.0 + 13.4 * 13.4 / 8.0;
+        own_m - 15.0 * 15.0 / 12.0
+    }
+
+    #[test]
+    fn it_can_come_to_rest_where_its_way_to_rest_is_no_longer_than_gap_and_way_ahead() {
+        let behind = drive(0.0, 0.0);
+        for (more_m, avoidable) in [(0.1, true), (-0.1, false)] {
+            let ahead = drive(5.0 + needed_m() + more_m, 6.0);
+            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, &LIMITS, PERIOD_S), avoidable, "{more_m}");
+        }
+    }
+
+    #[test]
+    fn a_lag_takes_the_way_that_is_driven_in_it() {
+        let behind = drive(0.0, 0.0);
+        let limits = Limits { lag_s: 0.3, ..LIMITS };
+        for (more_m, avoidable) in [(15.0 * 0.3 + 0.2, true), (15.0 * 0.3 - 0.6, false)] {
+            let ahead = drive(5.0 + needed_m() + more_m, 6.0);
+            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, &limits, PERIOD_S), avoidable, "{more_m}");
+        }
+    }
+
+    #[test]
+    fn whoever_runs_into_a_vehicle_that_does_not_brake_could_have_braked() {
+        assert!(is_avoidable(&drive(20.0, 0.0), &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
+    }
+}
