@@ -62,6 +62,28 @@ fn in_a_silence_the_estimate_follows_what_is_seen() {
 }
 
 #[test]
+fn a_braking_that_is_not_what_was_said_is_answered_soon_though_nothing_is_heard() {
+    // A speed in a view errs by up to 0.6 m/s, and the ego's own by a little: usually by a third, which is 0.25 m/s. After that it takes three
+    // views, one every 50 ms.
+    for (braking, within) in [(1.0, 0.40), (2.0, 0.30), (5.0, 0.20)] {
+        let mut road = Road::new(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
+        road.wants = 20.0;
+        road.senses.range = true;
+        road.power_up();
+        road.run(5.0);
+        road.senses.v2x = false;
+        road.run(1.0);
+        road.acceleration = -braking;
+        let answered = (0..200).position(|_| {
+            road.step();
+            road.command < -0.05
+        });
+        let after = answered.expect("it brakes") as f64 * 0.01;
+        assert!(after <= within, "{after} s behind {braking} m/s²");
+    }
+}
+
+#[test]
 fn fresh_messages_are_left_alone() {
     let mut road = silent(&rig::config(), true);
     road.senses.v2x = true;

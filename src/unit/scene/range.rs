@@ -264,15 +264,17 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Corrects the estimate by the view. The horizon of a vehicle that does not say how it will drive starts from the fused track. Where
-    /// the vehicle did say so, and the estimated speed may be right, its horizon is moved; where that speed is certainly wrong, it
-    /// starts from the fused track too.
+    /// the vehicle did say so, and the estimated speed may be right, its horizon is moved. Where that speed is wrong, certainly or by several
+    /// views in a row, it starts from the fused track too.
     fn correct(&mut self, index: usize, view: &View, front: Position, bound: &Bound, newest: &Sample) {
         let Some(whose) = self.whose(index) else { return };
         let View { sight, uncertainty, .. } = view;
         self.fused.see(whose, sight, uncertainty, front, newest);
         let Some(estimate) = self.estimator.read(index, sight.at) else { return };
         let faster = sight.speed.minus(estimate.speed);
-        if !self.estimator.is_foreseen(index, &self.peers) || faster.magnitude() > uncertainty.speed {
+        let usual_speed = Speed::from_bits(uncertainty.speed.to_bits() / 3);
+        let is_wrong = self.fused.is_beside(faster, usual_speed) || faster.magnitude() > uncertainty.speed;
+        if is_wrong || !self.estimator.is_foreseen(index, &self.peers) {
             self.fused.want();
             return;
         }
