@@ -33,7 +33,7 @@ pub struct Law {
     /// Desired time gap, `t_g`; 0.1 to 3.995 s.
     pub time_gap: Seconds,
     /// Time gap to which that opens, slowly, while the vehicle ahead is neither heard nor seen; 0.1 to 3.995 s. It closes again with news.
-    /// No more than `time_gap`: it does not open. See [`parameters::OPENS_AFTER`] and [`parameters::OPENS_BY`].
+    /// If it is no larger than the gap in force, the gap does not open. See [`parameters::OPENS_AFTER`] and [`parameters::OPENS_BY`].
     pub silent_time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,

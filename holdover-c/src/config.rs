@@ -81,8 +81,8 @@ pub struct Body {
 pub struct Law {
     /// Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
     pub time_gap_ms: u32,
-    /// Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. No
-    /// more than `time_gap_ms`: it does not open.
+    /// Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. If it
+    /// is no larger than the gap in force, the gap does not open.
     pub silent_time_gap_ms: u32,
     /// Distance kept at standstill in mm.
     pub standstill_mm: u32,

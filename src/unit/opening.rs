@@ -1,14 +1,15 @@
-//! The time gap while nothing new is known of the vehicle ahead. Whether there is news of it enters, with every own motion; by how much the
-//! time gap is opened leaves, now and later.
+//! The time gap while nothing new is known of the vehicle ahead. Whether there is news of it enters, before every own motion; by how much
+//! the time gap is opened leaves, now and later.
 //!
 //! A unit that neither hears nor sees the vehicle ahead drives by an estimate that gets worse. The published rule:
 //!
-//! * when there has been no news for [`OPENS_AFTER`](crate::parameters::OPENS_AFTER), the time gap opens by [`OPENS_BY`] a second, up to
-//!   [`Law::silent_time_gap`](crate::config::Law);
+//! * when there has been no news for [`OPENS_AFTER`](crate::parameters::OPENS_AFTER), the time gap opens by one second in [`OPENS_BY`], up
+//!   to [`Law::silent_time_gap`](crate::config::Law);
 //! * with the next news it closes again, as slowly.
 //!
-//! It goes on between own motions, so that no demand jumps, and at every time gap between them the string is as stable as at the smaller one. The own horizon is computed with the
-//! gap as it will be if it goes on like that: others know of the opening by it, and those that lost it by the time gap that is told.
+//! It goes on between own motions, so that no demand jumps. With the tables of gains the string is as stable at every larger gap. The own
+//! horizon is computed with the gap as it will be if it goes on like that: others know of the opening by it. Those that lost the horizon know
+//! the time gap that is told.
 
 use crate::fixed::quotient;
 use crate::held::Held;

@@ -99,6 +99,9 @@ fn limits_outside_their_ranges_are_refused() {
 #[test]
 fn a_law_outside_its_ranges_is_refused() {
     range(ConfigError::TimeGap, [100, 3_995], |config, ms| config.law.time_gap = Seconds::from_millis(int(ms)));
+    range(ConfigError::TimeGap, [100, 3_995], |config, ms| {
+        config.law.silent_time_gap = Seconds::from_millis(int(ms));
+    });
     range(ConfigError::Standstill, [0, 10_230], |config, mm| config.law.standstill = Distance::from_mm(int(mm)));
     range(ConfigError::Gain, [10, 3_999], |config, milli| config.law.gain = Gain::from_milli(int(milli)));
     range(ConfigError::Gain, [0, 3_999], |config, milli| config.law.damping = Seconds::from_millis(int(milli)));

@@ -21,7 +21,7 @@ pub(in crate::unit) struct Fused {
     aside: [u8; 2],
 }
 
-/// So many views in a row on the same side of an estimate show that its speed is wrong: 60 ms at 50 views a second.
+/// So many views in a row on the same side of an estimate show that its speed is wrong: 40 ms at 50 views a second.
 const ASIDE: u8 = 3;
 
 impl Fused {

@@ -73,6 +73,9 @@ Figures:
               at 0.5 m/s or faster
   collisions  pairs that met; without the envelope they are reported, with it
               they fail the verdict
+  avoidable   of these, pairs in which the vehicle behind could have come to rest
+              by the limits of its law, had it begun to brake when the one ahead
+              did
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

@@ -18,7 +18,7 @@ pub struct MotionsArguments {
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
 
-    /// Whether every vehicle that follows has a range sensor, or a share of them, from 0 to 1; the other methods have none
+    /// Whether every follower has a range sensor, or a share of them, from 0 to 1; the other methods have none
     #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "off")]
     pub range_sensors: SensorShare,
 
