@@ -434,8 +434,8 @@ typedef struct holdover_body_t {
 typedef struct holdover_law_t {
   // Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
   uint32_t time_gap_ms;
-  // Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. No
-  // more than `time_gap_ms`: it does not open.
+  // Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. If it
+  // is no larger than the gap in force, the gap does not open.
   uint32_t silent_time_gap_ms;
   // Distance kept at standstill in mm.
   uint32_t standstill_mm;
