@@ -82,7 +82,7 @@ impl Opening {
     fn after(&self, time: Duration) -> Duration {
         let way = Duration::from_micros(quotient(time.as_micros(), OPENS_BY));
         let by = if self.opens { self.by.plus(way) } else { self.by.minus(way) };
-        by.clamp(Duration::ZERO, self.most)
+        by.max(Duration::ZERO).min(self.most)
     }
 }
 
