@@ -130,22 +130,32 @@ look_back() {
 
 # conclude COMMAND...: the verdict of a run in real time. Of a device that is a process or emulated, a failure says nothing if
 # this machine kept a processor from its programs for half a period: then it is asked again, as after a verdict of
-# "inconclusive".
+# "inconclusive". Beside nothing else of this script, and after a pause, since what else a machine has to do often passes.
 conclude() {
-    local attempt code most why lookers withheld=$work/withheld.$BASHPID
+    local attempt code most why turn lookers withheld=$work/withheld.$BASHPID
+    exec {turn}>"$work/turn"
     for attempt in {1..8}; do
+        if [ "$attempt" = 1 ]; then
+            flock --shared "$turn"
+        else
+            sleep $((5 * attempt))
+            flock --exclusive "$turn"
+        fi
         look_out
         code=0
         "$@" || code=$?
         look_back
+        flock --unlock "$turn"
         case $code in
         3) why="the harness was late itself" ;;
-        1) why="this machine kept a processor from its programs for $most ms at once" && [ "$most" -ge 5 ] || return 1 ;;
-        *) return $code ;;
+        1) why="this machine kept a processor from its programs for $most ms at once" && [ "$most" -ge 5 ] || break ;;
+        *) break ;;
         esac
+        code=3
         echo "attempt $attempt of 8 says nothing: $why"
     done
-    return 3
+    exec {turn}>&-
+    return $code
 }
 
 test_binaries() {

@@ -65,6 +65,9 @@ class Bus:
     def attribute(self, message: str, name: str) -> int:
         return int(self.dbc.get_message_by_name(message).dbc.attributes[name].value)
 
+    def maximum(self, message: str, signal: str) -> float:
+        return float(self.dbc.get_message_by_name(message).get_signal_by_name(signal).maximum)
+
     def send(self, name: str, **signals: float | str) -> None:
         message, counter = self.dbc.get_message_by_name(name), self.next_counter.get(name, 0)
         data = bytearray(message.encode({"Crc": 0, "Counter": counter, **signals}))
@@ -224,8 +227,9 @@ class Node:
             self.bus.send("TimeFollowUp", Sequence=turn % 16, Micros=int(sent % 1 * 1e6))
         at = EPOCH + self.driven  # when the vehicles were where they are
         self.ego.tell(self.bus, "Ego", STATION, round(due / PERIOD) % 4, at)
-        if self.turn("RangeSensor", due) is not None:
-            view = {"Distance": self.gap(), "SpeedDifference": self.peer.speed - self.ego.speed, "Age": time.monotonic() - self.driven}
+        age = time.monotonic() - self.driven  # a view that is older than the signal can say is not sent
+        if self.turn("RangeSensor", due) is not None and age <= self.bus.maximum("RangeSensor", "Age"):
+            view = {"Distance": self.gap(), "SpeedDifference": self.peer.speed - self.ego.speed, "Age": age}
             self.bus.send("RangeSensor", **view, Nobody="vehicle at Distance", DistanceAccuracy=0.1, SpeedAccuracy=0.1)
         if self.turn("DriverRequest", due) is not None:
             wish = {"Engaged": "drive" if ENGAGE <= due < RELEASE else "off", "TargetSpeed": 16.0, "TimeGap": TIME_GAP}
