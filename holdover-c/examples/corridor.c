@@ -71,9 +71,11 @@ static void configuration(holdover_config_t *config)
     config->station = (uint8_t)word();
     config->station_id = (uint32_t)word();
     config->law.time_gap_ms = milli(word(), 29);
+    config->law.silent_time_gap_ms = milli(word(), 29);
     config->law.standstill_mm = milli(word(), 20);
     config->law.target_speed_mm_s = milli(word(), 23);
     config->law.catch_up_milli = milli(word(), 30);
+    config->law.feed_forward_milli = milli(word(), 30);
     config->prediction.step_us = (uint32_t)word();
     config->prediction.horizon_us = (uint32_t)word();
     config->envelope.engaged = (uint8_t)word();

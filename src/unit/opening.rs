@@ -40,9 +40,21 @@ impl Opening {
     pub const NONE: Self = Self { by: Duration::ZERO, most: Duration::ZERO, opens: false, at: Held::Nothing };
 
     /// One own motion later: it goes on as it did since the last one, and opens or closes from now on. It opens by `most` at most.
-    pub fn go_on(&mut self, now: Instant, opens: bool, most: Duration) {
+    pub fn go_on(&mut self, now: Instant, opens: bool, most: Seconds) {
         self.by = if self.is_opened() { self.at_instant(now) } else { Duration::ZERO };
-        (self.at, self.opens, self.most) = (Held::Value(now), opens, most.max(Duration::ZERO));
+        (self.at, self.opens) = (Held::Value(now), opens && most > Seconds::ZERO);
+        self.limit(most);
+    }
+
+    /// The time gap that is wanted became larger by this, which takes the place of as much that was opened. It opens by `most` at most from
+    /// now on.
+    pub fn give_way(&mut self, wider: Seconds, most: Seconds) {
+        self.by = self.by.minus(span(wider)).max(Duration::ZERO);
+        self.limit(most);
+    }
+
+    fn limit(&mut self, most: Seconds) {
+        self.most = span(most);
         self.by = self.by.min(self.most);
     }
 
@@ -72,7 +84,7 @@ impl Opening {
             return Seconds::ZERO;
         }
         let half = TOLD.as_micros() / 2;
-        TOLD.times(quotient(self.by.as_micros().saturating_add(half), TOLD.as_micros())).seconds()
+        TOLD.times(quotient(self.by.as_micros().saturating_add(half), TOLD.as_micros())).min(self.most).seconds()
     }
 
     fn at_instant(&self, now: Instant) -> Duration {
@@ -86,11 +98,16 @@ impl Opening {
     }
 }
 
+/// A time as a span, to a millisecond; a negative one is none.
+fn span(seconds: Seconds) -> Duration {
+    Duration::from_millis(seconds.to_millis().max(0).into())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const MOST: Duration = Duration::from_millis(800);
+    const MOST: Seconds = Seconds::from_millis(800);
 
     fn at(millis: u64) -> Instant {
         Instant::from_micros(millis * 1_000)
@@ -127,11 +144,25 @@ mod tests {
         let mut opening = Opening::NONE;
         drive(&mut opening, 0..60_000, true);
         assert_eq!(now(&opening), 800);
-        // The driver asks for a larger gap: less is to be opened.
-        opening.go_on(at(60_000), true, Duration::from_millis(300));
+        // Less may be opened from now on.
+        opening.go_on(at(60_000), true, Seconds::from_millis(300));
         assert_eq!(now(&opening), 300);
-        opening.go_on(at(60_100), true, Duration::from_millis(-300));
+        opening.go_on(at(60_100), true, Seconds::from_millis(-300));
         assert_eq!(now(&opening), 0);
+        assert!(!opening.is_opened());
+    }
+
+    #[test]
+    fn a_larger_gap_that_is_wanted_takes_the_place_of_what_was_opened() {
+        // Wanted by so much more in ms, after 500 ms were opened of 800.
+        for (wider, left, most) in [(-200, 500, 1_000), (0, 500, 800), (200, 300, 600), (450, 50, 350), (600, 0, 200)] {
+            let mut opening = Opening::NONE;
+            drive(&mut opening, 0..5_100, true);
+            opening.give_way(Seconds::from_millis(wider), MOST.minus(Seconds::from_millis(wider)));
+            assert_eq!(now(&opening), left, "{wider}");
+            let end = opening.within_piece(Duration::from_millis(60_000));
+            assert_eq!(end, Seconds::from_millis(most), "{wider}");
+        }
     }
 
     #[test]
@@ -144,7 +175,7 @@ mod tests {
         assert_eq!(now(&opening), soon.to_millis());
         drive(&mut opening, 1_600..4_600, true);
         assert_eq!(now(&opening), late.to_millis());
-        assert_eq!(end, MOST.seconds());
+        assert_eq!(end, MOST);
     }
 
     #[test]
@@ -155,6 +186,9 @@ mod tests {
             drive(&mut opening, 0..until, true);
             assert_eq!(opening.told(), Seconds::from_millis(told), "{until}");
         }
+        // No more than it may be.
+        opening.go_on(at(60_000), true, Seconds::from_millis(750));
+        assert_eq!(opening.told(), Seconds::from_millis(750));
     }
 
     #[test]

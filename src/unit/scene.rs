@@ -205,9 +205,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let is_on_lane = || self.coordination.itinerary().is_none() || self.visible() == target;
         let opens = is_unheard && is_unseen() && is_on_lane();
         if opens || self.opening.is_opened() {
-            let most = self.config.law.silent_time_gap.minus(self.time_gap());
-            self.opening.go_on(now, opens, Duration::from_millis(most.to_millis().into()));
+            self.opening.go_on(now, opens, self.most_opened());
         }
+    }
+
+    /// By how much the time gap that is wanted may be opened.
+    pub fn most_opened(&self) -> Seconds {
+        self.config.law.silent_time_gap.minus(self.time_gap())
     }
 
     /// How the ego drives by the law, at the time gap that is wanted: with these gains and this standstill distance behind a target, or on a

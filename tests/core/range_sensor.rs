@@ -84,6 +84,29 @@ fn a_braking_that_is_not_what_was_said_is_answered_soon_though_nothing_is_heard(
 }
 
 #[test]
+fn views_that_are_slower_show_something_where_three_are_in_a_row() {
+    // Views that are slower by this, each so long after the one before; and whether the vehicle brakes for them.
+    for (views, brakes) in
+        [(&[50, 50][..], false), (&[50, 50, 50], true), (&[50, 50, 600], false), (&[50, 600, 50], false)]
+    {
+        let mut road = Road::new(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
+        road.wants = 20.0;
+        road.senses.range = true;
+        road.power_up();
+        road.run(5.0);
+        (road.senses.v2x, road.senses.range) = (false, false);
+        for pause in views {
+            road.run(f64::from(*pause) / 1_000.0);
+            road.rig.range(road.now, road.gap(), road.target.speed - road.ego.speed - 0.4, 0).unwrap();
+        }
+        road.commands.clear();
+        road.run(0.3);
+        let hardest = road.commands.iter().fold(0.0f64, |hardest, command| hardest.min(*command));
+        assert_eq!(hardest < -0.05, brakes, "{views:?}: {hardest} m/s²");
+    }
+}
+
+#[test]
 fn fresh_messages_are_left_alone() {
     let mut road = silent(&rig::config(), true);
     road.senses.v2x = true;

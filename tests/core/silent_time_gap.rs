@@ -5,7 +5,9 @@ use crate::rig;
 use crate::rig::road::Road;
 use crate::rig::{LENGTH, instant, m_of};
 use holdover::Config;
+use holdover::controller::Mode;
 use holdover::time::Duration;
+use holdover::wire::driver_request::DriverRequest;
 use holdover::wire::{Message, Said};
 
 const SPEED: f64 = 15.0;
@@ -139,6 +141,64 @@ fn it_is_told_by_tenths_of_a_second() {
         }
     }
     assert_eq!(told, [1_000, 1_100, 1_200, 1_300, 1_400, 1_500, 1_600, 1_700, 1_800]);
+}
+
+/// The driver asks for another time gap, in ms.
+fn ask_for(road: &mut Road, millis: i32) {
+    let request = DriverRequest {
+        engaged: true,
+        predecessor: road.predecessor,
+        target_speed: crate::rig::mps(road.rig.wanted),
+        time_gap: Some(holdover::units::Seconds::from_millis(millis)),
+    };
+    road.rig.put(road.now, &Message::DriverRequest(request)).unwrap();
+}
+
+#[test]
+fn a_larger_gap_that_the_driver_wants_takes_the_place_of_it() {
+    let mut road = following(&config());
+    road.senses.v2x = false;
+    road.run(10.05);
+    road.senses.desk = false;
+    road.commands.clear();
+    let mut widest = 0;
+    // 0.5 s are opened. The driver wants 0.3 s more, between own motions.
+    for tick in 0..400 {
+        if tick % 10 == 0 {
+            ask_for(&mut road, 1_300);
+        }
+        for message in road.step().all {
+            if let Message::Own(Said::DrivingParameters(parameters)) = message {
+                let told = parameters.time_gap.to_millis();
+                assert!(tick > 10 || told <= 1_600, "{told} ms after {tick} ticks");
+                widest = widest.max(told);
+            }
+        }
+    }
+    let (down, up) = road.steepest();
+    assert!(down > -2.0 && up < 2.0, "{down} to {up} m/s³");
+    assert_eq!(widest, 1_800);
+}
+
+#[test]
+fn it_goes_on_through_fallback_and_back() {
+    let mut road = following(&config());
+    road.rig.wanted = SPEED;
+    road.senses.v2x = false;
+    road.run(15.5);
+    assert!(matches!(road.rig.unit.mode(), Mode::Fallback { .. }), "{:?}", road.rig.unit.mode());
+    road.senses.v2x = true;
+    let mut told = Vec::new();
+    for _ in 0..1_500 {
+        for message in road.step().all {
+            if let Message::Own(Said::DrivingParameters(parameters)) = message
+                && told.last() != Some(&parameters.time_gap.to_millis())
+            {
+                told.push(parameters.time_gap.to_millis());
+            }
+        }
+    }
+    assert_eq!(told, [1_800, 1_700, 1_600, 1_500, 1_400, 1_300, 1_200, 1_100, 1_000]);
 }
 
 #[test]

@@ -35,6 +35,9 @@ impl Fused {
             self.track.clear();
             (self.is_wanted, self.aside) = (false, [0; 2]);
         }
+        if !self.track.is_tracking(sight.at) {
+            self.aside = [0; 2];
+        }
         self.track.see(&Measured::within(sight.at, front, sight.speed, errors.position, errors.speed), newest);
     }
 
@@ -47,7 +50,8 @@ impl Fused {
         is_tracked
     }
 
-    /// Takes in by how much a view was faster than the estimate, and by how much it errs usually. Returns whether the estimate is wrong.
+    /// Takes in by how much a view was faster than the estimate, and by how much it errs usually. Returns whether the estimate is wrong. A
+    /// row goes on over a message, which is older than the views, and ends with the track.
     pub fn is_beside(&mut self, faster: Speed, usual: Speed) -> bool {
         let [in_front, behind] = self.aside;
         let next = |row: u8, goes_on: bool| if goes_on { row.saturating_add(1) } else { 0 };

@@ -29,8 +29,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                     self.ranging.note_named(at);
                 }
                 self.actuators.ask(at, request.engaged);
+                let before = self.time_gap();
                 self.request.set(*request);
                 self.requested_at = at;
+                if self.opening.is_opened() {
+                    self.opening.give_way(self.time_gap().minus(before), self.most_opened());
+                }
             }
             Message::Actuators(state) => {
                 let is_asked = self.is_asked();

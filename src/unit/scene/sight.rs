@@ -223,9 +223,9 @@ impl Ranging {
         self.newest.set(sight);
     }
 
-    /// For how long the sensor has seen no vehicle; `None` if it never saw one.
+    /// For how long the sensor has seen no vehicle on the ego's way; `None` if it sees that none is there, or never saw one.
     pub(in crate::unit) fn unseen(&self, now: Instant) -> Option<Duration> {
-        self.seen.get().map(|at| now.since(at))
+        self.newest.get().map(|newest| now.since(newest.at))
     }
 
     /// Takes in a view of a vehicle that crosses the ego's way in the next conflict area, and is not one that was heard in there. It is not

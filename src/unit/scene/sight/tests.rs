@@ -78,6 +78,19 @@ fn a_sensor_is_relied_on_for_a_quarter_of_a_second_after_a_view_and_no_farther_t
 }
 
 #[test]
+fn one_that_crosses_is_no_view_of_the_vehicle_ahead() {
+    let mut ranging = Ranging::new();
+    ranging.see_crossing(sight(50, 10, 0));
+    assert_eq!(ranging.unseen(at(100)), None);
+    ranging.see(sight(100, 20, 10_000));
+    ranging.see_crossing(sight(150, 10, 0));
+    assert_eq!(ranging.unseen(at(250)), Some(Duration::from_millis(150)));
+    // Nobody is there up to beyond where it can be.
+    ranging.see_nobody(&sight(300, 90, 0));
+    assert_eq!(ranging.unseen(at(300)), None);
+}
+
+#[test]
 fn a_view_that_comes_late_does_not_undo_a_newer_one() {
     let mut ranging = Ranging::new();
     ranging.see(sight(60, 15, 5_000));
