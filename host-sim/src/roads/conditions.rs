@@ -161,14 +161,37 @@ mod tests {
     }
 
     #[test]
+    fn the_units_drive_by_the_law_of_the_file() {
+        let mut text = example::TEXT.to_owned();
+        for (from, to) in [
+            ("time_gap_s = 1.0", "time_gap_s = 1.25"),
+            ("silent_time_gap_s = 1.8", "silent_time_gap_s = 2.5"),
+            ("standstill_m = 2.0", "standstill_m = 3.5"),
+            ("feed_forward = 0 ", "feed_forward = 0.5 "),
+            ("catch_up = 0.2", "catch_up = 0.1"),
+            ("target_speed_mps = 11.0", "target_speed_mps = 12.5"),
+        ] {
+            assert!(text.contains(from), "{from}");
+            text = text.replacen(from, to, 1);
+        }
+        let corridor = example::of(&text);
+        let law = config(&corridor, &Conditions::of(&corridor), FIRST, Kind::Car).law;
+        let gaps = [law.time_gap, law.silent_time_gap].map(holdover::units::Seconds::to_millis);
+        assert_eq!(gaps, [1_250, 2_500]);
+        assert_eq!((law.standstill.to_mm(), law.target_speed.to_mm_per_s()), (3_500, 12_500));
+        assert_eq!((law.feed_forward.to_milli(), law.catch_up.to_milli()), (500, 100));
+    }
+
+    #[test]
     fn whatever_a_file_may_say_the_units_take() {
-        let extremes: [(&str, &[&str]); 13] = [
+        let extremes: [(&str, &[&str]); 14] = [
             ("period_s = 0.01 ", &["period_s = 0.001", "period_s = 0.1"]),
             ("step_s = 0.03 ", &["step_s = 0.001", "step_s = 1"]),
             ("horizon_s = 10.7", &["horizon_s = 0.5"]),
             ("message_rate_hz = 10.0", &["message_rate_hz = 1", "message_rate_hz = 100"]),
             ("target_speed_mps = 11.0", &["target_speed_mps = 1", "target_speed_mps = 50"]),
             ("time_gap_s = 1.0", &["time_gap_s = 0.1", "time_gap_s = 3.995"]),
+            ("silent_time_gap_s = 1.8", &["silent_time_gap_s = 0.1", "silent_time_gap_s = 3.995"]),
             ("standstill_m = 2.0", &["standstill_m = 0", "standstill_m = 10.23"]),
             ("engaged = true ", &["engaged = false"]),
             ("acceleration_mps2 = 3.0", &["acceleration_mps2 = 0.1", "acceleration_mps2 = 20.46"]),

@@ -44,6 +44,20 @@ fn the_papers_scenario_is_pinned() {
 }
 
 #[test]
+fn a_unit_drives_by_the_law_of_its_vehicle() {
+    let scenario = parse(
+        "[[vehicle]]\n[[vehicle]]\ntime_gap_s = 1.25\nsilent_time_gap_s = 2.5\nstandstill_m = 3.5\nfeed_forward = 0.5\n\
+         catch_up = 0.1\nlag_s = 0.4\n",
+    )
+    .unwrap();
+    let laws = [0, 1].map(|index| holdover_sim::sim::world::config(&scenario, index).law);
+    let gaps = laws.map(|law| [law.time_gap, law.silent_time_gap].map(|gap| gap.to_millis()));
+    assert_eq!(gaps, [[1_000, 1_800], [1_250, 2_500]]);
+    assert_eq!(laws.map(|law| (law.standstill.to_mm(), law.feed_forward.to_milli())), [(2_000, 0), (3_500, 500)]);
+    assert_eq!(laws.map(|law| law.catch_up.to_milli()), [200, 100]);
+}
+
+#[test]
 fn values_are_taken_as_they_stand() {
     let scenario = parse(
         "seed = 0x10\nduration_s = 1_000\nego = 1\n[leader]\ntarget_speed_mps = 0\n[[vehicle]]\nposition_m = 50\n\
