@@ -38,7 +38,7 @@ usage: ./ci.sh [STEP...]      (no step: all of them, in this order)
   c         the C examples say what the Rust core says, on the host and in the emulator, over the whole way of the corridor's ego
             too; the header is one for C99, C11, C++ and MISRA C, for each capacity
   package   the package that would be published builds by itself and holds what it should
-  release   an archive of the simulator for x86-64, built with little optimisation, runs in a folder with nothing else in it;
+  release   an archive of the simulator for x86-64, built without optimisation, runs in a folder with nothing else in it;
             scripts/release.sh makes those of a release
 
 exit code: 0 all passed; 1 a step failed; 2 no such step
@@ -93,11 +93,10 @@ step_dbc() {
 }
 
 step_study() {
-    cargo build --locked --release -p holdover-sim
-    local sim=${CARGO_TARGET_DIR:-target}/release/holdover-sim
-    local results=${CARGO_TARGET_DIR:-target}/corridor.json
     source scripts/need.sh
     need python3 python3
+    need_programs
+    local sim=$programs/holdover-sim results=${CARGO_TARGET_DIR:-target}/corridor.json
     "$sim" run corridor --no-report --json >"$results"
     python3 scripts/documented_corridor.py docs/RESULTS.md "$results"
     "$sim" string --delays 0.2 --losses 0.4 --step-only --seeds 20 --no-report

@@ -28,10 +28,10 @@ emulate() {
 
 rm -rf "$build"
 mkdir -p "$build"
-cargo run --locked --release --quiet -p holdover-c --example reference >"$build/reference.txt"
+need_programs
+log=$programs/holdover-log
+"$programs/examples/reference" >"$build/reference.txt"
 frames=$(grep -vc '^-' "$build/reference.txt")
-cargo build --locked --profile checked --quiet -p holdover-log
-log=${CARGO_TARGET_DIR:-target}/checked/holdover-log
 "$log" record "$build" | grep '^corridor'
 
 # On the host.

@@ -10,8 +10,8 @@ python=$target/data-python
 mkdir -p "$python"
 need_python "$python" scripts/data/requirements.txt
 need_python "$python" docs/notebooks/requirements.txt
-cargo build --locked --release -p holdover-sim
-sim=$target/release/holdover-sim
+need_programs
+sim=$programs/holdover-sim
 (cd scripts/data && "$python/bin/python" test_recordings.py "$sim")
 for notebook in docs/notebooks/*.ipynb; do
     "$python/bin/python" scripts/notebook_check.py "$notebook" "$sim" "$target/notebooks"

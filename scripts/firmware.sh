@@ -113,8 +113,8 @@ images() {
 
 replays_and_costs() {
     echo "-- logs replayed, against this host"
-    cargo build --locked --quiet --profile checked -p holdover-log
-    holdover_log=$(realpath -m "${CARGO_TARGET_DIR:-target}")/checked/holdover-log
+    need_programs
+    holdover_log=$programs/holdover-log
     cd tests/embedded
     built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
     replays=$built/replay

@@ -20,7 +20,6 @@ cd "$(dirname "$0")/.."
 
 built=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 work=$built/hil
-sim=$built/checked/holdover-sim
 export CARGO_TERM_COLOR=${CARGO_TERM_COLOR:-never}
 
 source scripts/need.sh
@@ -159,7 +158,7 @@ conclude() {
 }
 
 test_binaries() {
-    cargo test --locked --profile checked -p holdover-sim --test 'vcan_*' --no-run --message-format json |
+    cargo test --locked --profile checked --workspace --test 'vcan_*' --no-run --message-format json |
         grep '"kind":\["test"\]' | sed -n 's/.*"executable":"\([^"]*\)".*/\1/p'
 }
 
@@ -273,7 +272,8 @@ kernel=$(scripts/vcan.sh cat /proc/sys/kernel/random/boot_id) || code=$?
 [ "$code" = 0 ] || exit "$code"
 own_kernel=yes
 [ "$kernel" != "$(cat /proc/sys/kernel/random/boot_id)" ] || own_kernel=no
-cargo build --locked --profile checked -p holdover-sim
+need_programs
+sim=$programs/holdover-sim
 building=
 if [[ $own_kernel = yes && " ${checks[*]} " = *' m4 '*' r5 '* ]]; then
     test_binaries >/dev/null # first, because cargo does one thing at a time

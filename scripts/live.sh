@@ -8,8 +8,8 @@ source scripts/need.sh
 need_browser
 target=${CARGO_TARGET_DIR:-target}
 mkdir -p "$target/live"
-cargo build --locked --release -p holdover-sim
-sim=$target/release/holdover-sim
+need_programs
+sim=$programs/holdover-sim
 for check in live_check live_input_check live_road_check; do
     echo "$check:"
     timeout 600 "$python/bin/python" "scripts/$check.py" "$sim" "$(command -v chromium)" "$target/live"

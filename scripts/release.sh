@@ -3,7 +3,7 @@
 # is nothing else: no library, no shell, no folder.
 #
 # Without a TARGET: x86_64-unknown-linux-musl and aarch64-unknown-linux-musl. An archive of another processor is tried by
-# qemu-user; what could not be tried is said at the end, and loudly. --quick leaves out most of the optimisation: for a check of the
+# qemu-user; what could not be tried is said at the end, and loudly. --quick leaves out the optimisation: for a check of the
 # recipe, not for a release.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -8,8 +8,8 @@ source scripts/need.sh
 need_browser
 target=${CARGO_TARGET_DIR:-target}
 reports=$target/reports
-sim=$target/release/holdover-sim
-cargo build --locked --release -p holdover-sim
+need_programs
+sim=$programs/holdover-sim
 rm -rf "$reports"
 mkdir -p "$reports"
 

@@ -82,9 +82,9 @@ fn ways_of_one_street_have_one_leg_and_ways_to_one_street_one_exit() {
     assert_eq!(found, expected.concat());
 }
 
-/// Runs with the envelope or without, with emergencies or without. Nobody is hurt, and everyone is served.
+/// Runs with the envelope or without, with emergencies or without, with 16 vehicles a minute. Nobody is hurt, and everyone is served.
 fn safe(name: &str, engaged: bool, emergencies: bool) -> Outcome {
-    let experiment = experiment(name, 60.0);
+    let experiment = Experiment::new(experiment(name, 60.0).corridor.demanding(16.0));
     let scenario = Conditions::of(&experiment.corridor);
     let envelope = Envelope { engaged, ..scenario.envelope };
     // Every second vehicle brakes to a stand somewhere, and none has a fault.
