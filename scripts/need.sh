@@ -26,8 +26,8 @@ need_browser() {
     need_python "$python" scripts/live-requirements.txt
 }
 
-# need_programs: builds the workspace's programs and tests, and says in `programs` where they are. All of them, as `./ci.sh test` builds them:
-# for a choice of packages Cargo would build their dependencies anew, with the features that this choice has, and the simulator with them.
+# need_programs: builds the workspace's programs and tests, and says in `programs` where they are. All of them, as `./ci.sh test`
+# builds them: for a choice of packages Cargo builds the dependencies anew, with the features of this choice, and the simulator too.
 need_programs() {
     cargo build --locked --workspace --all-targets --profile checked
     programs=$(realpath -m "${CARGO_TARGET_DIR:-target}")/checked
