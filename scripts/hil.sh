@@ -129,7 +129,7 @@ look_back() {
 
 # conclude COMMAND...: the verdict of a run in real time. Of a device that is a process or emulated, a failure says nothing if
 # this machine kept a processor from its programs for half a period: then it is asked again, as after a verdict of
-# "inconclusive". Beside nothing else of this script, and after a pause, since what else a machine has to do often passes.
+# "inconclusive": beside nothing else of this script, and after a pause, since what else a machine has to do often passes.
 conclude() {
     local attempt code most why turn lookers withheld=$work/withheld.$BASHPID
     exec {turn}>"$work/turn"
@@ -277,7 +277,11 @@ sim=$programs/holdover-sim
 building=
 if [[ $own_kernel = yes && " ${checks[*]} " = *' m4 '*' r5 '* ]]; then
     test_binaries >/dev/null # first, because cargo does one thing at a time
-    (build_images thumbv7em-none-eabihf && build_images armv7r-none-eabihf) >"$work/images" 2>&1 &
+    (
+        exec {turn}>"$work/turn" # see conclude
+        flock --shared "$turn"
+        build_images thumbv7em-none-eabihf && build_images armv7r-none-eabihf
+    ) >"$work/images" 2>&1 &
     building=$!
 fi
 for name in "${checks[@]}"; do

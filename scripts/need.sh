@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# need.sh: what the checks share that need a program of Debian's; to be sourced.
+# need.sh: what the checks share; to be sourced.
 
 # skip WHY...: this check cannot run here (exit code 77, which ci.sh counts).
 skip() {

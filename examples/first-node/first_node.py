@@ -19,6 +19,7 @@ itself, so that it says nothing of the unit. docs/FIRST-NODE.md explains it all.
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from dataclasses import dataclass, field
@@ -227,7 +228,8 @@ class Node:
             self.bus.send("TimeFollowUp", Sequence=turn % 16, Micros=int(sent % 1 * 1e6))
         at = EPOCH + self.driven  # when the vehicles were where they are
         self.ego.tell(self.bus, "Ego", STATION, round(due / PERIOD) % 4, at)
-        age = time.monotonic() - self.driven  # a view that is older than the signal can say is not sent
+        # Rounded up. A view that is older than the signal can say is not sent.
+        age = math.ceil((time.monotonic() - self.driven) * 1000) / 1000
         if self.turn("RangeSensor", due) is not None and age <= self.bus.maximum("RangeSensor", "Age"):
             view = {"Distance": self.gap(), "SpeedDifference": self.peer.speed - self.ego.speed, "Age": age}
             self.bus.send("RangeSensor", **view, Nobody="vehicle at Distance", DistanceAccuracy=0.1, SpeedAccuracy=0.1)

@@ -37,16 +37,16 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     sample: &Sample,
-    followed: Option<usize>,
+    target: Option<usize>,
     gains: Option<Gains>,
 ) {
-    let mut manner = scene.estimator.manner(scene.ego_model_now(gains), followed, &scene.peers);
+    let mut manner = scene.estimator.manner(scene.ego_model_now(gains), target, &scene.peers);
     let review = scene.coordination.next_review().filter(|_| scene.is_decided_by_order());
     if scene.opening.is_opened() {
         if review.is_none() {
             return foresee_opened(scene, now, sample, &manner);
         }
-        // Until something changes it is taken as opened by what it is now.
+        // Until the target changes it is taken as opened by what it is now.
         manner = scene.estimator.opened(&manner, scene.opening.within_piece(Duration::ZERO));
     }
     scene.estimator.foresee_own(now, review, sample, &manner);
@@ -88,9 +88,6 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
                 }
                 let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
                 manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
-                if target == followed && scene.opening.is_opened() {
-                    manner = scene.estimator.opened(&manner, scene.opening.within_piece(review.since(now)));
-                }
             }
             crossing = next;
             before = Some((review, scene.estimator.own_mark()));

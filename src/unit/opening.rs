@@ -1,11 +1,12 @@
-//! The time gap while nothing new is known of the vehicle ahead. Whether there is news of it enters, before every own motion; by how much
-//! the time gap is opened leaves, now and later.
+//! The time gap while nothing new is known of the vehicle ahead. Whether there is news of it enters, before every own motion, and so does
+//! a larger gap that the driver asks for; by how much the time gap is opened leaves, now and later.
 //!
 //! A unit that neither hears nor sees the vehicle ahead drives by an estimate that gets worse. The published rule:
 //!
 //! * when there has been no news for [`OPENS_AFTER`](crate::parameters::OPENS_AFTER), the time gap opens by one second in [`OPENS_BY`], up
 //!   to [`Law::silent_time_gap`](crate::config::Law);
-//! * with the next news it closes again, as slowly.
+//! * with the next news it closes again, as slowly;
+//! * a larger time gap that is wanted takes the place of as much that was opened.
 //!
 //! It goes on between own motions, so that no demand jumps. With the tables of gains the string is as stable at every larger gap. The own
 //! horizon is computed with the gap as it will be if it goes on like that: others know of the opening by it. Those that lost the horizon know
@@ -42,7 +43,7 @@ impl Opening {
     /// One own motion later: it goes on as it did since the last one, and opens or closes from now on. It opens by `most` at most.
     pub fn go_on(&mut self, now: Instant, opens: bool, most: Seconds) {
         self.by = if self.is_opened() { self.at_instant(now) } else { Duration::ZERO };
-        (self.at, self.opens) = (Held::Value(now), opens && most > Seconds::ZERO);
+        (self.at, self.opens) = (Held::Value(now), opens);
         self.limit(most);
     }
 
@@ -54,6 +55,7 @@ impl Opening {
     }
 
     fn limit(&mut self, most: Seconds) {
+        self.opens &= most > Seconds::ZERO;
         self.most = span(most);
         self.by = self.by.min(self.most);
     }
