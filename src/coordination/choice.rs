@@ -8,7 +8,10 @@ use super::ComfortBraking;
 pub struct Choice {
     /// The slot of the vehicle that the ego follows.
     pub target: Option<u8>,
-    /// The slot of the vehicle just ahead in the order.
+    /// The vehicles that the ego lets pass first: they are ahead in the order, on ways that conflict with the ego's, announced for long
+    /// enough, and are not estimated to have left the conflict area.
+    pub first: Slots,
+    /// The slot of that one of `first` behind which the law asks for the most caution.
     pub order: Option<u8>,
     /// The slot of the vehicle that is estimated to be just ahead on the ego's own leg.
     pub lane: Option<u8>,
@@ -16,6 +19,9 @@ pub struct Choice {
     pub is_held: bool,
     /// How gently the ego brakes for the target.
     pub comfort: ComfortBraking,
+    /// The vehicles whose name means another one to those who hear it, which is nearer ahead of the ego. The ego does not follow them by the
+    /// order.
+    pub namesakes: Slots,
     /// All vehicles that are ahead in the order, also those that are only estimated to have left.
     pub ahead: Slots,
     /// All vehicles that are ahead on the ego's own leg. No vehicle passes another there. So a vehicle that was ahead for certain stays
@@ -31,10 +37,12 @@ impl Choice {
     /// No vehicle: all zero.
     pub(crate) const NONE: Self = Self {
         target: None,
+        first: Slots::NONE,
         order: None,
         lane: None,
         is_held: false,
         comfort: ComfortBraking::NONE,
+        namesakes: Slots::NONE,
         ahead: Slots::NONE,
         leading: Slots::NONE,
         beyond: Slots::NONE,
@@ -46,6 +54,8 @@ impl Choice {
         for held in [&mut self.target, &mut self.order, &mut self.lane] {
             *held = held.filter(|slot| usize::from(*slot) != index);
         }
+        self.first.set(index, false);
+        self.namesakes.set(index, false);
         self.ahead.set(index, false);
         self.leading.set(index, false);
         self.beyond.set(index, false);

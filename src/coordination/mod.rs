@@ -44,15 +44,23 @@ use crate::units::{Distance, Position, Speed};
 pub use crate::wire::Movement;
 use crate::wire::{Predecessor, StationHash};
 
-/// The standstill distance behind a vehicle whose movement conflicts with the ego's is the length of the conflict area, if that is longer
-/// than the law's. Then the rear of the vehicle ahead has left the area when the front of the ego enters it, at any speed.
+/// What a vehicle on a way through intersections keeps in addition to the law's standstill distance. Where a queue has formed, a vehicle
+/// brakes for what it alone knows, because a vehicle ahead has no slot. The vehicles behind that do not hear it cannot foresee that, and
+/// need room for the error of their estimates.
+pub const UNSEEN: Distance = Distance::from_mm(8_000);
+
+/// The same behind a vehicle that the range sensor sees: it sees the braking too.
+pub const SEEN: Distance = Distance::from_mm(2_000);
+
+/// The standstill distance on a way through intersections, of a law's. `crossing` is where the way of the vehicle ahead conflicts with the
+/// ego's, if it does. There the distance is at least the length of the conflict area: the rear of the vehicle ahead has then left the area
+/// when the front of the ego enters it, at any speed. A sensor does not see that vehicle.
 #[must_use]
-pub fn standstill_behind(law: Distance, crossing: &Crossing, other: Movement) -> Distance {
-    let intersection = crossing.intersection;
-    if intersection.conflict(crossing.movement, other) {
-        law.max(intersection.half.plus(intersection.half))
-    } else {
-        law
+pub fn standstill_on_way(law: Distance, crossing: Option<&Crossing>, has_sensor: bool) -> Distance {
+    match crossing {
+        Some(Crossing { intersection, .. }) => law.plus(UNSEEN).max(intersection.half.plus(intersection.half)),
+        None if has_sensor => law.plus(SEEN),
+        None => law.plus(UNSEEN),
     }
 }
 
@@ -299,10 +307,17 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.lane.forget(index);
     }
 
-    /// Sets the vehicle to follow, how gently to brake for it, and the vehicle just ahead on the lane.
-    pub(crate) fn choose(&mut self, target: Option<usize>, comfort: ComfortBraking, lane: Option<usize>) {
+    /// Sets the vehicle to follow and how gently to brake for it, the vehicle to let pass first, and the vehicle just ahead on the lane.
+    pub(crate) fn choose(
+        &mut self,
+        target: Option<usize>,
+        comfort: ComfortBraking,
+        order: Option<usize>,
+        lane: Option<usize>,
+    ) {
         let slot = |index: Option<usize>| index.and_then(|index| u8::try_from(index).ok());
-        (self.choice.target, self.choice.comfort, self.choice.lane) = (slot(target), comfort, slot(lane));
+        (self.choice.target, self.choice.comfort) = (slot(target), comfort);
+        (self.choice.order, self.choice.lane) = (slot(order), slot(lane));
     }
 
     /// Notes the vehicles that are ahead on the ego's leg, and those of them that are beyond the radio's reach.
@@ -324,6 +339,11 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// How far the rear bumper of a vehicle has come at least, by the vehicles that are known to be behind it.
     pub(crate) fn passed(&self, index: usize) -> Option<Position> {
         self.lane.passed(index)
+    }
+
+    /// Notes the vehicles whose name means another one.
+    pub(crate) fn note_namesakes(&mut self, namesakes: Slots) {
+        self.choice.namesakes = namesakes;
     }
 
     /// Notes the vehicles that are out of reach.

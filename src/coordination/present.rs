@@ -2,6 +2,7 @@
 
 use super::Entry;
 use crate::time::Instant;
+use crate::units::Distance;
 
 /// A station at the ego's next crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +19,10 @@ pub(crate) struct Present {
     /// Whether the ego is so far ahead that it has left the conflict area before this station is there, or whether the ego cannot stop
     /// before the area any more.
     pub is_far_behind: bool,
+    /// Whether its way conflicts with the ego's.
+    pub conflicts: bool,
+    /// By how much it is ahead of the ego on the virtual lane.
+    pub way: Distance,
     /// Whether the ego may follow it.
     pub is_announced: bool,
     /// Whether it is ahead of the ego or behind it, if it comes by the ego's own leg.

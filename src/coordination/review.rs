@@ -7,8 +7,9 @@ use crate::time::Instant;
 use crate::wire::StationHash;
 
 impl<const PEERS: usize> Coordination<PEERS> {
-    /// Reviews the stations that are present. Returns whether the ego yielded to a station that did not heed it.
-    pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present]) -> bool {
+    /// Reviews the stations that are present; `are_all` says that no station is heard for which there is no slot. Returns whether the ego
+    /// yielded to a station that did not heed it.
+    pub(crate) fn review(&mut self, now: Instant, own: StationHash, present: &[Present], are_all: bool) -> bool {
         self.at_once = false;
         self.due.set(match self.due.get() {
             Some(due) if now < due => due,
@@ -29,12 +30,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
         let ego = Entry { arrival, ..ego };
         let mut given_way = None;
         for Present { index, entry, heard, is_far_behind, .. } in
-            present.iter().filter(|other| other.lane != Some(Side::Behind))
+            present.iter().filter(|other| other.lane != Some(Side::Behind) && other.conflicts)
         {
             // What a station said before it could hear of the ego does not count.
             let counts = !is_far_behind && heard.since(registration.since) >= REVIEW;
             let regard = Regard::of(entry, &ego, present.iter().map(|other| &other.entry));
-            let regard = if counts { regard } else { Regard::Heeds };
+            // A station that is claimed may be one of those without a slot.
+            let is_known = counts && (are_all || regard != Regard::Unclear);
+            let regard = if is_known { regard } else { Regard::Heeds };
             let is_over =
                 self.yield_timer.get_mut(*index).is_some_and(|yield_timer| yield_timer.is_over(*heard, regard));
             if is_over && given_way.is_none_or(|other: &Entry| other.is_before(entry)) {
@@ -48,19 +51,18 @@ impl<const PEERS: usize> Coordination<PEERS> {
             }
             None => ego,
         };
-        let (mut last, mut followed) = (None::<Entry>, None::<(usize, Entry)>);
-        self.choice.ahead = Slots::NONE;
+        let mut last = None::<Entry>;
+        (self.choice.ahead, self.choice.first) = (Slots::NONE, Slots::NONE);
         let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
-        for Present { index, entry, has_left, is_announced, .. } in present.iter().filter(is_ahead) {
+        for Present { index, entry, has_left, is_announced, conflicts, lane, .. } in present.iter().filter(is_ahead) {
             self.choice.ahead.set(*index, true);
-            if !has_left && last.is_none_or(|last| last.is_before(entry)) {
+            let is_followed = *conflicts && !has_left && *is_announced && !self.choice.namesakes.contains(*index);
+            self.choice.first.set(*index, is_followed);
+            let is_passed = *conflicts || lane.is_some();
+            if is_passed && !has_left && last.is_none_or(|last| last.is_before(entry)) {
                 last = Some(*entry);
             }
-            if !has_left && *is_announced && followed.is_none_or(|(_, last)| last.is_before(entry)) {
-                followed = Some((*index, *entry));
-            }
         }
-        self.choice.order = followed.and_then(|(index, _)| u8::try_from(index).ok());
         self.claim = last.map(|entry| entry.station).into();
         given_way.is_some()
     }

@@ -124,12 +124,14 @@ impl Meeting {
                         heard,
                         has_left: false,
                         is_far_behind: false,
+                        conflicts: true,
+                        way: Distance::ZERO,
                         is_announced: true,
                         lane: None,
                     })
                 })
                 .collect();
-            gave_way += usize::from(coordination.review(at(tick + 1), own.station, &present));
+            gave_way += usize::from(coordination.review(at(tick + 1), own.station, &present, true));
         }
         gave_way
     }
@@ -279,7 +281,7 @@ fn a_review_at_once_does_not_move_the_times_of_the_others() {
     let mut review = |ms| {
         coordination.review_at_once();
         assert!(coordination.is_due(after(ms)));
-        let _ = coordination.review(after(ms), StationHash(1), &[]);
+        let _ = coordination.review(after(ms), StationHash(1), &[], true);
         assert!(!coordination.is_due(after(ms)));
         coordination.next_review()
     };
@@ -301,13 +303,15 @@ fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
     coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
     for tick in 1..=times {
         let present: Vec<_> = others.iter().map(|other| Present { heard: at(tick), ..*other }).collect();
-        coordination.review(at(tick), StationHash(9), &present);
+        coordination.review(at(tick), StationHash(9), &present, true);
     }
     (coordination.registration().unwrap().arrival.0, coordination.claim())
 }
 
 fn there(index: usize, entry: Entry, lane: Option<Side>) -> Present {
-    Present { index, entry, heard: at(0), has_left: false, is_far_behind: false, is_announced: true, lane }
+    let conflicts = lane.is_none();
+    let (way, heard) = (Distance::ZERO, at(0));
+    Present { index, entry, heard, has_left: false, is_far_behind: false, conflicts, way, is_announced: true, lane }
 }
 
 #[test]

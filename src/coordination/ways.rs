@@ -15,6 +15,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         })
     }
 
+    /// Whether the way of a peer with this approach conflicts with the ego's at the crossing of both.
+    pub(crate) fn conflicts(&self, approach: &PeerApproach) -> bool {
+        let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
+        crossing.is_some_and(|own| own.intersection.conflict(own.movement, approach.movement))
+    }
+
     /// Whether a peer with this approach comes by another leg and takes the ego's exit.
     pub(crate) fn joins(&self, approach: &PeerApproach) -> bool {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));

@@ -49,8 +49,10 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     if let Some(arrival) = arrival.filter(|_| gives_way) {
         scene.coordination.give_way(arrival);
     }
+    let namesakes = namesakes(&present);
     scene.coordination.hold(is_held);
-    if scene.coordination.review(now, scene.config.station, &present) {
+    scene.coordination.note_namesakes(namesakes);
+    if scene.coordination.review(now, scene.config.station, &present, scene.has_slot_for_all(now)) {
         health.count(Cause::Overlooked);
     }
     scene.coordination.note_lost(lost(scene, now, front));
@@ -83,6 +85,8 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
                 entry,
                 heard: approach.heard,
                 has_left,
+                conflicts: coordination.conflicts(approach),
+                way: reading.position.ahead_of(view.front),
                 is_far_behind: is_committed || view.is_far_behind(&reading),
                 is_announced: !is_passed && (followed == Some(index) || view.is_announced(approach)),
                 lane: (is_on_lane && takes_along).then_some(side),
@@ -96,6 +100,21 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         }
     }
     (present, nearest.map(|(index, _)| index))
+}
+
+/// Of those whose ways conflict with the ego's and who have one name: all but the nearest ahead, or else the nearest. By that name the
+/// others take the ego to follow that one.
+fn namesakes(present: &[Present]) -> Slots {
+    let mut namesakes = Slots::NONE;
+    let crossing = || present.iter().filter(|one| one.conflicts);
+    for (place, one) in crossing().enumerate() {
+        for other in crossing().skip(place.saturating_add(1)).filter(|other| other.entry.station == one.entry.station) {
+            let is_nearer =
+                (one.way < Distance::ZERO, one.way.magnitude()) <= (other.way < Distance::ZERO, other.way.magnitude());
+            namesakes.set(if is_nearer { other.index } else { one.index }, true);
+        }
+    }
+    namesakes
 }
 
 /// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
@@ -115,8 +134,8 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     lost
 }
 
-/// Chooses the vehicle that the ego follows from now on: of the vehicle just ahead in the order and the vehicle just ahead on the leg,
-/// the one that asks for more caution.
+/// Chooses the vehicle that the ego follows from now on: of those that it lets pass first, and the vehicle just ahead on the leg, the one
+/// that asks for the most caution.
 fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -127,13 +146,14 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let view = scene.vantage(now, front, speed);
     let before = scene.coordination.choice();
     let heeded = |index| Candidate::at(scene, index, now).filter(|peer| view.is_heeded(peer));
-    let order = before.order.map(usize::from).and_then(heeded);
+    let first = (0..PEERS).filter(|index| before.first.contains(*index)).filter_map(heeded);
+    let order = first.fold(None, |best, peer| view.nearest(best, peer)).map(|(peer, _)| peer);
     let lane = nearest.and_then(heeded);
     let followed = before.target.map(usize::from);
     let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(target, followed));
-    let (target, lane) = (target.map(|peer| peer.index), lane.map(|peer| peer.index));
+    let [target, order, lane] = [target, order, lane].map(|peer| peer.map(|peer| peer.index));
     let may = view.comfort(target);
     // For the same target the ego does not brake more gently than it already had to.
     let comfort = if followed == target { may.min(before.comfort) } else { may };
-    scene.coordination.choose(target, comfort, lane);
+    scene.coordination.choose(target, comfort, order, lane);
 }

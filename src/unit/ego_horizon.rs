@@ -138,8 +138,9 @@ struct Minded {
     is_on_lane: [bool; 2],
     /// Where it has left that area.
     left_at: Option<Position>,
-    /// Its place in the order, and whether that is ahead of the ego's at the next crossing.
-    entry: Option<Entry>,
+    /// Whether its place in the order is known and its way conflicts with the ego's there, and whether that place is ahead of the ego's
+    /// at the next crossing.
+    conflicts: bool,
     is_ahead: bool,
     /// The way from its front to its rear.
     to_rear: Distance,
@@ -160,7 +161,9 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         let is_on_lane = [false, true].map(|has_left| scene.coordination.is_on_lane(approach, has_left));
         let entry = scene.entry(index, approach);
         let is_ahead = entry.as_ref().is_some_and(|entry| is_ahead(scene, index, entry));
-        let comes = approach.crossing > next || approach.crossing == next && is_ahead;
+        let is_named = !scene.coordination.choice().namesakes.contains(index);
+        let conflicts = entry.is_some() && is_named && scene.coordination.conflicts(approach);
+        let comes = approach.crossing > next || approach.crossing == next && is_ahead && conflicts;
         let leads = || scene.estimator.read_step(index, step).is_some_and(|reading| reading.position > own.position);
         let is_minded = match is_on_lane {
             [true, _] => leads(),
@@ -170,7 +173,7 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         if is_minded {
             let (crossing, to_rear) = (approach.crossing, scene.peers.length_of(index).negated());
             let left_at = scene.coordination.end_of(crossing).map(|end| end.ahead(approach.shift));
-            let one = Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, to_rear };
+            let one = Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear };
             let _ = minded.push(one); // no more than slots
         }
     }
@@ -188,14 +191,11 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> Option<Candidate> {
     let (scene, coordination) = (view.scene, &view.scene.coordination);
     let is_later = view.next != coordination.next();
-    let (mut order, mut lane) = (None::<(Candidate, &Entry)>, None::<(Candidate, usize)>);
-    for Minded { index, crossing, is_on_lane, left_at, entry, is_ahead, to_rear } in minded {
-        // The entry is asked for first, because it needs no horizon.
-        let entry = entry.as_ref().filter(|entry| {
-            let is_ahead = is_later || *is_ahead;
-            is_ahead && *crossing == view.next && order.is_none_or(|(_, last)| last.is_before(entry))
-        });
-        if *is_on_lane == [false; 2] && entry.is_none() {
+    let (mut order, mut lane) = (None::<(Candidate, Position)>, None::<(Candidate, usize)>);
+    for Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear } in minded {
+        // This is asked for first, because it needs no horizon.
+        let goes_first = *conflicts && (is_later || *is_ahead) && *crossing == view.next;
+        if *is_on_lane == [false; 2] && !goes_first {
             continue;
         }
         let Some(reading) = scene.estimator.read_step(*index, step) else { continue };
@@ -207,10 +207,12 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         if is_on_lane && reading.position > view.front && is_nearest {
             lane = Some((peer, *crossing));
         }
-        let Some(entry) = entry.filter(|_| left_at.is_some_and(|end| peer.rear < end)) else { continue };
+        if !goes_first || left_at.is_none_or(|end| peer.rear >= end) {
+            continue;
+        }
         let is_announced = || coordination.approach(*index).is_some_and(|approach| view.is_announced(approach));
         if followed == Some(*index) || is_announced() {
-            order = Some((peer, entry));
+            order = view.nearest(order, peer);
         }
     }
     // A vehicle that is ahead on the same leg, and not yet at the later crossing, comes there before the ego, and after all that are

@@ -21,7 +21,7 @@ use super::vantage::Vantage;
 use crate::clock::Clock;
 use crate::config::Config;
 use crate::controller::Gains;
-use crate::coordination::{ComfortBraking, Coordination, Entry, PeerApproach, standstill_behind};
+use crate::coordination::{ComfortBraking, Coordination, Entry, PeerApproach, standstill_on_way};
 use crate::envelope::Obstacle;
 use crate::estimator::Estimator;
 use crate::held::Held;
@@ -39,11 +39,6 @@ use named::Named;
 use passes::Passes;
 use sight::Ranging;
 use unknown::Unknown;
-
-/// What a vehicle on a way through intersections keeps in addition to the law's standstill distance. Where a queue has formed, a vehicle
-/// brakes for what it alone knows, because a vehicle ahead has no slot. The vehicles behind that do not hear it cannot foresee that, and
-/// need room for the error of their estimates.
-const QUEUE: Distance = Distance::from_mm(8_000);
 
 /// An `EgoMotion` is whole this long after it was measured (assumption A10).
 const EGO_WITHIN: Duration = Duration::from_millis(20);
@@ -371,13 +366,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     pub fn standstill_at(&self, next: usize, index: usize) -> Distance {
         let law = self.config.law.standstill;
         let Some(itinerary) = self.coordination.itinerary() else { return law };
-        let law = law.plus(QUEUE);
-        match (itinerary.crossings.get(next), self.coordination.approach(index)) {
-            (Some(crossing), Some(approach)) if approach.crossing == next => {
-                standstill_behind(law, crossing, approach.movement)
-            }
-            _ => law,
-        }
+        let approach = self.coordination.approach(index).filter(|approach| approach.crossing == next);
+        let crossing = approach.and_then(|approach| {
+            let crossing = itinerary.crossings.get(next)?;
+            crossing.intersection.conflict(crossing.movement, approach.movement).then_some(crossing)
+        });
+        standstill_on_way(law, crossing, self.config.range_sensor)
     }
 
     /// Where the next conflict area begins.

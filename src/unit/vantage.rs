@@ -66,7 +66,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         peer.rear > self.front.ahead(HEEDED).ahead(way).ahead(way)
     }
 
-    /// Of the vehicle just ahead in the order and the vehicle just ahead on the leg, the one that asks for more caution.
+    /// Of the vehicles that the ego lets pass first, the one behind which the law asks for the smallest acceleration. They may drive at
+    /// once where their ways do not conflict, so the last of them in the order is not always behind.
+    pub fn nearest(&self, best: Option<(Candidate, Position)>, other: Candidate) -> Option<(Candidate, Position)> {
+        let asks = self.asks(&other);
+        if best.is_some_and(|(_, least)| least <= asks) { best } else { Some((other, asks)) }
+    }
+
+    /// Of a vehicle that the ego lets pass first and the vehicle just ahead on the leg, the one that asks for more caution.
     ///
     /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
     /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in

@@ -61,7 +61,7 @@ macro_rules! meaning {
     (range_nobody) => { "Whether no vehicle is nearer than Distance on the own path, the next conflict area included. Send it only for an instant since which several views have shown none, and not while the sensor may be blind." };
     (legs) => { "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot: bit n is leg n." };
     (unserved_ahead) => { "Way of the rear bumper of the nearest vehicle without a slot ahead on the own leg to the crossing point of that leg at Intersection, which is the next one on the own way: any other is ignored. Negative beyond the crossing point." };
-    (stations) => { "How many stations without a slot the vehicle could meet, 63 for more." };
+    (stations) => { "How many stations that come to the same intersection have no slot, 63 for more." };
     (station_id) => { "The whole identity of the station, of which Station is the low 8 bits." };
     (left) => { "Number of the intersection that the vehicle left last; none if it has left none on its way." };
     (pass_stamp) => { "GNSS time up to which the vehicle says all that it claims: no window that it claims later counts from before that. Modulo 655.36 s." };

@@ -39,6 +39,11 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         told.intersection == crossing.intersection.id && (0..8).any(|leg| crosses(&leg))
     }
 
+    /// Whether every vehicle that is heard on the way to the next intersection has a slot, as far as the modem says.
+    pub fn has_slot_for_all(&self, now: Instant) -> bool {
+        self.unknown.told(now).is_none_or(|told| told.stations == 0)
+    }
+
     /// Where the ego, as far back as it may be, has to be able to stop for an unknown vehicle: before the next conflict area, unless the
     /// ego could not stop there any more when it learned of the vehicle, and behind an unknown vehicle ahead.
     pub fn stop_for_unknown(&self, now: Instant, rearmost: Position) -> Option<Position> {

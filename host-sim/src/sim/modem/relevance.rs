@@ -8,8 +8,9 @@
 //! - Of each leg that crosses the unit's leg, the next station to enter that area. If it is about to enter, the one
 //!   after it too. Vehicles do not overtake on a leg, so the stations behind come later.
 //! - Stations at an intersection that the unit has still to cross. The unit's nearest intersection comes first; there,
-//!   stations ahead of the unit come before stations behind it. Of those ahead, a station that is leaving comes first,
-//!   because the unit may be waiting for that; then the nearest.
+//!   those come last that come by other legs on ways that do not conflict with the unit's. Stations
+//!   ahead of the unit come before stations behind it. Of those ahead, a station that is leaving comes first, because
+//!   the unit may be waiting for that; then the nearest.
 //! - The station that the unit's target follows, the one that this station follows, and so on along the chain: the unit
 //!   predicts its target by them.
 //! - All other stations.
@@ -44,6 +45,8 @@ pub enum Rank {
     Meets {
         /// Number of intersections that the unit crosses before that one.
         after: usize,
+        /// The station comes by another leg, and its way does not conflict with the unit's.
+        beside: bool,
         /// The station is farther from the crossing point than the unit.
         behind: bool,
         /// The station has not reached the crossing point, or comes by the unit's own leg.
@@ -132,9 +135,9 @@ impl Rank {
     pub fn displaces(self, other: Self) -> bool {
         match (self, other) {
             (
-                Self::Meets { after, behind, apart_m, .. },
-                Self::Meets { after: later, behind: back, arriving, apart_m: far_m },
-            ) if (after, behind) == (later, back) => arriving && apart_m + NEARER_M < far_m,
+                Self::Meets { after, beside, behind, apart_m, .. },
+                Self::Meets { after: later, beside: too, behind: back, arriving, apart_m: far_m },
+            ) if (after, beside, behind) == (later, too, back) => arriving && apart_m + NEARER_M < far_m,
             _ => self < other,
         }
     }
@@ -299,11 +302,14 @@ impl Course {
     fn meets(&self, other: &Route, way_m: f64) -> Option<Rank> {
         let here = self.here()?;
         let (there, own_m) = self.way_to(other.intersection)?;
+        let Ahead { intersection, movement, .. } = self.crossings[there];
+        let beside = movement.leg != other.movement.leg && !intersection.conflict(movement, other.movement);
         let is_on_lane = there == here && self.route.is_none_or(|own| own.movement.leg == other.movement.leg);
         // By its last message, because the unit waits for a silent station, wherever that station has gone since. On
         // its own leg the unit waits for no station: one beyond the crossing point matters only if it leads.
         let has_gone = other.distance.get().to_num::<f64>() < -CLEAR_M;
         let (behind, arriving) = (way_m > own_m, way_m >= 0.0 || is_on_lane);
-        (!has_gone).then(|| Rank::Meets { after: there - here, behind, arriving, apart_m: (way_m - own_m).abs() })
+        let apart_m = (way_m - own_m).abs();
+        (!has_gone).then_some(Rank::Meets { after: there - here, beside, behind, arriving, apart_m })
     }
 }

@@ -26,19 +26,29 @@ impl Relay {
             intersection: next.intersection.id,
             legs: legs.fold(0, |legs, leg| legs | 1u8.checked_shl(leg.into()).unwrap_or(0)),
             ahead: ahead_m.map(|way_m| Distance::from_mm((way_m * 1e3) as i32)),
-            stations: u8::try_from(unserved.len()).unwrap_or(u8::MAX).min(63),
+            stations: u8::try_from(self.without_slot(next.intersection.id, &front)).unwrap_or(63).min(63),
         })
     }
 
-    /// Whether a station that the unit could meet has no slot. A modem that hears no station any more goes by the last
-    /// messages.
+    /// Whether a station that the unit could meet has no slot.
     fn is_unserved(&self, placed: &Placed, at_s: f64, front: &Front) -> bool {
-        let is_relayed = self.slots.iter().flatten().any(|tenant| tenant.station == placed.station && tenant.relayed);
         let matters = || {
             let rank = self.rank_of(placed, at_s, front);
             self.course.comes_before(&placed.route) && !matches!(rank, Rank::Other | Rank::Irrelevant)
         };
-        front.newest_s() - placed.at_s < HEARD_S && !is_relayed && matters()
+        self.has_no_slot(placed, front) && matters()
+    }
+
+    /// The number of stations on the way to an intersection that have no slot.
+    fn without_slot(&self, intersection: u8, front: &Front) -> usize {
+        let there = self.places.iter().filter(|placed| placed.route.intersection == intersection);
+        there.filter(|placed| self.has_no_slot(placed, front)).count()
+    }
+
+    /// Whether a station that is heard has no slot. A modem that hears no station any more goes by the last messages.
+    fn has_no_slot(&self, placed: &Placed, front: &Front) -> bool {
+        let is_relayed = self.slots.iter().flatten().any(|tenant| tenant.station == placed.station && tenant.relayed);
+        front.newest_s() - placed.at_s < HEARD_S && !is_relayed
     }
 
     /// Whether a station is in the unit's next conflict area, or is near and the next one of its leg to enter.

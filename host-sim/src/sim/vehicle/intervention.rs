@@ -3,7 +3,7 @@
 
 use holdover::ConfigError;
 use holdover::config::Envelope;
-use holdover::coordination::{Itinerary, MapError, standstill_behind};
+use holdover::coordination::{Itinerary, MapError, standstill_on_way};
 use holdover::time::Instant;
 use holdover::units::Position;
 use holdover::wire::Predecessor;
@@ -198,8 +198,11 @@ impl Vehicle {
         let mut config = *self.unit.config();
         let coordination = self.unit.coordination();
         let target = coordination.choice().target.and_then(|slot| coordination.approach(slot.into()));
-        if let (Some(crossing), Some(target)) = (coordination.crossing(), target) {
-            config.law.standstill = standstill_behind(config.law.standstill, crossing, target.movement);
+        let crossing = coordination.crossing().zip(target).map(|(crossing, target)| {
+            crossing.intersection.conflict(crossing.movement, target.movement).then_some(crossing)
+        });
+        if let Some(crossing) = crossing {
+            config.law.standstill = standstill_on_way(config.law.standstill, crossing, config.range_sensor);
         }
         let desired_mps2 = desired(&config, length_m, (self.plant.position_m, self.plant.speed_mps), Some(newest));
         let wanted_mps2 = limited(&config, desired_mps2, last_mps2, period_s);
