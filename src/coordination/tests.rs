@@ -343,3 +343,48 @@ fn one_that_overlooks_the_ego_is_given_way_after_a_second_unless_it_is_far_behin
     assert_eq!(reviewed(11, &[careless]), (31, Predecessor::Station(StationHash(1))));
     assert_eq!(reviewed(50, &[Present { is_far_behind: true, ..careless }]), (20, Predecessor::None));
 }
+
+#[test]
+fn one_whose_way_does_not_conflict_is_neither_claimed_nor_followed_nor_given_way() {
+    let (earlier, careless) = (entry(1, 10, None), entry(2, 30, None));
+    let crosses = |entry| there(0, entry, None);
+    let beside = |entry| Present { conflicts: false, ..crosses(entry) };
+    assert_eq!(reviewed(50, &[crosses(earlier)]), (20, Predecessor::Station(StationHash(1))));
+    assert_eq!(reviewed(50, &[beside(earlier)]), (20, Predecessor::None));
+    assert_eq!(reviewed(50, &[beside(careless)]), (20, Predecessor::None));
+}
+
+#[test]
+fn a_stranger_is_unclear_only_while_everybody_that_is_heard_has_a_slot() {
+    // The other claims one that the ego does not know, for longer than a silence lasts.
+    let other = there(0, entry(1, 30, Some(77)), None);
+    let arrival = |are_all| {
+        let mut coordination: Coordination<8> = Coordination::idle();
+        coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
+        coordination.locate(Position::ZERO, Position::ZERO);
+        coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+        for tick in 1..=100 {
+            let present = [Present { heard: at(tick), ..other }];
+            coordination.review(at(tick), StationHash(9), &present, are_all);
+        }
+        coordination.registration().unwrap().arrival.0
+    };
+    assert_eq!([true, false].map(arrival), [31, 20]);
+}
+
+#[test]
+fn on_a_way_through_intersections_the_distance_is_that_of_who_is_seen_or_else_longer_and_across_at_least_the_area() {
+    static SHORT: Intersection = Intersection { id: 1, half: Distance::from_mm(3_500), approaches: &[] };
+    static LONG: Intersection = Intersection { half: Distance::from_mm(5_110), ..SHORT };
+    let [short, long] = [&SHORT, &LONG].map(|intersection| Crossing {
+        intersection,
+        movement: Movement::straight(0),
+        at: Position::ZERO,
+    });
+    let kept = |crossing, sees| standstill_on_way(Distance::from_mm(2_000), crossing, sees).to_mm();
+    assert_eq!((kept(None, true), kept(None, false)), (4_000, 10_000));
+    for sees in [true, false] {
+        assert_eq!(kept(Some(&short), sees), 10_000);
+        assert_eq!(kept(Some(&long), sees), 10_220);
+    }
+}

@@ -9,6 +9,7 @@ mod bound_limits;
 mod bound_range;
 mod bound_tight;
 mod bound_truth;
+mod coordination_abreast;
 mod coordination_back;
 mod coordination_certain;
 mod coordination_cycle;

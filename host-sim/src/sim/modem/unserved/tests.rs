@@ -112,6 +112,11 @@ fn the_nearest_one_ahead_without_a_slot_is_told_by_its_rear_bumper() {
 }
 
 #[test]
+fn all_that_come_to_the_intersection_without_a_slot_are_counted_also_who_arrived_later() {
+    assert_eq!(told(2, &[AHEAD, (3, 1, 50, 1_050), (4, 1, 70, 1_060)]), (0, None, 2));
+}
+
+#[test]
 fn off_the_route_there_is_nothing_to_tell() {
     assert_eq!(Relay::new(Identifiers::DEFAULT).unserved(1.0), None);
 }
