@@ -25,11 +25,13 @@ fn scenario(folder: &Path, text: &str) -> String {
     file.display().to_string()
 }
 
-/// Twenty seconds of the corridor, with buses of this kind.
+/// Twenty seconds of the corridor, with buses of this kind. In this seed one vehicle soon comes up behind another, and at this time gap it
+/// follows.
 fn corridor(kind: &str) -> String {
     let text = std::fs::read_to_string("scenarios/corridor.toml").unwrap();
     let text = text.replacen("kind = \"classic\"", &format!("kind = \"{kind}\""), 1);
-    text.replacen("duration_s = 600.0", "duration_s = 20.0", 1)
+    let text = text.replacen("duration_s = 600.0", "duration_s = 20.0", 1);
+    text.replacen("seed = 1 ", "seed = 5 ", 1).replacen("\ntime_gap_s = 1.0 ", "\ntime_gap_s = 3.0 ", 1)
 }
 
 /// What a replay of the log with these arguments says, and what the unit said in it.
