@@ -165,7 +165,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
 
     /// The index of the next crossing; the number of crossings if there is no next one.
     #[must_use]
-    pub(crate) const fn next(&self) -> usize {
+    pub const fn next(&self) -> usize {
         self.current
     }
 
@@ -339,11 +339,6 @@ impl<const PEERS: usize> Coordination<PEERS> {
     /// How far the rear bumper of a vehicle has come at least, by the vehicles that are known to be behind it.
     pub(crate) fn passed(&self, index: usize) -> Option<Position> {
         self.lane.passed(index)
-    }
-
-    /// Notes the vehicles whose name means another one.
-    pub(crate) fn note_namesakes(&mut self, namesakes: Slots) {
-        self.choice.namesakes = namesakes;
     }
 
     /// Notes the vehicles that are out of reach.

@@ -4,6 +4,7 @@
 use super::{Arrival, Coordination, Entry, Present, REVIEW, Regard, Registration, Side, Slots};
 use crate::held::Held;
 use crate::time::Instant;
+use crate::units::Distance;
 use crate::wire::StationHash;
 
 impl<const PEERS: usize> Coordination<PEERS> {
@@ -54,10 +55,12 @@ impl<const PEERS: usize> Coordination<PEERS> {
         let mut last = None::<Entry>;
         (self.choice.ahead, self.choice.first) = (Slots::NONE, Slots::NONE);
         let is_ahead = |other: &&Present| other.lane != Some(Side::Behind) && other.entry.is_before(&ego);
+        let goes_first = |other: &&Present| is_ahead(other) && other.conflicts && !other.has_left;
+        self.choice.namesakes = namesakes(present.iter().filter(goes_first));
         for Present { index, entry, has_left, is_announced, conflicts, lane, .. } in present.iter().filter(is_ahead) {
             self.choice.ahead.set(*index, true);
-            let is_followed = *conflicts && !has_left && *is_announced && !self.choice.namesakes.contains(*index);
-            self.choice.first.set(*index, is_followed);
+            let goes_first = *conflicts && !has_left && !self.choice.namesakes.contains(*index);
+            self.choice.first.set(*index, goes_first && *is_announced);
             let is_passed = *conflicts || lane.is_some();
             if is_passed && !has_left && last.is_none_or(|last| last.is_before(entry)) {
                 last = Some(*entry);
@@ -80,4 +83,17 @@ impl<const PEERS: usize> Coordination<PEERS> {
             registration.arrival = arrival;
         }
     }
+}
+
+/// Of those with one name: all but the nearest ahead, or else the nearest. By that name the others take the ego to follow that one.
+fn namesakes<'a>(first: impl Iterator<Item = &'a Present> + Clone) -> Slots {
+    let mut namesakes = Slots::NONE;
+    let way = |one: &Present| (one.way < Distance::ZERO, one.way.magnitude());
+    for (place, one) in first.clone().enumerate() {
+        let later = first.clone().skip(place.saturating_add(1));
+        for other in later.filter(|other| other.entry.station == one.entry.station) {
+            namesakes.set(if way(one) <= way(other) { other.index } else { one.index }, true);
+        }
+    }
+    namesakes
 }

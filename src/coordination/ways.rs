@@ -15,10 +15,14 @@ impl<const PEERS: usize> Coordination<PEERS> {
         })
     }
 
-    /// Whether the way of a peer with this approach conflicts with the ego's at the crossing of both.
+    /// Whether the way of a peer with this approach conflicts with the ego's at the crossing of both. One that does not tell its route may
+    /// take any way from its leg.
     pub(crate) fn conflicts(&self, approach: &PeerApproach) -> bool {
         let crossing = self.itinerary.and_then(|itinerary| itinerary.crossings.get(approach.crossing));
-        crossing.is_some_and(|own| own.intersection.conflict(own.movement, approach.movement))
+        crossing.is_some_and(|Crossing { intersection, movement, .. }| match approach.arrival {
+            Some(_) => intersection.conflict(*movement, approach.movement),
+            None => intersection.crosses(*movement, approach.movement.leg),
+        })
     }
 
     /// Whether a peer with this approach comes by another leg and takes the ego's exit.

@@ -1,22 +1,16 @@
 //! The vehicles that are known to come to the next intersection by ways that cross the ego's. What was heard of them enters, and what is
 //! known of their claims leaves. A vehicle stays in this list without a slot, and whether it is heard or not, until it says that it has
 //! left, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left stays on
-//! record as one that keeps passes, as long as there is room, until it is forgotten. Where there is no more room, the last of a queue on
-//! one leg is left out.
+//! record as one that keeps passes, as long as there is room, until it is forgotten.
 
 use super::{Claim, Known, PIECES, Rules};
 use crate::coordination::Arrival;
 use crate::held::Held;
 use crate::time::GnssTime;
-use crate::wire::movement::LEGS;
 use crate::wire::{Movement, StationHash};
 
 /// So many vehicles are known at once.
 pub const KNOWN: usize = 24;
-
-/// A vehicle behind so many known ones of its leg need not be known itself. No vehicle passes another on a leg. So it is not in the area
-/// before they have left it, and that takes them longer than a silence and a stay together: it is heard again before.
-pub const QUEUED: usize = 6;
 
 /// What was heard of a vehicle last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,10 +109,6 @@ impl List {
         let is_free = |held: &Held<Station>| held.as_ref().is_none_or(|held| held.is_gone);
         let place = place.or_else(|| self.stations.iter().position(|held| held.as_ref().is_none()));
         let place = place.or_else(|| self.stations.iter().position(is_free));
-        if place.is_none() && self.ahead_of(&station) >= QUEUED {
-            return Ok(());
-        }
-        let place = place.or_else(|| self.last_in_queue());
         let Some(held) = place.and_then(|place| self.stations.get_mut(place)) else {
             self.missed.set(station.heard);
             return Err(Full);
@@ -127,22 +117,6 @@ impl List {
             held.set(station);
         }
         Ok(())
-    }
-
-    /// The number of known vehicles that arrived on a vehicle's leg before it: on a leg the arrivals that are told are in the order of the
-    /// road.
-    fn ahead_of(&self, last: &Station) -> usize {
-        let on_leg = self.iter().filter(|other| other.movement.leg == last.movement.leg);
-        on_leg.filter(|other| other.arrival.is_before(last.arrival)).count()
-    }
-
-    /// The place of the last vehicle of the longest queue, if so many are ahead of it that it need not be known.
-    fn last_in_queue(&self) -> Option<usize> {
-        let on_leg = |leg: u8| self.iter().filter(move |station| station.movement.leg == leg);
-        let longest = (0..LEGS).max_by_key(|leg| on_leg(*leg).count())?;
-        let last = on_leg(longest).reduce(|a, b| if a.arrival.is_before(b.arrival) { b } else { a })?;
-        let place = self.stations.iter().position(|held| held.as_ref().is_some_and(|held| held.id == last.id));
-        place.filter(|_| self.ahead_of(last) >= QUEUED)
     }
 
     /// A vehicle has left, as it says.
@@ -222,7 +196,6 @@ mod tests {
             list.hear(station(id, 1_000)).unwrap();
         }
         assert!(!list.lacks_one());
-        // All have arrived at the same time, so nobody is known to be behind another.
         assert_eq!(list.hear(station(99, 1_000)), Err(Full));
         assert!(list.lacks_one());
         list.leave(0, time(1_001));
@@ -235,43 +208,5 @@ mod tests {
         );
         list.forget(&RULES, time(1_301));
         assert!(!list.lacks_one());
-    }
-    /// A vehicle on a leg, which arrived there then.
-    fn arrived(id: u32, leg: u8, arrival: u32) -> Station {
-        Station::new(id, Movement::straight(leg), time(1_000), Arrival(arrival), [None; PIECES])
-    }
-
-    #[test]
-    fn where_there_is_no_room_the_last_of_a_long_queue_is_left_out_and_nobody_is_missing() {
-        let mut list = List::EMPTY;
-        for id in 0..KNOWN as u32 {
-            let leg = u8::from(id >= 8);
-            list.hear(arrived(id, leg, 100 + id)).unwrap();
-        }
-        let knows = |list: &List, id| list.iter().any(|known| known.id == id);
-        // The last of the longer queue itself.
-        list.hear(arrived(99, 1, 200)).unwrap();
-        assert!(!knows(&list, 99) && !list.lacks_one());
-        // One of a third leg, and one that is near on that of the longer queue, take the places of its last two.
-        list.hear(arrived(98, 2, 300)).unwrap();
-        list.hear(arrived(97, 1, 50)).unwrap();
-        assert!(knows(&list, 98) && knows(&list, 97) && !list.lacks_one());
-        assert_eq!([21, 22, 23].map(|id| knows(&list, id)), [true, false, false]);
-        // As soon as one of the queue has left, there is room again.
-        list.leave(8, time(1_000));
-        list.hear(arrived(22, 1, 122)).unwrap();
-        assert!(knows(&list, 22));
-    }
-
-    #[test]
-    fn where_no_queue_is_so_long_one_for_whom_there_is_no_room_is_missing() {
-        let mut list = List::EMPTY;
-        for id in 0..KNOWN as u32 {
-            list.hear(arrived(id, (id % 4) as u8, 100 + id)).unwrap();
-        }
-        // Six on each of four legs: the last has five ahead of it.
-        assert_eq!(list.hear(arrived(99, 4, 200)), Err(Full));
-        assert!(list.lacks_one());
-        assert_eq!(list.hear(arrived(98, 3, 200)), Ok(()), "six are ahead of it");
     }
 }

@@ -49,9 +49,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     if let Some(arrival) = arrival.filter(|_| gives_way) {
         scene.coordination.give_way(arrival);
     }
-    let namesakes = namesakes(&present);
     scene.coordination.hold(is_held);
-    scene.coordination.note_namesakes(namesakes);
     if scene.coordination.review(now, scene.config.station, &present, scene.has_slot_for_all(now)) {
         health.count(Cause::Overlooked);
     }
@@ -102,21 +100,6 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// Of those whose ways conflict with the ego's and who have one name: all but the nearest ahead, or else the nearest. By that name the
-/// others take the ego to follow that one.
-fn namesakes(present: &[Present]) -> Slots {
-    let mut namesakes = Slots::NONE;
-    let crossing = || present.iter().filter(|one| one.conflicts);
-    for (place, one) in crossing().enumerate() {
-        for other in crossing().skip(place.saturating_add(1)).filter(|other| other.entry.station == one.entry.station) {
-            let is_nearer =
-                (one.way < Distance::ZERO, one.way.magnitude()) <= (other.way < Distance::ZERO, other.way.magnitude());
-            namesakes.set(if is_nearer { other.index } else { one.index }, true);
-        }
-    }
-    namesakes
-}
-
 /// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
@@ -146,7 +129,8 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let view = scene.vantage(now, front, speed);
     let before = scene.coordination.choice();
     let heeded = |index| Candidate::at(scene, index, now).filter(|peer| view.is_heeded(peer));
-    let first = (0..PEERS).filter(|index| before.first.contains(*index)).filter_map(heeded);
+    let first = (0..PEERS).filter(|index| before.first.contains(*index));
+    let first = first.filter_map(|index| Candidate::at(scene, index, now));
     let order = first.fold(None, |best, peer| view.nearest(best, peer)).map(|(peer, _)| peer);
     let lane = nearest.and_then(heeded);
     let followed = before.target.map(usize::from);

@@ -218,9 +218,8 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     // A vehicle that is ahead on the same leg, and not yet at the later crossing, comes there before the ego, and after all that are
     // there now.
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(_, crossing)| crossing != view.next)));
-    let is_heeded = |peer: &Candidate| view.is_heeded(peer);
-    let (order, lane) = (order.map(|(peer, _)| peer), lane.map(|(peer, _)| peer));
-    let target = view.more_careful(order.filter(is_heeded), lane.filter(is_heeded))?;
+    let lane = lane.map(|(peer, _)| peer).filter(|peer| view.is_heeded(peer));
+    let target = view.more_careful(order.map(|(peer, _)| peer), lane)?;
     view.is_in_the_way(&target, followed).then_some(target)
 }
 

@@ -66,11 +66,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         peer.rear > self.front.ahead(HEEDED).ahead(way).ahead(way)
     }
 
-    /// Of the vehicles that the ego lets pass first, the one behind which the law asks for the smallest acceleration. They may drive at
-    /// once where their ways do not conflict, so the last of them in the order is not always behind.
+    /// Of the vehicles that the ego lets pass first and may follow, the one behind which the law asks for the smallest acceleration. They may
+    /// drive at once where their ways do not conflict, so the last of them in the order is not always behind.
     pub fn nearest(&self, best: Option<(Candidate, Position)>, other: Candidate) -> Option<(Candidate, Position)> {
         let asks = self.asks(&other);
-        if best.is_some_and(|(_, least)| least <= asks) { best } else { Some((other, asks)) }
+        let is_no_nearer = best.is_some_and(|(_, least)| least <= asks);
+        if is_no_nearer || !self.is_heeded(&other) { best } else { Some((other, asks)) }
     }
 
     /// Of a vehicle that the ego lets pass first and the vehicle just ahead on the leg, the one that asks for more caution.

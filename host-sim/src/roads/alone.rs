@@ -5,9 +5,9 @@
 //! with the traffic's time gap. It sees no vehicle on a crossing road. So it stops before the conflict area of the next
 //! intersection and waits there until it hears again, unless it can no longer stop there.
 //!
-//! It watches the links to two vehicles, whether it follows them or not: the one just ahead in the order, and the one
-//! just ahead on its leg. Far behind both it follows no vehicle, but it still has to yield to a vehicle that it does
-//! not hear.
+//! It watches the links to the vehicles of crossing legs that it lets pass first, and to the one just ahead on its leg,
+//! whether it follows them or not. Far behind all of them it follows no vehicle, but it still has to yield to a vehicle
+//! that it does not hear.
 //!
 //! If only the link to the vehicle on its leg is lost, it yields to the crossing vehicle as its unit does. The unit
 //! also follows its estimate of the silent vehicle, which can only slow the vehicle down.
@@ -33,18 +33,18 @@ const LINE_M: f64 = 1.0;
 pub struct Lost {
     /// The vehicle just ahead on the same leg.
     pub lane: bool,
-    /// The vehicle just ahead in the order, if it comes by a crossing leg.
+    /// A vehicle of a crossing leg that it lets pass first.
     pub crossing: bool,
 }
 
 impl Lost {
-    /// The lost links by what a unit knows; `None` while it hears both vehicles.
+    /// The lost links by what a unit knows; `None` while it hears all of them.
     #[must_use]
     pub fn of(unit: &Unit, now: Instant) -> Option<Self> {
         let (choice, limits) = (unit.coordination().choice(), &unit.config().link);
         let is_off = |slot: u8| unit.peers().get(slot.into()).is_some_and(|track| !track.link().is_on(now, limits));
         let lane = choice.lane.is_some_and(is_off);
-        let crossing = choice.order.filter(|order| choice.lane != Some(*order)).is_some_and(is_off);
+        let crossing = (0..u8::MAX).filter(|slot| choice.first.contains(usize::from(*slot))).any(is_off);
         // If another cause keeps the unit from cooperating, it knows nothing of crossing vehicles.
         let crossing = crossing || !lane && unit.mode() != Mode::Cooperative;
         (lane || crossing).then_some(Self { lane, crossing })
@@ -80,7 +80,7 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
 /// no more than its unit demands.
 #[must_use]
 pub fn still_given_way(lost: Lost, choice: &Choice, by_sight: f64, by_unit: f64) -> f64 {
-    let hears_one_that_crosses = !lost.crossing && choice.order.is_some() && choice.order != choice.lane;
+    let hears_one_that_crosses = !lost.crossing && choice.order.is_some();
     if hears_one_that_crosses { by_sight.min(by_unit) } else { by_sight }
 }
 

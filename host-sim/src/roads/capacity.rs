@@ -4,6 +4,7 @@
 //! They are for vehicles that pass at the target speed, one at a time, and never wait for one another longer than they have to. Real
 //! arrivals are random, and vehicles that stopped set off slowly, so no rule comes up to them.
 
+use holdover::coordination::UNSEEN;
 use holdover::passes::{Rules, Slack};
 use holdover::time::Duration;
 use serde::Serialize;
@@ -26,13 +27,13 @@ pub struct Capacity {
     pub conflict_s: f64,
     /// The same with what a unit claims before and after.
     pub claimed_s: f64,
-    /// Time between two vehicles that follow one another.
+    /// Time between two vehicles of crossing legs that follow one another.
     pub headway_s: f64,
     /// Vehicles a minute on all roads together, if vehicles of crossing legs alternate.
     pub alternating_per_min: f64,
     /// The same, if each vehicle also has all the time that it claims.
     pub claimed_per_min: f64,
-    /// The same, if each vehicle follows the one before it at its headway, as on one leg.
+    /// The same, if each vehicle follows the one before it, which comes by a crossing leg, at its headway.
     pub following_per_min: f64,
 }
 
@@ -50,7 +51,8 @@ impl Capacity {
             let load: f64 = (0..junction.legs.len()).map(rate).sum();
             let crossing = most_that_cross(junction, rate)?;
             let conflict_s = (2.0 * junction.half_m + length_m) / speed_mps + apart_s;
-            let headway_s = traffic.time_gap_s + (traffic.standstill_m + length_m) / speed_mps;
+            let standstill_m = (traffic.standstill_m + UNSEEN.get().to_num::<f64>()).max(2.0 * junction.half_m);
+            let headway_s = traffic.time_gap_s + (standstill_m + length_m) / speed_mps;
             let most = |each_s: f64| 60.0 / each_s * all / load;
             Some(Self {
                 intersection: corridor.intersections[index].name.clone(),
@@ -107,7 +109,7 @@ mod tests {
         // Cars, vans and buses are 5.7 m long on average. 11.4 of 30 vehicles pass each intersection that has four legs.
         assert!((capacity.conflict_s - (12.7 / 11.0 + 0.2)).abs() < 1e-9, "{capacity:?}");
         assert!((capacity.claimed_s - capacity.conflict_s - 1.4).abs() < 1e-9);
-        assert!((capacity.headway_s - (1.0 + 7.7 / 11.0)).abs() < 1e-9);
+        assert!((capacity.headway_s - (1.0 + 15.7 / 11.0)).abs() < 1e-9);
         assert!((capacity.share - 11.4 / 30.0).abs() < 1e-9 && (capacity.abreast - 2.0).abs() < 1e-9);
         for (each_s, per_min) in [
             (capacity.conflict_s, capacity.alternating_per_min),

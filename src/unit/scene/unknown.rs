@@ -41,7 +41,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Whether every vehicle that is heard on the way to the next intersection has a slot, as far as the modem says.
     pub fn has_slot_for_all(&self, now: Instant) -> bool {
-        self.unknown.told(now).is_none_or(|told| told.stations == 0)
+        let next = self.coordination.crossing().map(|crossing| crossing.intersection.id);
+        self.unknown.told(now).is_none_or(|told| Some(told.intersection) != next || told.stations == 0)
     }
 
     /// Where the ego, as far back as it may be, has to be able to stop for an unknown vehicle: before the next conflict area, unless the

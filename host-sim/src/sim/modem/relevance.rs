@@ -64,7 +64,7 @@ pub enum Rank {
 }
 
 /// At this distance beyond the crossing point, in metres, the rear of most vehicles has left the conflict area.
-const LEFT_M: f64 = 16.0;
+pub(super) const LEFT_M: f64 = 16.0;
 
 /// A station that is nearer to the crossing point than this, in metres, is in the conflict area, or can no longer stop
 /// before it. The next station on its leg may be right behind it.

@@ -5,6 +5,7 @@ use holdover::units::Distance;
 use holdover::wire::unserved::Unserved;
 
 use super::front::Front;
+use super::relevance::LEFT_M;
 use super::{HEARD_S, Placed, Rank, Relay};
 
 /// Time from one message to the next.
@@ -39,10 +40,12 @@ impl Relay {
         self.has_no_slot(placed, front) && matters()
     }
 
-    /// The number of stations on the way to an intersection that have no slot.
+    /// The number of stations that come to an intersection, or are in it, and have no slot.
     fn without_slot(&self, intersection: u8, front: &Front) -> usize {
-        let there = self.places.iter().filter(|placed| placed.route.intersection == intersection);
-        there.filter(|placed| self.has_no_slot(placed, front)).count()
+        let is_there = |placed: &&Placed| {
+            placed.route.intersection == intersection && placed.route.distance.get().to_num::<f64>() > -LEFT_M
+        };
+        self.places.iter().filter(is_there).filter(|placed| self.has_no_slot(placed, front)).count()
     }
 
     /// Whether a station that is heard has no slot. A modem that hears no station any more goes by the last messages.

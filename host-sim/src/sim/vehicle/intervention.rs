@@ -3,7 +3,7 @@
 
 use holdover::ConfigError;
 use holdover::config::Envelope;
-use holdover::coordination::{Itinerary, MapError, standstill_on_way};
+use holdover::coordination::{Crossing, Itinerary, MapError, PeerApproach, standstill_on_way};
 use holdover::time::Instant;
 use holdover::units::Position;
 use holdover::wire::Predecessor;
@@ -187,7 +187,7 @@ impl Vehicle {
     }
 
     /// The same on a way through intersections. The vehicle ahead is the one that the unit follows, where its newest message puts it on the
-    /// own way. Behind a vehicle that crosses, the law keeps the length of the conflict area. Without a vehicle ahead the unit drives.
+    /// own way. The law keeps the distances that the unit keeps. Without a vehicle ahead the unit drives.
     pub fn intervene_on_way(&mut self, period_s: f64) {
         self.intervention.hand_back(self.mode);
         let last_mps2 = std::mem::replace(&mut self.intervention.demand_mps2, self.command_mps2);
@@ -198,12 +198,12 @@ impl Vehicle {
         let mut config = *self.unit.config();
         let coordination = self.unit.coordination();
         let target = coordination.choice().target.and_then(|slot| coordination.approach(slot.into()));
-        let crossing = coordination.crossing().zip(target).map(|(crossing, target)| {
-            crossing.intersection.conflict(crossing.movement, target.movement).then_some(crossing)
-        });
-        if let Some(crossing) = crossing {
-            config.law.standstill = standstill_on_way(config.law.standstill, crossing, config.range_sensor);
-        }
+        let conflict = |crossing: &Crossing, target: &PeerApproach| {
+            target.crossing == coordination.next() && crossing.intersection.conflict(crossing.movement, target.movement)
+        };
+        let crossing = coordination.crossing().zip(target).filter(|(crossing, target)| conflict(crossing, target));
+        let crossing = crossing.map(|(crossing, _)| crossing);
+        config.law.standstill = standstill_on_way(config.law.standstill, crossing, config.range_sensor);
         let desired_mps2 = desired(&config, length_m, (self.plant.position_m, self.plant.speed_mps), Some(newest));
         let wanted_mps2 = limited(&config, desired_mps2, last_mps2, period_s);
         self.intervention.demand_mps2 = wanted_mps2;
