@@ -169,7 +169,8 @@ pub struct Config {
     /// conflict area all the same.
     pub range_sensor: bool,
     /// Whether the unit keeps passes at intersections while its envelope is engaged. Without, it claims none, takes in none, and waits for
-    /// the near end of every vehicle that is ahead in the order: for studies, and for an integrator whose modem does not relay passes.
+    /// the near end of every vehicle that is ahead in the order and crosses its way: for studies, and for an integrator whose modem does not
+    /// relay passes.
     pub passes: bool,
 }
 

@@ -25,7 +25,7 @@ pub struct PeerApproach {
     pub shift: Distance,
     /// When the peer arrived, if it says so.
     pub arrival: Option<Arrival>,
-    /// The vehicle that the peer takes to be just ahead of it in the order.
+    /// The vehicle that the peer takes to be just ahead of it in the order, of those that conflict with it or are ahead on its leg.
     pub claim: Predecessor,
     /// When the peer said so.
     pub heard: Instant,

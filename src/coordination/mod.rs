@@ -7,9 +7,9 @@
 //!   where every crossing point lies on its axis. A peer says how far it is from a crossing point (`PeerRoute`), or where it is on the
 //!   globe (`PeerPosition`). Either ties the peer's axis to the ego's. From then on the peer's positions are translated on reception
 //!   ([`axis`]). So estimator, controller and envelope know of one lane only, the virtual lane.
-//! * *Which vehicle:* every station that names the same intersection is in its order ([`order`]). The last station ahead of the ego in
-//!   the order is the *order predecessor*. The nearest vehicle ahead on the ego's own leg, at this intersection or another, is the *lane
-//!   predecessor*. Of the two, the ego follows the one that asks for more caution. Where the choice changes, both ask for the same
+//! * *Which vehicle:* every station that names the same intersection is in its order ([`order`]). The ego lets pass first the stations
+//!   ahead of it in the order whose ways conflict with its own. Of these and the nearest vehicle ahead on its own leg, at this
+//!   intersection or another, it follows the one that asks for the most caution. Where the choice changes, both ask for the same
 //!   acceleration, so that the change costs no jump.
 //! * *Until when:* a vehicle is at an intersection until its rear has left the conflict area. Then it arrives at the next intersection.
 //!   Beyond the last intersection the vehicle is in no order any more, but still says where it is. For a silent peer, its estimate tells
@@ -210,7 +210,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.axes.get(index)?.approach()
     }
 
-    /// The vehicle that the ego takes to be just ahead of it in the order; unknown before the ego has arrived.
+    /// The vehicle that the ego takes to be just ahead of it in the order, of those whose ways conflict with its own or that are ahead on its
+    /// leg; unknown before the ego has arrived.
     #[must_use]
     pub fn claim(&self) -> Predecessor {
         match (self.registration.as_ref(), self.claim.get()) {

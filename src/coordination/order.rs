@@ -1,13 +1,13 @@
-//! The order at an intersection: first come, first served. What the stations at the intersection say of themselves enters; the station
-//! that passes just before the ego leaves.
+//! The order at an intersection: first come, first served. What the stations at the intersection say of themselves enters; who is ahead of
+//! whom, and how others regard the ego, leave.
 //!
-//! Every station tells when it arrived, and which station it takes to be just ahead of it (its *claim*). Each station tells its own
-//! arrival. So all stations that heard the same stations agree, whenever they heard them. Equal arrivals are decided by the number of the
+//! Every station tells when it arrived, and which station it takes to be just ahead of it, of those whose ways conflict with its own or that
+//! are ahead on its leg (its *claim*). Each station tells its own arrival. So all stations that heard the same stations agree, whenever they heard them. Equal arrivals are decided by the number of the
 //! station, and between stations of the same number by the number of the leg. The ego yields to a station that does not say when it arrived.
 //!
 //! Stations that heard different stations do not agree, and their claims show it. Take a station that arrived later than the ego. If it
 //! claims no station, or one that is before the ego, it has not heard of the ego and heads for the ego's place. If it claims a station
-//! that is not here, by what the ego has heard, it may head for that place. If this lasts, the ego yields: it tells a new arrival, just
+//! that is not here, by what the ego has heard, it may head for that place, unless the modem hears stations without a slot. If this lasts, the ego yields: it tells a new arrival, just
 //! after the arrival of the other station. So a station only ever moves back. The order is that of the told arrivals at all times. As
 //! soon as every station hears every other one again, there is one order, whatever happened before.
 
@@ -62,7 +62,7 @@ pub struct Entry {
     pub station: StationHash,
     /// When it arrived; `None` if it does not say.
     pub arrival: Option<Arrival>,
-    /// The station that it takes to be just ahead of it.
+    /// The station that it takes to be just ahead of it, of those that conflict with it or are ahead on its leg.
     pub claim: Predecessor,
     /// The leg by which it comes, which decides where two stations have the same name and arrival.
     pub leg: u8,
@@ -90,10 +90,10 @@ impl Entry {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Regard {
-    /// It arrived before the ego, or it goes after the ego or after a station that goes after the ego.
+    /// It arrived before the ego, or it claims the ego or a station that arrived after the ego.
     Heeds,
     /// It arrived after the ego, and claims a station that is not at this crossing by what the ego has heard. That station may be between
-    /// the two, or before the ego.
+    /// the two, or before the ego. It counts only while the modem hears no station without a slot.
     Unclear,
     /// It arrived after the ego and ignores the ego: it claims no station, or one that was there before the ego.
     Overlooks,

@@ -388,3 +388,26 @@ fn on_a_way_through_intersections_the_distance_is_that_of_who_is_seen_or_else_lo
         assert_eq!(kept(Some(&long), sees), 10_220);
     }
 }
+
+#[test]
+fn of_several_with_one_name_the_nearest_ahead_that_has_not_left_goes_first() {
+    let first = |others: &[Present]| {
+        let mut coordination: Coordination<8> = Coordination::idle();
+        coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
+        coordination.locate(Position::ZERO, Position::ZERO);
+        coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+        coordination.review(at(1), StationHash(9), others, true);
+        let choice = *coordination.choice();
+        (0..8).filter(|index| choice.first.contains(*index)).collect::<Vec<_>>()
+    };
+    let one = |index, station, metres: i32| Present {
+        way: Distance::from_mm(metres * 1_000),
+        ..there(index, entry(station, 10, None), None)
+    };
+    assert_eq!(first(&[one(0, 1, 30), one(1, 1, 12), one(2, 2, 40)]), [1, 2]);
+    assert_eq!(first(&[one(0, 1, 30), one(1, 1, -12)]), [0]);
+    assert_eq!(first(&[one(0, 1, -30), one(1, 1, -12), one(3, 1, -40)]), [1]);
+    assert_eq!(first(&[one(0, 1, 30), Present { has_left: true, ..one(1, 1, 12) }]), [0]);
+    // One that arrived after the ego hides nobody either.
+    assert_eq!(first(&[one(0, 1, 30), there(1, entry(1, 40, None), None)]), [0]);
+}

@@ -66,7 +66,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
 
     /// Where the ego waits for a vehicle that crosses its way: before the area. The vehicle is ahead in the order or already in the next
     /// conflict area, and is estimated not to have left the area by the time that the ego would be there. The law alone is not enough. It
-    /// looks at the last vehicle ahead only, and only once that vehicle has been announced. It also starts early, and from a stand the
+    /// looks at one vehicle only, and only once that vehicle has been announced. It also starts early, and from a stand the
     /// ego is in the area at once.
     fn passes_first(&self) -> Option<Position> {
         let coordination = &self.scene.coordination;

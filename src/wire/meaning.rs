@@ -48,8 +48,8 @@ macro_rules! meaning {
     (turn) => { "Its exit there: the number of the exit less that of the leg, modulo 8; 0 is straight on." };
     (intersection) => { "Number of the intersection in the route data." };
     (arrival) => { "GNSS time at which it entered the intersection's zone, modulo 10485.76 s. It decides the order: earlier goes first." };
-    (claim_kind) => { "Whether it takes a station (PredecessorStation) to be just ahead of it in the order, takes itself for the first, or does not say." };
-    (claim_station) => { "Station that it takes to be just ahead of it in the order. Ignored unless PredecessorKind is station; 0 then." };
+    (claim_kind) => { "Whether it takes a station (PredecessorStation) to be just ahead of it in the order, of those whose ways conflict with its own or that are ahead on its leg, takes itself for the first, or does not say." };
+    (claim_station) => { "Station that it takes to be just ahead of it in that order. Ignored unless PredecessorKind is station; 0 then." };
     (engaged) => { "Whether the unit shall drive. Send 0 as soon as the driver takes over. 300 ms without a DriverRequest and the unit hands back (Detail request lost)." };
     (request_target_speed) => { "Set speed: a cap. The unit exceeds it only by the share that is configured to catch up, 0 by default." };
     (request_time_gap) => { "Time gap to keep to the rear bumper ahead, beside the configured distance at standstill. Less than 0.1 s is reserved: 0 is refused. So is more than 3.995 s but for the code." };

@@ -61,7 +61,7 @@ pub static CATALOGUE: [Line; LINES] = [
         .only("on a route; without an itinerary the unit ignores it")
         .says(
             "Legs by which the next vehicle into the conflict area, or one that is in it, has no slot; Ahead is the way of the rear bumper \
-             of the nearest one ahead that has none to the crossing point of the own leg; Stations counts all without one that could be met.",
+             of the nearest one ahead that has none to the crossing point of the own leg; Stations counts all that come there and have none.",
         ),
     Line::new("TargetEstimateA", 0x0A, Content::EstimateA, Unit, estimate::FIELDS_A)
         .every(10, 50)
