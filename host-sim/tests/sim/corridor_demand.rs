@@ -91,7 +91,7 @@ fn each_demand_is_run_on_every_side_with_a_table_a_page_and_bounds() {
         for row in rows {
             assert_eq!((row["vehicles_per_min"].as_f64(), row["slots"].as_u64()), (Some(per_min), Some(8)));
             assert!(arrived(row) == arrived(&rows[0]) && row["exits_per_min"].as_f64().is_some(), "{row}");
-            assert!((row["capacity"]["following_per_min"].as_f64().unwrap() - 92.88).abs() < 0.01, "{row}");
+            assert!((row["capacity"]["following_per_min"].as_f64().unwrap() - 65.05).abs() < 0.01, "{row}");
         }
     }
     let page = std::fs::read_to_string(report.join("index.html")).unwrap();
