@@ -97,3 +97,6 @@ fn namesakes<'a>(first: impl Iterator<Item = &'a Present> + Clone) -> Slots {
     }
     namesakes
 }
+
+#[cfg(test)]
+mod tests;
