@@ -5,13 +5,19 @@ use crate::coordination::tests::{ITINERARY, at, entry};
 use crate::units::Position;
 use crate::wire::Predecessor;
 
-/// The ego is station 9 and arrived at 20. After `times` reviews of the same others, 100 ms apart: the arrival that it tells then, and
-/// its claim.
-fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
+/// The ego, which arrived at 20.
+fn arrived() -> Coordination<8> {
     let mut coordination: Coordination<8> = Coordination::idle();
     coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
     coordination.locate(Position::ZERO, Position::ZERO);
     coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+    coordination
+}
+
+/// The ego is station 9 and arrived at 20. After `times` reviews of the same others, 100 ms apart: the arrival that it tells then, and
+/// its claim.
+fn reviewed(times: u64, others: &[Present]) -> (u32, Predecessor) {
+    let mut coordination = arrived();
     for tick in 1..=times {
         let present: Vec<_> = others.iter().map(|other| Present { heard: at(tick), ..*other }).collect();
         coordination.review(at(tick), StationHash(9), &present, true);
@@ -70,10 +76,7 @@ fn a_stranger_is_unclear_only_while_everybody_that_is_heard_has_a_slot() {
     // The other claims one that the ego does not know, for longer than a silence lasts.
     let other = there(0, entry(1, 30, Some(77)), None);
     let arrival = |are_all| {
-        let mut coordination: Coordination<8> = Coordination::idle();
-        coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
-        coordination.locate(Position::ZERO, Position::ZERO);
-        coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+        let mut coordination = arrived();
         for tick in 1..=100 {
             let present = [Present { heard: at(tick), ..other }];
             coordination.review(at(tick), StationHash(9), &present, are_all);
@@ -86,10 +89,7 @@ fn a_stranger_is_unclear_only_while_everybody_that_is_heard_has_a_slot() {
 #[test]
 fn of_several_with_one_name_the_nearest_ahead_that_has_not_left_goes_first() {
     let first = |others: &[Present]| {
-        let mut coordination: Coordination<8> = Coordination::idle();
-        coordination.set_out(&ITINERARY, Distance::ZERO).unwrap();
-        coordination.locate(Position::ZERO, Position::ZERO);
-        coordination.advance(Position::ZERO, Distance::from_mm(4_800), at(0), Arrival(20));
+        let mut coordination = arrived();
         coordination.review(at(1), StationHash(9), others, true);
         let choice = *coordination.choice();
         (0..8).filter(|index| choice.first.contains(*index)).collect::<Vec<_>>()

@@ -8,9 +8,9 @@
 //! - Of each leg that crosses the unit's leg, the next station to enter that area. If it is about to enter, the one
 //!   after it too. Vehicles do not overtake on a leg, so the stations behind come later.
 //! - Stations at an intersection that the unit has still to cross. The unit's nearest intersection comes first; there,
-//!   those come last that come by other legs on ways that do not conflict with the unit's. Stations
-//!   ahead of the unit come before stations behind it. Of those ahead, a station that is leaving comes first, because
-//!   the unit may be waiting for that; then the nearest.
+//!   those come last that come by other legs on ways that do not conflict with the unit's. Stations ahead of the unit
+//!   come before stations behind it. Of those ahead, a station that is leaving comes first, because the unit may be
+//!   waiting for that; then the nearest.
 //! - The station that the unit's target follows, the one that this station follows, and so on along the chain: the unit
 //!   predicts its target by them.
 //! - All other stations.
