@@ -109,7 +109,7 @@ fn a_drive_that_is_saved_and_run_is_the_same_to_the_last_bit() {
     let conditions = Conditions::of(&experiment.corridor);
     let (mut run, mut journal) = (Bits::default(), Journal::new(Some(1)));
     experiment.run_before(1, conditions, Some(&mut journal), &mut [&mut run]).unwrap();
-    assert!(run.0[TICKS as usize - 1].len() > 8);
+    assert!(run.0[TICKS as usize - 1].len() > 4, "there is something to compare");
     for (tick, (run, live)) in run.0.iter().zip(&seen.0).enumerate() {
         assert_eq!(run, live, "tick {tick}");
     }

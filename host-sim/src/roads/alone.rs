@@ -115,7 +115,6 @@ mod tests {
         let wanted = |lost, choice: Choice| still_given_way(lost, &choice, 0.5, -2.0);
         assert_eq!(wanted(lane, choice(Some(1), Some(0))), -2.0);
         assert_eq!(wanted(lane, choice(None, Some(0))), 0.5);
-        assert_eq!(wanted(lane, choice(Some(0), Some(0))), 0.5);
         assert_eq!(wanted(crossing, choice(Some(1), None)), 0.5);
         assert_eq!(wanted(both, choice(Some(1), Some(0))), 0.5);
     }
