@@ -1,7 +1,7 @@
 //! The vehicles that are known to come to the next intersection by ways that cross the ego's. What was heard of them enters, and what is
 //! known of their claims leaves. A vehicle stays in this list without a slot, and whether it is heard or not, until it says that it has
-//! left, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left stays on
-//! record as one that keeps passes, as long as there is room, until it is forgotten.
+//! left or is not in the zone, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left, or is not in the zone
+//! yet, is on record as one that keeps passes, as long as there is room, until it is forgotten.
 
 use super::{Claim, Known, PIECES, Rules};
 use crate::coordination::Arrival;
@@ -26,8 +26,8 @@ pub struct Station {
     pub arrival: Arrival,
     claims: [Claim; PIECES],
     count: u8,
-    /// It has left.
-    is_gone: bool,
+    /// It claims nothing here now: it has left, or is not in the zone yet. Whatever it claims later counts as that of a newcomer.
+    is_away: bool,
 }
 
 impl Station {
@@ -40,12 +40,18 @@ impl Station {
         arrival: Arrival,
         claims: [Option<Claim>; PIECES],
     ) -> Self {
-        let mut held = Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_gone: false };
+        let mut held = Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_away: false };
         for (place, claim) in held.claims.iter_mut().zip(claims.into_iter().flatten()) {
             *place = claim;
             held.count = held.count.saturating_add(1);
         }
         held
+    }
+
+    /// A vehicle that is not in the zone yet.
+    #[must_use]
+    pub const fn before_zone(id: u32, movement: Movement, heard: GnssTime, arrival: Arrival) -> Self {
+        Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_away: true }
     }
 
     /// Its name in messages that have room for 8 bits only.
@@ -85,10 +91,10 @@ impl List {
 
     /// The vehicles whose claims count.
     pub fn iter(&self) -> impl Iterator<Item = &Station> + Clone {
-        self.on_record().filter(|station| !station.is_gone)
+        self.on_record().filter(|station| !station.is_away)
     }
 
-    /// These, and vehicles that have left.
+    /// These, and vehicles that have left or are not in the zone yet.
     pub fn on_record(&self) -> impl Iterator<Item = &Station> + Clone {
         self.stations.iter().filter_map(Held::as_ref)
     }
@@ -106,9 +112,12 @@ impl List {
     pub fn hear(&mut self, station: Station) -> Result<(), Full> {
         let is_same = |held: &Held<Station>| held.as_ref().is_some_and(|held| held.id == station.id);
         let place = self.stations.iter().position(is_same);
-        let is_free = |held: &Held<Station>| held.as_ref().is_none_or(|held| held.is_gone);
+        let is_away = |held: &Held<Station>| held.as_ref().is_some_and(|held| held.is_away);
         let place = place.or_else(|| self.stations.iter().position(|held| held.as_ref().is_none()));
-        let place = place.or_else(|| self.stations.iter().position(is_free));
+        if place.is_none() && station.is_away {
+            return Ok(());
+        }
+        let place = place.or_else(|| self.stations.iter().position(is_away));
         let Some(held) = place.and_then(|place| self.stations.get_mut(place)) else {
             self.missed.set(station.heard);
             return Err(Full);
@@ -123,7 +132,7 @@ impl List {
     pub fn leave(&mut self, id: u32, said: GnssTime) {
         for held in self.stations.iter_mut() {
             if let Some(station) = held.get().filter(|station| station.id == id && station.heard <= said) {
-                held.set(Station { heard: said, is_gone: true, ..station });
+                held.set(Station { heard: said, is_away: true, ..station });
             }
         }
     }
@@ -187,6 +196,25 @@ mod tests {
             list.forget(&RULES, time(now));
             assert_eq!(list.iter().count(), known, "{now}");
         }
+    }
+
+    #[test]
+    fn one_before_the_zone_is_on_record_and_does_not_count_until_it_comes_in() {
+        let before = |id, heard| Station::before_zone(id, Movement::straight(1), time(heard), Arrival(5));
+        let mut list = List::EMPTY;
+        list.hear(before(7, 100)).unwrap();
+        assert_eq!((list.iter().count(), list.on_record().count()), (0, 1));
+        list.hear(station(7, 120)).unwrap();
+        list.hear(before(7, 110)).unwrap();
+        assert_eq!(list.iter().count(), 1, "old news");
+        list.hear(before(7, 130)).unwrap();
+        assert_eq!(list.iter().count(), 0);
+        for id in 0..2 * KNOWN as u32 {
+            list.hear(before(100 + id, 130)).unwrap();
+        }
+        assert!(!list.lacks_one() && list.on_record().count() == KNOWN, "there is no room, and it does not matter");
+        list.hear(station(99, 131)).unwrap();
+        assert!(list.iter().any(|known| known.id == 99), "it has the place of one before the zone");
     }
 
     #[test]

@@ -74,15 +74,29 @@ pub struct Own {
     /// The stamp of the last message.
     said: Held<GnssTime>,
     pieces: [Held<Claim>; PIECES],
+    /// It says that it is not in the zone yet.
+    is_before_zone: bool,
 }
 
 impl Own {
     /// Nothing is claimed: all zero.
-    pub const NOTHING: Self = Self { on_air: Held::Nothing, said: Held::Nothing, pieces: [Held::Nothing; PIECES] };
+    pub const NOTHING: Self =
+        Self { on_air: Held::Nothing, said: Held::Nothing, pieces: [Held::Nothing; PIECES], is_before_zone: false };
 
     /// Another intersection comes next, or the time is not known any more (F8).
     pub fn begin(&mut self) {
         *self = Self::NOTHING;
+    }
+
+    /// Gives everything back, and stays out of the zone until the next plan. What is claimed then is that of a newcomer (F2).
+    pub fn stay_out(&mut self) {
+        *self = Self { is_before_zone: true, ..Self::NOTHING };
+    }
+
+    /// Whether it says that it is not in the zone.
+    #[must_use]
+    pub const fn is_before_zone(&self) -> bool {
+        self.is_before_zone
     }
 
     /// The claims.
@@ -100,6 +114,7 @@ impl Own {
         outlook: Option<&Outlook>,
         known: impl Iterator<Item = (Known<'a>, Order)> + Clone,
     ) {
+        self.is_before_zone = false;
         let Some(outlook) = outlook else {
             self.pieces = [Held::Nothing; PIECES];
             return;
@@ -160,8 +175,11 @@ impl Own {
         self.replace(Claim { at, window, station }, &outlook.stay, is_firm);
     }
 
-    /// The claims as they are said in a message with this stamp.
+    /// The claims as they are said in a message with this stamp. One that is not in the zone is not on air by what it says.
     pub fn say(&mut self, stamp: GnssTime) -> [Option<Claim>; PIECES] {
+        if self.is_before_zone {
+            return [None; PIECES];
+        }
         self.on_air.set(self.on_air.get().unwrap_or(stamp));
         self.said.set(stamp);
         self.pieces.map(|piece| piece.get())

@@ -26,6 +26,8 @@ const WAITING: Speed = Speed::from_mm_per_s(1_000);
 const WAITS: Duration = Duration::from_millis(1_000);
 /// What is later is not foreseen.
 const FORESEEN: Duration = Duration::from_millis(25_000);
+/// An ego that is farther than this from the area, and does not foresee its stay, is not in the zone.
+const ZONE: Distance = Distance::from_mm(40_000);
 /// A horizon that ends at less than this says nothing of when the ego gets to a place beyond.
 const STANDS: Speed = Speed::from_mm_per_s(500);
 /// An ego that would leave the area too late otherwise accelerates by at least this, or by as much as it has published, up to the speed
@@ -189,7 +191,12 @@ pub(super) fn plan<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
     scene.passes.note_time(ego.now, gnss);
     let Some(now) = gnss else { return };
     scene.passes.known.forget(&Rules::UNIT, now);
-    let outlook = Area::next(scene).and_then(|area| outlook(scene, &area, ego, now, is_by_law, is_committed));
+    let area = Area::next(scene);
+    let outlook = area.and_then(|area| outlook(scene, &area, ego, now, is_by_law, is_committed));
+    let is_far = area.is_some_and(|area| area.begins.ahead_of(ego.foremost) > ZONE);
+    if outlook.is_none() && is_far && !is_committed {
+        return scene.passes.own.stay_out();
+    }
     // A claim counts from the next time that a message can say.
     scene.plan_passes(whole_steps(now.plus(STEP)), outlook.as_ref());
 }

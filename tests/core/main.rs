@@ -45,6 +45,7 @@ mod passes_range;
 mod passes_relayed;
 mod passes_room;
 mod passes_seen;
+mod passes_zone;
 mod peer_clocks;
 mod placed;
 mod range_before_named;

@@ -67,6 +67,19 @@ fn who_foresees_nothing_gives_everything_back() {
 }
 
 #[test]
+fn who_stays_out_of_the_zone_says_no_claim_and_claims_as_a_newcomer_after_that() {
+    let mut own = own();
+    plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
+    own.stay_out();
+    assert!(own.is_before_zone() && own.say(time(999)) == [None; PIECES]);
+    plan(&mut own, &outlook(window(1_200, 1_250)), &[]);
+    assert!(!own.is_before_zone());
+    let at = own.claims().map(|claim| claim.at).max();
+    assert_eq!(at, Some(RULES.claims_from(time(1_000), time(1_000), None)), "not on air by what it said before");
+    assert!(at > Some(time(1_000)));
+}
+
+#[test]
 fn a_claim_is_cut_by_who_is_ahead_in_the_order_and_not_by_who_is_behind() {
     // The other one claimed first, so that without an order it has priority.
     let other = [claim(10, window(1_060, 1_095), 6)];

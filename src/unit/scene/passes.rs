@@ -93,8 +93,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         if pass.left == Some(intersection.id) {
             self.passes.known.leave(pass.station_id, stamp);
         } else if pass.intersection == intersection.id && intersection.conflict(crossing.movement, pass.movement) {
-            let claims = pass.claims.map(|claimed| claimed.map(|claimed| claim(&claimed, pass.station_id, now)));
-            let station = Station::new(pass.station_id, pass.movement, stamp, Arrival(pass.arrival), claims);
+            let (id, movement, arrival) = (pass.station_id, pass.movement, Arrival(pass.arrival));
+            let station = if pass.is_before_zone {
+                Station::before_zone(id, movement, stamp, arrival)
+            } else {
+                let claims = pass.claims.map(|claimed| claimed.map(|claimed| claim(&claimed, id, now)));
+                Station::new(id, movement, stamp, arrival, claims)
+            };
             if self.passes.known.hear(station).is_err() {
                 health.count(Cause::PassesFull);
             }
@@ -163,6 +168,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             intersection: named.intersection.id,
             movement: named.movement,
             left: left.map(|crossing| crossing.intersection.id),
+            is_before_zone: self.passes.own.is_before_zone(),
             stamp: PassTime::down(stamp),
             arrival: registration.arrival.0,
             claims: claims.map(|claim| claim.and_then(|claim| claimed(&claim))),

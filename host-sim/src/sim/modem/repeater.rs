@@ -125,7 +125,17 @@ mod tests {
     fn pass(station_id: u32, stamp: u16) -> Pass {
         let movement = Movement::straight(0);
         let (stamp, claims) = (PassTime(stamp), [None; 2]);
-        Pass { tag: 0, station_id, intersection: 5, movement, left: None, stamp, arrival: 0, claims }
+        Pass {
+            tag: 0,
+            station_id,
+            intersection: 5,
+            movement,
+            left: None,
+            is_before_zone: false,
+            stamp,
+            arrival: 0,
+            claims,
+        }
     }
 
     fn due(repeater: &mut Repeater, at_s: f64) -> Vec<(u32, u16)> {

@@ -113,6 +113,7 @@ impl Place {
             intersection,
             movement: Movement::straight(self.leg),
             left: (self.leg == 0 && intersection == SECOND.id).then_some(FIRST.id),
+            is_before_zone: false,
             stamp,
             arrival: arrival.0,
             claims: [Some(claim(0)), Some(claim(400))],
