@@ -37,8 +37,9 @@ pub struct Law {
     pub silent_time_gap: Seconds,
     /// Distance kept at standstill, `s_0`; 0 to 10.23 m.
     pub standstill: Distance,
-    /// Whether the gains come from the tables of eq. 6, which are proved with lags up to 0.5 s and time gaps up to 2 s: without feed-forward
-    /// from 1 s on, and with it from 0.7 s on. Otherwise they are the following two. Where there is no association the two are what is published.
+    /// Whether the gains come from the tables of eq. 6, which are proved with lags up to 0.5 s and time gaps up to 2 s: without
+    /// feed-forward from 1 s on, and with it from 0.7 s on. Otherwise they are the following two. Where there is no association the two are
+    /// what is published.
     pub table: bool,
     /// Gain `k`; 0.01 to 3.999 /s².
     pub gain: Gain,
@@ -169,8 +170,8 @@ pub struct Config {
     /// conflict area all the same.
     pub range_sensor: bool,
     /// Whether the unit keeps passes at intersections while its envelope is engaged. Without, it claims none, takes in none, and waits for
-    /// the near end of every vehicle that is ahead in the order and crosses its way: for studies, and for an integrator whose modem does not
-    /// relay passes.
+    /// the near end of every vehicle that is ahead in the order and crosses its way: for studies, and for an integrator whose modem does
+    /// not relay passes.
     pub passes: bool,
 }
 
@@ -224,9 +225,9 @@ impl Config {
         passes: false,
     };
 
-    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, passes kept, no range sensor. `δt` is 30 ms, and the
-    /// horizon of 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation needs
-    /// these are 359 steps.
+    /// A car: 1,500 kg, 4.8 m, lag 0.3 s, time gap 1.6 s, 100 Hz, the envelope engaged, passes kept, no range sensor. `δt` is 30 ms, and
+    /// the horizon of 10.71 s is as long as a message can say, two silences of 4 s in a row, and more. With the two that interpolation
+    /// needs these are 359 steps.
     #[must_use]
     pub const fn car(station: StationHash) -> Self {
         Self {

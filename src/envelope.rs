@@ -82,8 +82,8 @@
 //! # What is given away
 //!
 //! Compared with the least way from which emergency braking does not collide, found by simulation with nothing tolerated
-//! (`tests/core/envelope_lorry.rs`; 8 m/s², lag 0.3 s), the gate gives away at most 0.7 m behind a vehicle that brakes at least as hard. That
-//! is `½ b T²` of the lag's end and `j (τ + h)³/6` of the ramp. Behind a vehicle that brakes less hard it gives away at most 1.7 m at
+//! (`tests/core/envelope_lorry.rs`; 8 m/s², lag 0.3 s), the gate gives away at most 0.7 m behind a vehicle that brakes at least as hard.
+//! That is `½ b T²` of the lag's end and `j (τ + h)³/6` of the ramp. Behind a vehicle that brakes less hard it gives away at most 1.7 m at
 //! the same speed. It gives away up to 15 m where the ego closes in on a much slower vehicle and would stop a little before that vehicle
 //! does. There the points of rest with `c` itself would suffice. But whether they suffice depends on which vehicle stops first, and a
 //! condition that a faster vehicle ahead can break is a cliff.

@@ -1,5 +1,5 @@
-//! What the range sensor sees of the vehicle ahead, and what that vehicle says of itself, as one track. Views and messages enter; the motion
-//! of the vehicle by all of them leaves.
+//! What the range sensor sees of the vehicle ahead, and what that vehicle says of itself, as one track. Views and messages enter; the
+//! motion of the vehicle by all of them leaves.
 //!
 //! A message is late. When it comes, views that were taken after its stamp are fused already. So the fusion keeps two things: the motion
 //! at the newest message ([`Filter`]), and the views since then. A message is taken in at its stamp, and the views after it are taken in

@@ -94,9 +94,9 @@ pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 /// second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
 pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(800);
 
-/// The time gap of the cruise control, and to which the time gap of the law opens while nothing new is known of the vehicle ahead. There the
-/// string is stable without any message: behind what a sensor sees, by `holdover-sim gains`' criterion, `k (t_g² + 2γ t_g) >= 2` with the
-/// gains of the cruise control, and with those of the tables.
+/// The time gap of the cruise control, and to which the time gap of the law opens while nothing new is known of the vehicle ahead. There
+/// the string is stable without any message: behind what a sensor sees, by `holdover-sim gains`' criterion, `k (t_g² + 2γ t_g) >= 2` with
+/// the gains of the cruise control, and with those of the tables.
 pub const SILENT_TIME_GAP: Seconds = Seconds::from_millis(1_800);
 
 /// The time gap opens after so long without news. A silence of 4 s, for which estimates are made, changes nothing: a vehicle that is silent

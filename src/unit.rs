@@ -231,8 +231,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
         (now, Last { demand: self.controller.last_demand(), age })
     }
 
-    /// What this tick does of what is not done in every tick. It has much else to do after a pause, in a review that was asked for, and when
-    /// its target's news ends a silence.
+    /// What this tick does of what is not done in every tick. It has much else to do after a pause, in a review that was asked for, and
+    /// when its target's news ends a silence.
     fn tasks(&mut self, now: Instant, last: Last) -> Tasks {
         let (period, between) = (self.scene.config.period, self.scene.config.link.period);
         let (scene, coordination) = (&self.scene, &self.scene.coordination);

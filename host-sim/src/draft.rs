@@ -1,7 +1,8 @@
 //! A file that is written whole or not at all: bytes enter, and the file is there when they are complete.
 //!
 //! The bytes go to a draft in the same folder, which takes the file's name at the end. A full disk or a kill leaves the file that was there
-//! before. Until then the draft has no name, where the system has such files, so that a kill leaves nothing else either. What is no regular file, such as a pipe or `/dev/stdout`, has nothing to keep, and is written straight.
+//! before. Until then the draft has no name, where the system has such files, so that a kill leaves nothing else either. What is no regular
+//! file, such as a pipe or `/dev/stdout`, has nothing to keep, and is written straight.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::draft::{draft_in, folder_of, is_straight};
 use crate::error::{Error, plain, quoted};
 
-/// That files can be written into the folder that this option or argument names, with this remedy. Missing folders are created when they are
-/// written.
+/// That files can be written into the folder that this option or argument names, with this remedy. Missing folders are created when they
+/// are written.
 ///
 /// # Errors
 /// It is a file or below one, has no name, or cannot be written.

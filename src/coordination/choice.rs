@@ -19,8 +19,8 @@ pub struct Choice {
     pub is_held: bool,
     /// How gently the ego brakes for the target.
     pub comfort: ComfortBraking,
-    /// The vehicles whose name means another one to those who hear it, which is nearer ahead of the ego. The ego does not follow them by the
-    /// order.
+    /// The vehicles whose name means another one to those who hear it, which is nearer ahead of the ego. The ego does not follow them by
+    /// the order.
     pub namesakes: Slots,
     /// All vehicles that are ahead in the order, also those that are only estimated to have left.
     pub ahead: Slots,

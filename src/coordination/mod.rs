@@ -210,8 +210,8 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.axes.get(index)?.approach()
     }
 
-    /// The vehicle that the ego takes to be just ahead of it in the order, of those whose ways conflict with its own or that are ahead on its
-    /// leg; unknown before the ego has arrived.
+    /// The vehicle that the ego takes to be just ahead of it in the order, of those whose ways conflict with its own or that are ahead on
+    /// its leg; unknown before the ego has arrived.
     #[must_use]
     pub fn claim(&self) -> Predecessor {
         match (self.registration.as_ref(), self.claim.get()) {

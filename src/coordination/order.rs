@@ -1,15 +1,16 @@
 //! The order at an intersection: first come, first served. What the stations at the intersection say of themselves enters; who is ahead of
 //! whom, and how others regard the ego, leave.
 //!
-//! Every station tells when it arrived, and which station it takes to be just ahead of it, of those whose ways conflict with its own or that
-//! are ahead on its leg (its *claim*). Each station tells its own arrival. So all stations that heard the same stations agree, whenever they heard them. Equal arrivals are decided by the number of the
-//! station, and between stations of the same number by the number of the leg. The ego yields to a station that does not say when it arrived.
+//! Every station tells when it arrived, and which station it takes to be just ahead of it, of those whose ways conflict with its own or
+//! that are ahead on its leg (its *claim*). Each station tells its own arrival. So all stations that heard the same stations agree,
+//! whenever they heard them. Equal arrivals are decided by the number of the station, and between stations of the same number by the number
+//! of the leg. The ego yields to a station that does not say when it arrived.
 //!
 //! Stations that heard different stations do not agree, and their claims show it. Take a station that arrived later than the ego. If it
-//! claims no station, or one that is before the ego, it has not heard of the ego and heads for the ego's place. If it claims a station
-//! that is not here, by what the ego has heard, it may head for that place, unless the modem hears stations without a slot. If this lasts, the ego yields: it tells a new arrival, just
-//! after the arrival of the other station. So a station only ever moves back. The order is that of the told arrivals at all times. As
-//! soon as every station hears every other one again, there is one order, whatever happened before.
+//! claims no station, or one that is before the ego, it has not heard of the ego and heads for the ego's place. If it claims a station that
+//! is not here, by what the ego has heard, it may head for that place, unless the modem hears stations without a slot. If this lasts, the
+//! ego yields: it tells a new arrival, just after the arrival of the other station. So a station only ever moves back. The order is that of
+//! the told arrivals at all times. As soon as every station hears every other one again, there is one order, whatever happened before.
 
 use core::cmp::Ordering;
 

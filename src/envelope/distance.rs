@@ -94,7 +94,8 @@ fn lags(envelope: &Envelope, lag: FineSeconds) -> [FineSeconds; 2] {
 }
 
 /// The speed to spare at this lag, by the points of rest and by closing. The ego's hardest braking enters with the obstacle's way to rest.
-/// While the ego is about to stand, `y` may move backwards; once the ego stands, it does not any more. So nothing is built on that, unless the ego `comes_to_rest` for good.
+/// While the ego is about to stand, `y` may move backwards; once the ego stands, it does not any more. So nothing is built on that, unless
+/// the ego `comes_to_rest` for good.
 fn spare_at(
     envelope: &Envelope,
     ego: &Ego,

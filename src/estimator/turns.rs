@@ -5,8 +5,8 @@
 //!
 //! * The target's news is used at once, so that after a silence the controller is led from the old horizon to the new one in one tick. So
 //!   is a view of another sensor. Old news that comes in the tick after other news of the target waits for one tick, if there is no room.
-//! * The other peers with news follow in the order of the chain, as many as there is room for. The rest waits, and the next tick begins with
-//!   the first of those that wait. So nobody waits for longer than all the others take.
+//! * The other peers with news follow in the order of the chain, as many as there is room for. The rest waits, and the next tick begins
+//!   with the first of those that wait. So nobody waits for longer than all the others take.
 //! * If others had to wait, the target's horizon was computed from an old horizon of the vehicle ahead of it. So it starts anew once more
 //!   when nobody waits any longer.
 //!
@@ -38,8 +38,8 @@ pub(super) fn steps_sent(step: Duration, most: usize) -> usize {
     usize::try_from(steps).unwrap_or(most).min(most)
 }
 
-/// For how many steps a tick of this period has room. In a longer period there is more time. A shorter one has no less room: then one horizon
-/// would not fit.
+/// For how many steps a tick of this period has room. In a longer period there is more time. A shorter one has no less room: then one
+/// horizon would not fit.
 pub(super) fn steps_a_tick(period: Duration) -> usize {
     let ticks = usize::try_from(period.as_millis()).unwrap_or(0) / TICK_MS;
     STEPS_A_TICK.saturating_mul(ticks.max(1))
@@ -56,8 +56,8 @@ impl Room {
     /// For all.
     pub const ENDLESS: Self = Self { left: usize::MAX, each: 0 };
 
-    /// For so many steps, with horizons of so many steps, of which those that were sent may have `sent` steps. What else the tick does takes
-    /// as long as so many horizons `besides`.
+    /// For so many steps, with horizons of so many steps, of which those that were sent may have `sent` steps. What else the tick does
+    /// takes as long as so many horizons `besides`.
     pub fn of(room: usize, length: usize, sent: usize, besides: usize) -> Self {
         let each = length.max(sent).saturating_add(BEGINNING);
         let taken = length.saturating_add(BEGINNING).saturating_mul(besides);
@@ -129,8 +129,8 @@ impl<const PEERS: usize> Turns<PEERS> {
         self.turns.get(index).copied().unwrap_or(Turn::None)
     }
 
-    /// Decides on a tick. News of these two does not wait, unless it is `old`er than so many steps. `late` tells by how many steps the newest
-    /// sample of a peer is older than now.
+    /// Decides on a tick. News of these two does not wait, unless it is `old`er than so many steps. `late` tells by how many steps the
+    /// newest sample of a peer is older than now.
     #[allow(clippy::cast_possible_truncation)] // the catalogue has 16 slots at most
     pub fn take(
         &mut self,

@@ -1,4 +1,5 @@
-//! A Kalman filter of one vehicle's motion. Measurements enter in the order of when they were taken; position, speed and acceleration leave.
+//! A Kalman filter of one vehicle's motion. Measurements enter in the order of when they were taken; position, speed and acceleration
+//! leave.
 //!
 //! The acceleration fades out with the time constant [`FADE`], as that of a vehicle of which nothing is known, and white noise changes it.
 //! Over a step `h`, with `φ = 1 - h/T`,
@@ -8,9 +9,9 @@
 //! ```
 //!
 //! A vehicle that keeps its speed is tracked with little noise (`WANDER`). One that accelerates or brakes will end that, and the density of
-//! the noise grows with the square of the acceleration, `q = WANDER + min(a²/32, 1/2)`. Who brakes changes the acceleration at once. A speed that
-//! differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by `MANOEUVRE`
-//! within the last step, and the filter follows within a few views.
+//! the noise grows with the square of the acceleration, `q = WANDER + min(a²/32, 1/2)`. Who brakes changes the acceleration at once. A
+//! speed that differs from the expected one by more than three standard deviations says so. Then the acceleration may have changed by
+//! `MANOEUVRE` within the last step, and the filter follows within a few views.
 //!
 //! The variances have 25 fraction bits: up to 64 m², by 3e-8 m². The measured quantities are taken in one after the other, so that each
 //! needs the quotients of one number only.

@@ -8,10 +8,10 @@
 //! the far end, in position or in speed, because both are monotone in acceleration and in time. The ends are not symmetric: a car brakes
 //! harder than it accelerates.
 //!
-//! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the true state. Products
-//! and sums of speeds stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two words 5.2e8.
-//! Accelerations are at most 6.4e7. The times for which they last are cut at an hour, 3.6e9. Positions are exact within ±560,000 km. All
-//! of this is proved over the whole range in `proof` below this module.
+//! Everything is computed in whole micrometres, micrometres per second and microseconds, and rounded away from the true state. Products and
+//! sums of speeds stay below 2⁶³ and need not saturate. Speeds are at most 65.534e6; a single word makes at most 2.6e8 of them, and two
+//! words 5.2e8. Accelerations are at most 6.4e7. The times for which they last are cut at an hour, 3.6e9. Positions are exact within
+//! ±560,000 km. All of this is proved over the whole range in `proof` below this module.
 
 use crate::fixed::{per_15_625, per_million, quotient};
 use crate::time::{Duration, Instant};
@@ -48,8 +48,9 @@ impl AccelerationRange {
         Self { acceleration: self.acceleration.max(other.acceleration), braking: self.braking.max(other.braking) }
     }
 
-    /// As published, braking by the harder of the two that are. It is not less than 0.1 m/s² each, so that coming to rest takes finite time.
-    /// A vehicle that accelerates as hard as it has published may have a little more than that, because the effort is commanded in steps.
+    /// As published, braking by the harder of the two that are. It is not less than 0.1 m/s² each, so that coming to rest takes finite
+    /// time. A vehicle that accelerates as hard as it has published may have a little more than that, because the effort is commanded in
+    /// steps.
     #[must_use]
     pub fn published(limits: &Limits) -> Self {
         const LEAST: Acceleration = Acceleration::from_mm_per_s2(100);

@@ -162,8 +162,8 @@ impl Stride {
         self.actuator.limit(desired.min(cap), state.demand)
     }
 
-    /// Takes as many steps as `out` has room for, behind a predecessor with these steps, and with this speed at the step before. Returns the
-    /// state at the last step, and how many steps were taken. The kind of law is asked for once for all steps, not in each.
+    /// Takes as many steps as `out` has room for, behind a predecessor with these steps, and with this speed at the step before. Returns
+    /// the state at the last step, and how many steps were taken. The kind of law is asked for once for all steps, not in each.
     ///
     /// No step is taken if positions are not by the trapezoid. That is for reproducing the paper, and need not be fast on an ECU.
     pub fn run(&self, state: State, before: Speed, ahead: &[Step], out: &mut [Step]) -> (State, usize) {

@@ -1,8 +1,8 @@
 //! The peers: messages from the slots enter, one track per slot leaves.
 //!
-//! Which samples of a slot were heard is kept in the order of their stamps, and of the newest all. [`timely`] and [`Track::judge`] refuse a sample that comes too late for
-//! that, comes twice, or is from the future. The unit refuses a sample from another station or from too far away. Judging changes
-//! nothing. Only [`Track::admit`] changes a track by a sample.
+//! Which samples of a slot were heard is kept in the order of their stamps, and of the newest all. [`timely`] and [`Track::judge`] refuse a
+//! sample that comes too late for that, comes twice, or is from the future. The unit refuses a sample from another station or from too far
+//! away. Judging changes nothing. Only [`Track::admit`] changes a track by a sample.
 
 mod drift;
 mod limits;

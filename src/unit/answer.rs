@@ -10,7 +10,8 @@ use crate::wire::Frame;
 use crate::wire::catalogue::{CATALOGUE, Node};
 use crate::wire::command::Command;
 
-/// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), passes (4), status.
+/// The most frames that one tick sends: command, estimate (2), motion (2), driving parameters (3), horizon (5), route (2), passes (4),
+/// status.
 pub const MAX_FRAMES: usize = 20;
 
 /// The number of frames of all messages that the unit sends by the catalogue. The place on the globe is not among them: others hear of

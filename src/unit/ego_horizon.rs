@@ -28,8 +28,8 @@ const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
 const REVIEWS_FAR: i64 = 16;
 const FINEST_FAR: i64 = 4;
-/// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and three
-/// more reviews.
+/// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and
+/// three more reviews.
 const CHANGES: u8 = 8;
 
 /// Computes the ego's own horizon from its own state, behind the target with the gains of the association.
@@ -54,8 +54,8 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
     let (mut crossing, mut comfort) = (scene.coordination.next(), scene.coordination.choice().comfort);
     let (mut gains, mut changes) = (gains, CHANGES);
     let minded = minded(scene, now, crossing);
-    // The last review, with the end of the horizon then; how many reviews later this one is; and the width of the interval in which a change
-    // is looked for, or 0.
+    // The last review, with the end of the horizon then; how many reviews later this one is; and the width of the interval in which a
+    // change is looked for, or 0.
     let (mut before, mut passed, mut left) = (None::<(Instant, End)>, 1i64, 0i64);
     let last = scene.estimator.own_end_of(now);
     while scene.estimator.is_own_short(last) {

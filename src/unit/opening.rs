@@ -9,8 +9,8 @@
 //! * a larger time gap that is wanted takes the place of as much that was opened.
 //!
 //! It goes on between own motions, so that no demand jumps. With the tables of gains the string is as stable at every larger gap. The own
-//! horizon is computed with the gap as it will be if it goes on like that: others know of the opening by it. Those that lost the horizon know
-//! the time gap that is told.
+//! horizon is computed with the gap as it will be if it goes on like that: others know of the opening by it. Those that lost the horizon
+//! know the time gap that is told.
 
 use crate::fixed::quotient;
 use crate::held::Held;

@@ -130,8 +130,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.ego.as_ref().filter(|ego| now.since(ego.received) <= self.config.link.ego_timeout)
     }
 
-    /// How much later than its stamp says the ego's sample may have been taken, or earlier. Without GNSS time its stamp says nothing, and it
-    /// counts from its reception, which is within [`EGO_WITHIN`] of the measurement.
+    /// How much later than its stamp says the ego's sample may have been taken, or earlier. Without GNSS time its stamp says nothing, and
+    /// it counts from its reception, which is within [`EGO_WITHIN`] of the measurement.
     pub fn own_clock_error(&self, ego: &Sample) -> Duration {
         if ego.is_timed { self.config.link.clock_error } else { self.config.link.clock_error.max(EGO_WITHIN) }
     }
@@ -209,8 +209,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.config.law.silent_time_gap.minus(self.time_gap())
     }
 
-    /// How the ego drives by the law, at the time gap that is wanted: with these gains and this standstill distance behind a target, or on a
-    /// free road.
+    /// How the ego drives by the law, at the time gap that is wanted: with these gains and this standstill distance behind a target, or on
+    /// a free road.
     pub fn ego_model(&self, behind: Option<(Gains, Distance)>, comfort: ComfortBraking) -> VehicleModel {
         let (law, target_speed) = (&self.config.law, self.target_speed());
         let aim = match behind {

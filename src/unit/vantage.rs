@@ -66,8 +66,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         peer.rear > self.front.ahead(HEEDED).ahead(way).ahead(way)
     }
 
-    /// Of the vehicles that the ego lets pass first and may follow, the one behind which the law asks for the smallest acceleration. They may
-    /// drive at once where their ways do not conflict, so the last of them in the order is not always behind.
+    /// Of the vehicles that the ego lets pass first and may follow, the one behind which the law asks for the smallest acceleration. They
+    /// may drive at once where their ways do not conflict, so the last of them in the order is not always behind.
     pub fn nearest(&self, best: Option<(Candidate, Position)>, other: Candidate) -> Option<(Candidate, Position)> {
         let asks = self.asks(&other);
         let is_no_nearer = best.is_some_and(|(_, least)| least <= asks);

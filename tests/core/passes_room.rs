@@ -1,5 +1,5 @@
-//! The vehicle ahead on the own leg falls silent near the conflict area, and nobody sees it. The ego goes into the area only if it is certain
-//! to get out behind that vehicle.
+//! The vehicle ahead on the own leg falls silent near the conflict area, and nobody sees it. The ego goes into the area only if it is
+//! certain to get out behind that vehicle.
 
 use crate::rig::config;
 use crate::rig::junction::{CROSSING, Driver, HALF, Junction};

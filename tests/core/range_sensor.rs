@@ -63,8 +63,8 @@ fn in_a_silence_the_estimate_follows_what_is_seen() {
 
 #[test]
 fn a_braking_that_is_not_what_was_said_is_answered_soon_though_nothing_is_heard() {
-    // A speed in a view errs by up to 0.6 m/s, and the ego's own by a little: usually by a third, which is 0.25 m/s. After that it takes three
-    // views, one every 50 ms.
+    // A speed in a view errs by up to 0.6 m/s, and the ego's own by a little: usually by a third, which is 0.25 m/s. After that it takes
+    // three views, one every 50 ms.
     for (braking, within) in [(1.0, 0.40), (2.0, 0.30), (5.0, 0.20)] {
         let mut road = Road::new(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
         road.wants = 20.0;

@@ -1,5 +1,5 @@
-//! The time gap while the vehicle ahead is silent: it opens and closes as a float64 vehicle does by the same rule; the own horizon knows it,
-//! and so does who reads the driving parameters.
+//! The time gap while the vehicle ahead is silent: it opens and closes as a float64 vehicle does by the same rule; the own horizon knows
+//! it, and so does who reads the driving parameters.
 
 use crate::rig;
 use crate::rig::road::Road;

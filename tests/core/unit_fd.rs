@@ -126,7 +126,8 @@ fn it_cooperates_and_says_by_the_same_schedule_what_it_says_over_classic_can_in_
         }
     }
     assert_eq!(format!("{:?}", bench.unit.mode()), "Cooperative");
-    // Before its first motion is trusted it has none to say, and the first that it says is not trusted. Driving parameters are said with every fifth, and twice at once when they change.
+    // Before its first motion is trusted it has none to say, and the first that it says is not trusted. Driving parameters are said with
+    // every fifth, and twice at once when they change.
     assert_eq!(states, 28);
     assert!(horizons >= 25 && (6..=10).contains(&parameters), "{horizons} {parameters}");
 }

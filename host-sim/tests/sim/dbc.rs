@@ -1,5 +1,5 @@
-//! `holdover.dbc` and `holdover-fd.dbc` against the frames: random messages are encoded by the core's sender, their raw frames are decoded by
-//! what an independent parser reads in the file, and every signal of every message is compared with the message.
+//! `holdover.dbc` and `holdover-fd.dbc` against the frames: random messages are encoded by the core's sender, their raw frames are decoded
+//! by what an independent parser reads in the file, and every signal of every message is compared with the message.
 
 #[allow(dead_code)] // shared with the core's own tests
 #[path = "../../../tests/core/messages/mod.rs"]

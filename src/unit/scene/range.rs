@@ -9,10 +9,10 @@
 //! A frame with a view is only kept; the next tick looks at the view ([`Scene::look`]), so that a frame costs little.
 //!
 //! A view errs more than a message, and is newer. So both are fused to one track (`fusion`), from which the horizon of a vehicle starts
-//! that does not say how it will drive: its braking is seen before it is heard, and also in a silence. The horizon of a vehicle that said how
-//! it will drive stays as it said, as long as the estimated speed may be right: by the largest error of a view, and by the usual one, a third of
-//! it, of three views in a row. Then a view moves that horizon by a part of what is
-//! beyond a view's usual error. So fresh messages, and horizons that are right, are hardly corrected.
+//! that does not say how it will drive: its braking is seen before it is heard, and also in a silence. The horizon of a vehicle that said
+//! how it will drive stays as it said, as long as the estimated speed may be right: by the largest error of a view, and by the usual one, a
+//! third of it, of three views in a row. Then a view moves that horizon by a part of what is beyond a view's usual error. So fresh
+//! messages, and horizons that are right, are hardly corrected.
 
 use super::Scene;
 use super::sight::{Sight, Verdict, Whose};
@@ -265,8 +265,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// Corrects the estimate by the view. The horizon of a vehicle that does not say how it will drive starts from the fused track. Where
-    /// the vehicle did say so, and the estimated speed may be right, its horizon is moved. Where that speed is wrong, certainly or by several
-    /// views in a row, it starts from the fused track too.
+    /// the vehicle did say so, and the estimated speed may be right, its horizon is moved. Where that speed is wrong, certainly or by
+    /// several views in a row, it starts from the fused track too.
     fn correct(&mut self, index: usize, view: &View, front: Position, bound: &Bound, newest: &Sample) {
         let Some(whose) = self.whose(index) else { return };
         let View { sight, uncertainty, .. } = view;

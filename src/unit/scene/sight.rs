@@ -199,8 +199,8 @@ impl Ranging {
         }
         let seen = &sight.bound;
         // The view is of the same vehicle, or farther: then no vehicle is where that one was held to be. One that drives may leave the path
-        // close before one that stood. So a view of one that certainly drives is of one that stood only if that was seen just now, and can be
-        // as fast.
+        // close before one that stood. So a view of one that certainly drives is of one that stood only if that was seen just now, and can
+        // be as fast.
         let drives = seen.lowest_speed() > CRAWL;
         let is_beyond = |held: &Sight| {
             let then = held.bound.after(seen.at(), &AccelerationRange::WORST);

@@ -248,8 +248,8 @@ impl Junction {
         Self { drivers, now: 0, said: Vec::new() }
     }
 
-    /// Drives four, of which two share a leg, for so many seconds. Leaves the least gap on a leg, whether two that cross were in the area at
-    /// once, and the least position at the end.
+    /// Drives four, of which two share a leg, for so many seconds. Leaves the least gap on a leg, whether two that cross were in the area
+    /// at once, and the least position at the end.
     pub fn watch(mut self, seconds: f64, mut each: impl FnMut(&mut Self)) -> (f64, bool, f64) {
         let (mut least, mut both) = (f64::MAX, false);
         self.run(seconds, |junction| {

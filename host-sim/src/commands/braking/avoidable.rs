@@ -19,8 +19,8 @@ pub struct Limits {
 /// A vehicle that slows down by more than this brakes.
 const BRAKES_MPS2: f64 = 0.1;
 
-/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it known of the braking at once. `from` is
-/// the tick from which on the leader brakes. A vehicle ahead that never brakes is one to keep off from.
+/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it known of the braking at once. `from`
+/// is the tick from which on the leader brakes. A vehicle ahead that never brakes is one to keep off from.
 #[must_use]
 pub fn is_avoidable(
     ahead: &[Tick],

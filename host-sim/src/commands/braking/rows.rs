@@ -54,7 +54,8 @@ pub struct Comfort {
 pub struct Side {
     /// Pairs that met, in all runs together.
     pub collisions: usize,
-    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it known of the braking ahead at once.
+    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it known of the braking ahead at
+    /// once.
     pub avoidable: usize,
     /// Smallest bumper gap; `None`: vehicles met.
     pub min_gap_m: Option<f64>,

@@ -48,8 +48,8 @@ pub fn run(options: &EcuOptions) -> Result<Verdict, Error> {
     Ok(Verdict::Pass)
 }
 
-/// Runs on a port until it is interrupted, which it notices within a tick or [`PATIENCE`]. As in the firmware, frames that have arrived are taken in before the unit ticks. A flood of
-/// frames does not keep the unit from ticking.
+/// Runs on a port until it is interrupted, which it notices within a tick or [`PATIENCE`]. As in the firmware, frames that have arrived are
+/// taken in before the unit ticks. A flood of frames does not keep the unit from ticking.
 fn live(ecu: &mut Ecu, port: &mut impl Port, interruption: &Interruption) -> io::Result<()> {
     while !interruption.is_asked() {
         let wake = ecu.wakes().unwrap_or(port.now().plus(PATIENCE));

@@ -39,7 +39,8 @@ pub struct Design {
 enum Curve {
     /// It is the middle of all sound values.
     MiddleOfSound,
-    /// `γ = (1 - φ)/(t k)` with `t` = 0.6 s. Then `G(s) = 1/(1 + t s)` at a time gap of `t` for actuators with the lag `φ t`, which is a car's
+    /// `γ = (1 - φ)/(t k)` with `t` = 0.6 s. Then `G(s) = 1/(1 + t s)` at a time gap of `t` for actuators with the lag `φ t`, which is a
+    /// car's
     /// 0.3 s: neither a sine nor a step is amplified, whatever `k` is. More `γ` passes the braking ahead on sooner than the gap allows, and
     /// the gap has to be opened again afterwards; with less than `[(1 - φ)/t - k t/2]/k` low frequencies are amplified.
     FirstOrder,

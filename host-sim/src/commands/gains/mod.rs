@@ -1,5 +1,5 @@
-//! `gains`: eq. 6. Only options enter. The two tables of gains that the core ships leave, for the law of eq. 5 and for that with feed-forward,
-//! with the proof of every cell at every tenth of a second of the time gap, a report with pictures of them, and the verdict.
+//! `gains`: eq. 6. Only options enter. The two tables of gains that the core ships leave, for the law of eq. 5 and for that with
+//! feed-forward, with the proof of every cell at every tenth of a second of the time gap, a report with pictures of them, and the verdict.
 //!
 //! ```text
 //! design -> curve -> cells (on all cores) -> proofs -> source, JSON, report

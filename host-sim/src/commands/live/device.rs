@@ -1,5 +1,5 @@
-//! A world with a device in it: what the pages ask for and every tick of the run enter; scenes leave. The device drives the ego in real time,
-//! so time is its own: it neither stops nor goes back. The run itself is that of `hil`.
+//! A world with a device in it: what the pages ask for and every tick of the run enter; scenes leave. The device drives the ego in real
+//! time, so time is its own: it neither stops nor goes back. The run itself is that of `hil`.
 
 use std::collections::VecDeque;
 use std::io;

@@ -1,5 +1,5 @@
-//! What the page is told of a corridor: the vehicles at a tick enter; each leaves with its leg, its place in the order, and the vehicle that
-//! it follows as its unit believes it to be. The roads leave once.
+//! What the page is told of a corridor: the vehicles at a tick enter; each leaves with its leg, its place in the order, and the vehicle
+//! that it follows as its unit believes it to be. The roads leave once.
 
 use holdover::coordination::Entry;
 

@@ -117,8 +117,8 @@ pub struct RunSettings {
         allow_negative_numbers = true
     )]
     pub trajectories_every: f64,
-    /// Write every tick of every vehicle for Foxglove and other readers of MCAP, as JSON channels. Of a corridor, those of the first seed as
-    /// the scenario says
+    /// Write every tick of every vehicle for Foxglove and other readers of MCAP, as JSON channels. Of a corridor, those of the first seed
+    /// as the scenario says
     #[arg(long, value_name = "FILE.mcap")]
     pub mcap: Option<PathBuf>,
 

@@ -1,5 +1,5 @@
-//! A scenario as a file of its own: the text that it came from, what the command line set, and the events of a run enter; a text leaves that
-//! `run` reads as the same scenario with these events.
+//! A scenario as a file of its own: the text that it came from, what the command line set, and the events of a run enter; a text leaves
+//! that `run` reads as the same scenario with these events.
 
 use std::fmt::Write;
 use std::path::Path;

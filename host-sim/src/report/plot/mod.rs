@@ -1,7 +1,7 @@
 //! Figures as inline SVG: named data enter; one `<svg>` element leaves, at one of three widths.
 //!
-//! A page shows the broad drawing on a large screen, the wide one on a small one and on paper, and the narrow one on a
-//! phone, so that the letters keep their size. Colour, weight and dashes come from classes, which the page's style defines for a light and a dark appearance.
+//! A page shows the broad drawing on a large screen, the wide one on a small one and on paper, and the narrow one on a phone, so that the
+//! letters keep their size. Colour, weight and dashes come from classes, which the page's style defines for a light and a dark appearance.
 //!
 //! | figure | for |
 //! |---|---|

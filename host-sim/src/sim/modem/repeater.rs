@@ -1,5 +1,5 @@
-//! Passes that are repeated (F9): those that the modem hears enter, and those that it broadcasts again leave, with the stamps that they were
-//! said with. So a station that cannot hear another one learns of its claims, and that it has heard a message since then.
+//! Passes that are repeated (F9): those that the modem hears enter, and those that it broadcasts again leave, with the stamps that they
+//! were said with. So a station that cannot hear another one learns of its claims, and that it has heard a message since then.
 //!
 //! What a station said is repeated as it was, by whoever heard it. A unit takes a repeated pass as if it had heard it from its station.
 
