@@ -127,9 +127,14 @@ impl Rules {
     /// lack a claim that counts at its stamp.
     #[must_use]
     pub fn claims_from(&self, now: GnssTime, on_air: GnssTime, said: Option<GnssTime>) -> GnssTime {
-        let heard_by_all = on_air.plus(self.silence).plus(self.clocks);
         let after_said = said.map_or(now, |said| said.plus(self.step));
-        now.max(heard_by_all).max(after_said)
+        now.max(self.heard_by_all(on_air)).max(after_said)
+    }
+
+    /// From when on a station that has been on air since `on_air` has been heard by all.
+    #[must_use]
+    pub const fn heard_by_all(&self, on_air: GnssTime) -> GnssTime {
+        on_air.plus(self.silence).plus(self.clocks)
     }
 
     /// Whether two vehicles may not have both windows: they overlap, or lie too close for the clocks and the clearance.

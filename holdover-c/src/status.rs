@@ -59,6 +59,8 @@ pub enum Status {
     MapPath = -20,
     /// Between two conflict areas there is no room for the ego, which waits before each of them.
     MapClose = -21,
+    /// Of two movements only one conflicts with the other, two of one leg conflict, or two to one exit do not.
+    MapConflicts = -22,
     /// `base_id` is above 0x740.
     ConfigBaseId = -32,
     /// A switch is neither 0 nor 1.
@@ -221,6 +223,7 @@ impl From<MapError> for Status {
             MapError::Area => Self::MapArea,
             MapError::Path => Self::MapPath,
             MapError::Close => Self::MapClose,
+            MapError::Conflicts => Self::MapConflicts,
         }
     }
 }
@@ -295,6 +298,7 @@ const NAMES: &[(Status, &CStr)] = &[
     (Status::MapArea, c"map: half a conflict area is negative, or longer than 5.115 m"),
     (Status::MapPath, c"map: a path has no segment"),
     (Status::MapClose, c"map: no room for the ego between two conflict areas"),
+    (Status::MapConflicts, c"map: only one of two movements conflicts with the other, or they share a leg, or they join and do not conflict"),
     (Status::ConfigBaseId, c"configuration: base_id is above 0x740"),
     (Status::ConfigSwitch, c"configuration: a switch is neither 0 nor 1"),
     (Status::ConfigPeriod, c"configuration: period"),

@@ -135,6 +135,9 @@ fn a_way_that_cannot_be_driven_is_refused_by_the_core_s_name() {
     let mut way = Way::new(&[(1, mm(3_500), far)]);
     way.approaches[0].path = &raw const way.no_path;
     assert_eq!(Memory::new().set_out(&way.itinerary(), 0, 512), Status::MapPath);
+    let mut way = Way::new(&[(1, mm(3_500), far)]);
+    way.approaches[0].conflicts = u64::MAX;
+    assert_eq!(Memory::new().set_out(&way.itinerary(), 0, 512), Status::MapConflicts);
 }
 
 #[test]

@@ -63,7 +63,8 @@ pub struct Approach {
     pub crossing: Position,
     /// The way from there to a place that all movements of the exit have in common. It is used only where movements join.
     pub exits: Distance,
-    /// The movements that it conflicts with. Those of its own leg are not among them.
+    /// The movements that it conflicts with. Those of its own leg are not among them, and all of other legs to its exit are. Of two
+    /// movements on the map, each names the other or neither does.
     pub conflicts: Movements,
 }
 
@@ -93,6 +94,8 @@ pub enum MapError {
     Path,
     /// Between two conflict areas there is no room for the ego, which waits before each of them.
     Close,
+    /// Of two movements only one conflicts with the other, two of one leg conflict, or two to one exit do not.
+    Conflicts,
 }
 
 /// An intersection.
@@ -108,6 +111,17 @@ pub struct Intersection {
 }
 
 impl Intersection {
+    /// Whether its movements conflict as movements can.
+    fn is_consistent(&self) -> bool {
+        self.approaches.iter().all(|a| {
+            self.approaches.iter().all(|b| {
+                let [of_a, of_b] = [a.conflicts.contains(b.movement), b.conflicts.contains(a.movement)];
+                let (share_leg, join) = (a.movement.leg == b.movement.leg, join(a.movement, b.movement));
+                of_a == of_b && !(share_leg && of_a) && (of_a || !join)
+            })
+        })
+    }
+
     fn approach(&self, movement: Movement) -> Option<&Approach> {
         self.approaches.iter().find(|approach| approach.movement == movement)
     }
@@ -188,6 +202,9 @@ impl Itinerary {
             if !is_numbered(crossing.movement) || !approaches.iter().all(|approach| is_numbered(approach.movement)) {
                 return Err(MapError::Leg);
             }
+            if !crossing.intersection.is_consistent() {
+                return Err(MapError::Conflicts);
+            }
             if *half < Distance::ZERO || *half > AREA_MAX {
                 return Err(MapError::Area);
             }
@@ -261,6 +278,33 @@ mod tests {
         assert_eq!(check(&[const { crossing(&GOOD, 0, 5) }, const { crossing(&OTHER, 0, 5) }]), Err(MapError::Order));
         let lost = Itinerary { path: &NO_PATH, crossings: &[const { crossing(&GOOD, 0, 5) }] };
         assert_eq!(lost.check(Distance::ZERO), Err(MapError::Path));
+    }
+
+    #[test]
+    fn movements_that_conflict_one_way_only_are_refused() {
+        const fn way(leg: u8, exit: u8, conflicts: &[(u8, u8)]) -> Approach {
+            let (mut set, mut place) = (Movements::NONE, 0);
+            while place < conflicts.len() {
+                let (leg, exit) = conflicts[place];
+                (set, place) = (set.with(Movement { leg, exit }), place + 1);
+            }
+            let (crossing, exits) = (Position::ZERO, Distance::ZERO);
+            Approach { movement: Movement { leg, exit }, path: &PATH, crossing, exits, conflicts: set }
+        }
+        let check = |approaches: &[Approach]| {
+            let approaches: &'static [Approach] = Box::leak(Box::from(approaches));
+            let intersection = Box::leak(Box::new(intersection(1, 4_000, approaches)));
+            let crossings = Box::leak(Box::new([crossing(intersection, 0, 5)]));
+            Itinerary { path: &PATH, crossings }.check(Distance::ZERO)
+        };
+        assert_eq!(check(&[way(0, 0, &[(1, 1)]), way(1, 1, &[(0, 0)])]), Ok(()));
+        assert_eq!(check(&[way(0, 0, &[(1, 1)]), way(1, 1, &[])]), Err(MapError::Conflicts));
+        assert_eq!(check(&[way(0, 0, &[]), way(1, 1, &[(0, 0)])]), Err(MapError::Conflicts));
+        assert_eq!(check(&[way(0, 0, &[(7, 7)])]), Ok(()), "7 is not on the map");
+        assert_eq!(check(&[way(0, 0, &[(0, 0)])]), Err(MapError::Conflicts));
+        assert_eq!(check(&[way(0, 0, &[(0, 1)]), way(0, 1, &[(0, 0)])]), Err(MapError::Conflicts));
+        assert_eq!(check(&[way(0, 1, &[(1, 1)]), way(1, 1, &[(0, 1)])]), Ok(()));
+        assert_eq!(check(&[way(0, 1, &[]), way(1, 1, &[])]), Err(MapError::Conflicts), "they join");
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! The vehicles that are known to come to the next intersection by ways that cross the ego's. What was heard of them enters, and what is
 //! known of their claims leaves. A vehicle stays in this list without a slot, and whether it is heard or not, until it says that it has
-//! left or is not in the zone, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left, or is not in the zone
-//! yet, is on record as one that keeps passes, as long as there is room, until it is forgotten.
+//! left, or for so long that it is [forgotten](super::Rules::is_forgotten). One that has left is on record as one that keeps passes, as long
+//! as there is room, until it is forgotten.
+//!
+//! One that is not in the zone yet is in this list as long as there is room. What it claims later counts `A` + `e` after its last message at
+//! the earliest (F2). So its last message is as good as one of that time.
 
 use super::{Claim, Known, PIECES, Rules};
 use crate::coordination::Arrival;
@@ -26,8 +29,18 @@ pub struct Station {
     pub arrival: Arrival,
     claims: [Claim; PIECES],
     count: u8,
-    /// It claims nothing here now: it has left, or is not in the zone yet. Whatever it claims later counts as that of a newcomer.
-    is_away: bool,
+    place: Place,
+}
+
+/// Where a vehicle is, by what it said last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+enum Place {
+    /// Before the zone: what it claims later is claimed by a newcomer.
+    BeforeZone,
+    InZone,
+    /// It has left the area.
+    Left,
 }
 
 impl Station {
@@ -40,7 +53,8 @@ impl Station {
         arrival: Arrival,
         claims: [Option<Claim>; PIECES],
     ) -> Self {
-        let mut held = Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_away: false };
+        let mut held =
+            Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, place: Place::InZone };
         for (place, claim) in held.claims.iter_mut().zip(claims.into_iter().flatten()) {
             *place = claim;
             held.count = held.count.saturating_add(1);
@@ -51,7 +65,7 @@ impl Station {
     /// A vehicle that is not in the zone yet.
     #[must_use]
     pub const fn before_zone(id: u32, movement: Movement, heard: GnssTime, arrival: Arrival) -> Self {
-        Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, is_away: true }
+        Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, place: Place::BeforeZone }
     }
 
     /// Its name in messages that have room for 8 bits only.
@@ -68,8 +82,19 @@ impl Station {
 
     /// As the rules take it.
     #[must_use]
-    pub fn known(&self) -> Known<'_> {
-        Known { heard: self.heard, claims: self.claims() }
+    pub fn known(&self, rules: &Rules) -> Known<'_> {
+        let heard = match self.place {
+            Place::BeforeZone => rules.heard_by_all(self.heard),
+            Place::InZone | Place::Left => self.heard,
+        };
+        Known { heard, claims: self.claims() }
+    }
+
+    /// Whether it is certain to keep a pass at this time if it is in the area then. One that was heard before the zone may do anything since
+    /// it could have claimed.
+    #[must_use]
+    pub fn keeps_pass(&self, rules: &Rules, now: GnssTime) -> bool {
+        self.place != Place::BeforeZone || now <= rules.heard_by_all(self.heard)
     }
 }
 
@@ -91,10 +116,10 @@ impl List {
 
     /// The vehicles whose claims count.
     pub fn iter(&self) -> impl Iterator<Item = &Station> + Clone {
-        self.on_record().filter(|station| !station.is_away)
+        self.on_record().filter(|station| station.place != Place::Left)
     }
 
-    /// These, and vehicles that have left or are not in the zone yet.
+    /// These, and vehicles that have left.
     pub fn on_record(&self) -> impl Iterator<Item = &Station> + Clone {
         self.stations.iter().filter_map(Held::as_ref)
     }
@@ -112,12 +137,13 @@ impl List {
     pub fn hear(&mut self, station: Station) -> Result<(), Full> {
         let is_same = |held: &Held<Station>| held.as_ref().is_some_and(|held| held.id == station.id);
         let place = self.stations.iter().position(is_same);
-        let is_away = |held: &Held<Station>| held.as_ref().is_some_and(|held| held.is_away);
         let place = place.or_else(|| self.stations.iter().position(|held| held.as_ref().is_none()));
-        if place.is_none() && station.is_away {
+        let is_at = |held: &Held<Station>, place| held.as_ref().is_some_and(|held| held.place == place);
+        let place = place.or_else(|| self.stations.iter().position(|held| is_at(held, Place::Left)));
+        if place.is_none() && station.place == Place::BeforeZone {
             return Ok(());
         }
-        let place = place.or_else(|| self.stations.iter().position(is_away));
+        let place = place.or_else(|| self.stations.iter().position(|held| is_at(held, Place::BeforeZone)));
         let Some(held) = place.and_then(|place| self.stations.get_mut(place)) else {
             self.missed.set(station.heard);
             return Err(Full);
@@ -132,7 +158,7 @@ impl List {
     pub fn leave(&mut self, id: u32, said: GnssTime) {
         for held in self.stations.iter_mut() {
             if let Some(station) = held.get().filter(|station| station.id == id && station.heard <= said) {
-                held.set(Station { heard: said, is_away: true, ..station });
+                held.set(Station { heard: said, place: Place::Left, ..station });
             }
         }
     }
@@ -199,16 +225,20 @@ mod tests {
     }
 
     #[test]
-    fn one_before_the_zone_is_on_record_and_does_not_count_until_it_comes_in() {
+    fn one_before_the_zone_is_as_good_as_heard_until_it_could_have_claimed() {
         let before = |id, heard| Station::before_zone(id, Movement::straight(1), time(heard), Arrival(5));
         let mut list = List::EMPTY;
         list.hear(before(7, 100)).unwrap();
-        assert_eq!((list.iter().count(), list.on_record().count()), (0, 1));
+        let heard = |list: &List| list.iter().map(|known| known.known(&RULES).heard).collect::<Vec<_>>();
+        let later = |at| RULES.claims_from(time(at), time(at), None);
+        assert_eq!(heard(&list), [later(100)], "whatever it claims counts later");
         list.hear(station(7, 120)).unwrap();
         list.hear(before(7, 110)).unwrap();
-        assert_eq!(list.iter().count(), 1, "old news");
+        assert_eq!(heard(&list), [time(120)], "old news");
         list.hear(before(7, 130)).unwrap();
-        assert_eq!(list.iter().count(), 0);
+        assert_eq!(heard(&list), [later(130)]);
+        let trusted = |now| list.on_record().all(|known| known.keeps_pass(&RULES, now));
+        assert!(trusted(later(130)) && !trusted(later(131)));
         for id in 0..2 * KNOWN as u32 {
             list.hear(before(100 + id, 130)).unwrap();
         }

@@ -175,12 +175,19 @@ impl Own {
         self.replace(Claim { at, window, station }, &outlook.stay, is_firm);
     }
 
-    /// The claims as they are said in a message with this stamp. One that is not in the zone is not on air by what it says.
-    pub fn say(&mut self, stamp: GnssTime) -> [Option<Claim>; PIECES] {
+    /// The claims as they are said in a message with this stamp. One that is not in the zone is not on air by what it says. Those that were
+    /// made before the first message of all count from when that has been heard.
+    pub fn say(&mut self, rules: &Rules, stamp: GnssTime) -> [Option<Claim>; PIECES] {
         if self.is_before_zone {
             return [None; PIECES];
         }
-        self.on_air.set(self.on_air.get().unwrap_or(stamp));
+        if self.on_air.as_ref().is_none() {
+            self.on_air.set(stamp);
+            let at = rules.heard_by_all(stamp);
+            for piece in &mut self.pieces {
+                *piece = piece.get().map(|claim| Claim { at: claim.at.max(at), ..claim }).into();
+            }
+        }
         self.said.set(stamp);
         self.pieces.map(|piece| piece.get())
     }

@@ -249,7 +249,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         let sees = scene.config.range_sensor && (self.entrance.is_committed || is_seen);
         let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && sees;
         let then = now.plus(self.entrance.opens_in);
-        (!is_trusted || !scene.has_pass(index) || scene.is_in_area_until(index, now, then)).then_some(stop)
+        let at = if self.entrance.is_committed { None } else { scene.pass_time(now) };
+        (!is_trusted || !scene.has_pass(index, at) || scene.is_in_area_until(index, now, then)).then_some(stop)
     }
 
     /// Before the intersection after the next one the ego is able to stop in any case. It takes its place in the order there only when it

@@ -26,7 +26,7 @@ const WAITING: Speed = Speed::from_mm_per_s(1_000);
 const WAITS: Duration = Duration::from_millis(1_000);
 /// What is later is not foreseen.
 const FORESEEN: Duration = Duration::from_millis(25_000);
-/// An ego that is farther than this from the area, and does not foresee its stay, is not in the zone.
+/// A slow ego that is farther than this from the area, and does not foresee its stay, is not in the zone.
 const ZONE: Distance = Distance::from_mm(40_000);
 /// A horizon that ends at less than this says nothing of when the ego gets to a place beyond.
 const STANDS: Speed = Speed::from_mm_per_s(500);
@@ -193,8 +193,12 @@ pub(super) fn plan<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
     scene.passes.known.forget(&Rules::UNIT, now);
     let area = Area::next(scene);
     let outlook = area.and_then(|area| outlook(scene, &area, ego, now, is_by_law, is_committed));
+    // What is in use is kept, whatever is foreseen.
+    if outlook.is_none() && is_committed {
+        return;
+    }
     let is_far = area.is_some_and(|area| area.begins.ahead_of(ego.foremost) > ZONE);
-    if outlook.is_none() && is_far && !is_committed {
+    if outlook.is_none() && is_far && ego.fastest < SLOW {
         return scene.passes.own.stay_out();
     }
     // A claim counts from the next time that a message can say.

@@ -112,13 +112,13 @@ pub const FIELDS: &[Field] = &[
     STAMP,
     ARRIVAL,
     LEFT,
-    ZONE,
     CLAIMED[0],
     ENTRY[0],
     LENGTH[0],
     CLAIMED[1],
     ENTRY[1],
     LENGTH[1],
+    ZONE,
 ];
 
 impl Pass {

@@ -109,18 +109,22 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// The vehicles that the ego's claims have to be heard by, as the rules take them.
     pub fn known_passes(&self) -> impl Iterator<Item = Known<'_>> + Clone {
-        self.passes.known.iter().map(Station::known)
+        self.passes.known.iter().map(|station| station.known(&Rules::UNIT))
     }
 
     /// Whether the vehicle in a slot keeps passes at the next intersection. One that is forgotten is not trusted any more: the ego's claims
-    /// do not wait for it, nor do its claims for the ego.
-    pub fn has_pass(&self, index: usize) -> bool {
+    /// do not wait for it, nor do its claims for the ego. At a time, one that was heard before the zone is trusted only as long as it cannot
+    /// have come in since.
+    pub fn has_pass(&self, index: usize, at: Option<GnssTime>) -> bool {
         let Some((station, approach)) =
             self.peers.get(index).and_then(|track| track.station()).zip(self.coordination.approach(index))
         else {
             return false;
         };
-        self.passes.known.on_record().any(|known| known.station() == station && known.movement == approach.movement)
+        self.passes.known.on_record().any(|known| {
+            let is_it = known.station() == station && known.movement == approach.movement;
+            is_it && at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, at))
+        })
     }
 
     /// Whether firm claims cover a stay in the next conflict area, in GNSS time.
@@ -149,7 +153,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Plans the ego's claims, by what it foresees.
     pub fn plan_passes(&mut self, now: GnssTime, outlook: Option<&Outlook>) {
         let mut own = self.passes.own.clone();
-        let known = self.passes.known.iter().map(|station| (station.known(), self.order_of(station)));
+        let known = self.passes.known.iter().map(|station| (station.known(&Rules::UNIT), self.order_of(station)));
         own.plan(&Rules::UNIT, now, self.config.station_id, outlook, known);
         self.passes.own = own;
     }
@@ -161,7 +165,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let (named, registration) = (self.coordination.named()?, self.coordination.registration()?);
         let left = self.coordination.next().checked_sub(1).and_then(|last| itinerary.crossings.get(last));
         let stamp = whole_steps(gnss);
-        let claims = self.passes.own.say(stamp);
+        let claims = self.passes.own.say(&Rules::UNIT, stamp);
         Some(Pass {
             tag,
             station_id: self.config.station_id,

@@ -122,6 +122,8 @@ pub struct Driver {
     pub speaks: bool,
     pub hears: bool,
     pub says_route: bool,
+    /// Whether it says how it moves, and the others give it a slot.
+    pub says_motion: bool,
     /// Whether its range sensor sees the nearest vehicle ahead on its street.
     pub sees: bool,
     /// Whether its range sensor also sees vehicles of the other street that stand or drive across its way at the first crossing.
@@ -173,6 +175,7 @@ impl Driver {
             speaks: true,
             hears: true,
             says_route: true,
+            says_motion: true,
             sees: false,
             sees_across: false,
             is_blind: false,
@@ -328,7 +331,7 @@ impl Junction {
             if driver.speaks {
                 for message in &heard.all {
                     match message {
-                        Message::Own(own) => said.push((index, *own)),
+                        Message::Own(own) if driver.says_motion => said.push((index, *own)),
                         Message::OwnPass(pass) if driver.says_route => passes.push((index, *pass)),
                         _ => {}
                     }
