@@ -90,11 +90,17 @@ impl Station {
         Known { heard, claims: self.claims() }
     }
 
+    /// Whether it was before the zone.
+    #[must_use]
+    pub fn is_before_zone(&self) -> bool {
+        self.place == Place::BeforeZone
+    }
+
     /// Whether it is certain to keep a pass at this time if it is in the area then. One that was heard before the zone may do anything since
     /// it could have claimed.
     #[must_use]
     pub fn keeps_pass(&self, rules: &Rules, now: GnssTime) -> bool {
-        self.place != Place::BeforeZone || now <= rules.heard_by_all(self.heard)
+        !self.is_before_zone() || now <= rules.heard_by_all(self.heard)
     }
 }
 

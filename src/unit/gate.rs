@@ -249,7 +249,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         let sees = scene.config.range_sensor && (self.entrance.is_committed || is_seen);
         let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && sees;
         let then = now.plus(self.entrance.opens_in);
-        let at = if self.entrance.is_committed { None } else { scene.pass_time(now) };
+        let at = (!self.entrance.is_committed).then_some(now);
         (!is_trusted || !scene.has_pass(index, at) || scene.is_in_area_until(index, now, then)).then_some(stop)
     }
 

@@ -115,7 +115,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Whether the vehicle in a slot keeps passes at the next intersection. One that is forgotten is not trusted any more: the ego's claims
     /// do not wait for it, nor do its claims for the ego. At a time, one that was heard before the zone is trusted only as long as it cannot
     /// have come in since.
-    pub fn has_pass(&self, index: usize, at: Option<GnssTime>) -> bool {
+    pub fn has_pass(&self, index: usize, at: Option<Instant>) -> bool {
         let Some((station, approach)) =
             self.peers.get(index).and_then(|track| track.station()).zip(self.coordination.approach(index))
         else {
@@ -123,7 +123,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         };
         self.passes.known.on_record().any(|known| {
             let is_it = known.station() == station && known.movement == approach.movement;
-            is_it && at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, at))
+            let keeps = |at| self.pass_time(at).is_some_and(|at| known.keeps_pass(&Rules::UNIT, at));
+            is_it && (!known.is_before_zone() || at.is_none_or(keeps))
         })
     }
 
