@@ -69,7 +69,7 @@ pub enum Order {
 /// The own claims at the next intersection.
 #[derive(Clone, Debug)]
 pub struct Own {
-    /// Since when messages name that intersection.
+    /// The stamp of the first message in the zone.
     on_air: Held<GnssTime>,
     /// The stamp of the last message.
     said: Held<GnssTime>,

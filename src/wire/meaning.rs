@@ -47,7 +47,7 @@ macro_rules! meaning {
     (leg) => { "Leg of the intersection by which it comes, by the numbers of the route data." };
     (turn) => { "Its exit there: the number of the exit less that of the leg, modulo 8; 0 is straight on." };
     (intersection) => { "Number of the intersection in the route data." };
-    (arrival) => { "GNSS time at which it entered the intersection's zone, modulo 10485.76 s. It decides the order: earlier goes first." };
+    (arrival) => { "GNSS time since which it comes to the intersection, modulo 10485.76 s; later where it has yielded. It decides the order: earlier goes first." };
     (claim_kind) => { "Whether it takes a station (PredecessorStation) to be just ahead of it in the order, of those whose ways conflict with its own or that are ahead on its leg, takes itself for the first, or does not say." };
     (claim_station) => { "Station that it takes to be just ahead of it in that order. Ignored unless PredecessorKind is station; 0 then." };
     (engaged) => { "Whether the unit shall drive. Send 0 as soon as the driver takes over. 300 ms without a DriverRequest and the unit hands back (Detail request lost)." };

@@ -20,6 +20,8 @@ pub enum Broken {
     HearsNobody,
     /// F4: a vehicle that has been silent for a step is forgotten with its windows, as where its slot is given to another station.
     ForgetsTheSilent,
+    /// F4: a claim is firm whatever vehicles do that were heard before the zone.
+    LeavesOutTheQueue,
     /// F5: a vehicle goes in when the beginning of its stay is covered.
     CoversLess,
     /// F6: a window is shifted and keeps the time at which it was claimed.
@@ -28,7 +30,7 @@ pub enum Broken {
 
 impl Broken {
     /// Every one of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::WaitsLess,
         Self::WaitsNoClocks,
         Self::OutOfRange,
@@ -37,6 +39,7 @@ impl Broken {
         Self::KeepsAll,
         Self::HearsNobody,
         Self::ForgetsTheSilent,
+        Self::LeavesOutTheQueue,
         Self::CoversLess,
         Self::KeepsItsTime,
     ];

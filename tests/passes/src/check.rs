@@ -31,18 +31,19 @@ impl Model for Plan {
                 let next = Vehicle { on_air, ahead, phase: Phase::Before, claims: Default::default(), said: None };
                 [&vehicles[..], &[next]].concat()
             };
-            let choices =
-                || (0..=self.last_comes).flat_map(|on_air| (0..=self.clocks).map(move |ahead| (on_air, ahead)));
+            let choices = || {
+                (self.first_comes()..=self.first_comes() + self.last_comes)
+                    .flat_map(|on_air| (0..=self.clocks).map(move |ahead| (on_air, ahead)))
+            };
             all = all
                 .iter()
                 .flat_map(|vehicles| choices().map(move |(on_air, ahead)| with(vehicles, on_air, ahead)))
                 .collect();
         }
         // Only differences matter, of clocks and of when they come.
-        let is_least =
-            |vehicles: &Vec<Vehicle>, of: fn(&Vehicle) -> u8| vehicles.iter().any(|vehicle| of(vehicle) == 0);
+        let first = self.first_comes();
         all.retain(|vehicles| {
-            is_least(vehicles, |vehicle| vehicle.ahead) && is_least(vehicles, |vehicle| vehicle.on_air)
+            vehicles.iter().any(|vehicle| vehicle.ahead == 0) && vehicles.iter().any(|vehicle| vehicle.on_air == first)
         });
         all.into_iter().map(State::new).collect()
     }

@@ -26,9 +26,10 @@ pub fn pair(number: usize, vehicles: usize) -> (usize, usize) {
 pub fn speak(state: &mut State, plan: &Plan) {
     let now = state.now;
     for index in 0..state.vehicles.len() {
-        let message = is_speaking(&state.vehicles[index], now, plan).then(|| message(state, index, plan));
+        let is_on_air = is_speaking(&state.vehicles[index], now, plan);
+        let message = (is_on_air || plan.queue).then(|| message(state, index, plan));
         let vehicle = &mut state.vehicles[index];
-        vehicle.said = message.is_some().then(|| vehicle.clock(now));
+        vehicle.said = is_on_air.then(|| vehicle.clock(now));
         let last = state.air[index][0].take();
         state.air[index] = [message, if plan.delays { last } else { None }];
     }
@@ -36,8 +37,12 @@ pub fn speak(state: &mut State, plan: &Plan) {
 
 fn message(state: &State, index: usize, plan: &Plan) -> Message {
     let vehicle = &state.vehicles[index];
-    let own =
-        Said { stamp: vehicle.clock(state.now), claims: vehicle.claims, has_left: vehicle.phase == Phase::Beyond };
+    let own = Said {
+        stamp: vehicle.clock(state.now),
+        claims: vehicle.claims,
+        has_left: vehicle.phase == Phase::Beyond,
+        is_before_zone: !is_speaking(vehicle, state.now, plan),
+    };
     let about = |(other, heard): (usize, &Option<Said>)| match other == index {
         true => Some(own),
         false => heard.filter(|_| plan.relay),
@@ -51,7 +56,8 @@ pub fn ways(state: &State, number: usize, plan: &Plan) -> Vec<Comes> {
     let (from, to) = pair(number, state.vehicles.len());
     let both_since = state.vehicles[from].on_air.max(state.vehicles[to].on_air);
     // Who is in the area or beyond it does not heed messages any more.
-    if state.now < both_since || state.vehicles[to].phase != Phase::Before {
+    let are_within_range = plan.queue || state.now >= both_since;
+    if !are_within_range || state.vehicles[to].phase != Phase::Before {
         return vec![Comes::Lost];
     }
     if plan.settles.is_some_and(|settles| state.now >= settles) {
@@ -63,7 +69,7 @@ pub fn ways(state: &State, number: usize, plan: &Plan) -> Vec<Comes> {
     if !is_first_due {
         ways.push(Comes::Lost);
     }
-    let was_within_range = state.now > both_since;
+    let was_within_range = plan.queue && state.now > 0 || state.now > both_since;
     if was_within_range && is_news(state, from, to, 1) {
         ways.push(Comes::Late);
     }

@@ -16,6 +16,7 @@ plans:
   clocks   two vehicles whose clocks differ, which come at different times, with messages that are lost or late
   long     two vehicles with one clock that come at once
   pieces   two vehicles that add a window to the one that they have, and need both for one stay
+  queue    two vehicles that say for a while that they are before the zone
   three    three vehicles that repeat what they know of one another
   settled  two vehicles, and after some time no message is lost any more: everybody has to get through
 

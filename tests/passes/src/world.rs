@@ -35,6 +35,8 @@ pub struct Plan {
     pub delays: bool,
     /// Whether a message repeats what its sender knows of the others.
     pub relay: bool,
+    /// Whether every vehicle first says for a step or longer that it is before the zone. Others hear that, or not.
+    pub queue: bool,
     /// What is done otherwise than the rules say.
     pub broken: Option<Broken>,
 }
@@ -54,6 +56,7 @@ impl Plan {
         entries: 2,
         delays: true,
         relay: false,
+        queue: false,
         broken: None,
     };
 
@@ -62,6 +65,9 @@ impl Plan {
 
     /// Two vehicles that add a window to the one that they have, so that one stay is in two windows.
     pub const PIECES: Self = Self { pieces: PIECES, window: 1, entries: 3, delays: false, until: 5, ..Self::LONG };
+
+    /// Two vehicles that are heard before the zone, or not, and come into it at different times.
+    pub const QUEUE: Self = Self { queue: true, until: 7, ..Self::CLOCKS };
 
     /// Three vehicles.
     pub const THREE: Self = Self {
@@ -80,13 +86,20 @@ impl Plan {
     pub const SETTLED: Self = Self { settles: Some(5), until: 20, ..Self::CLOCKS };
 
     /// All plans, with their names.
-    pub const ALL: [(&str, Self); 5] = [
+    pub const ALL: [(&str, Self); 6] = [
         ("clocks", Self::CLOCKS),
         ("long", Self::LONG),
         ("pieces", Self::PIECES),
+        ("queue", Self::QUEUE),
         ("three", Self::THREE),
         ("settled", Self::SETTLED),
     ];
+
+    /// The first step in which a vehicle may come on air.
+    #[must_use]
+    pub fn first_comes(&self) -> u8 {
+        u8::from(self.queue)
+    }
 
     /// Whether this rule is taken out.
     #[must_use]
@@ -154,13 +167,17 @@ pub struct Said {
     pub claims: [Option<Claim>; PIECES],
     /// Whether it has left the area.
     pub has_left: bool,
+    /// Whether it is before the zone.
+    pub is_before_zone: bool,
 }
 
 impl Said {
     /// As the rules take it; `None` of a vehicle that has left.
     #[must_use]
-    pub fn known(&self) -> Option<(GnssTime, Vec<Claim>)> {
-        (!self.has_left).then(|| (self.stamp, self.claims.iter().flatten().copied().collect()))
+    pub fn known(&self, plan: &Plan) -> Option<(GnssTime, Vec<Claim>)> {
+        let is_left_out = self.has_left || self.is_before_zone && plan.breaks(Broken::LeavesOutTheQueue);
+        let heard = if self.is_before_zone { plan.rules().heard_by_all(self.stamp) } else { self.stamp };
+        (!is_left_out).then(|| (heard, self.claims.iter().flatten().copied().collect()))
     }
 }
 
@@ -211,7 +228,7 @@ impl State {
     #[must_use]
     pub fn known(&self, index: usize, plan: &Plan) -> Vec<(GnssTime, Vec<Claim>)> {
         let (rules, now) = (plan.rules(), self.vehicles[index].clock(self.now));
-        let others = self.heard[index].iter().flatten().filter_map(Said::known);
+        let others = self.heard[index].iter().flatten().filter_map(|said| said.known(plan));
         others
             .filter(|(heard, claims)| {
                 // A slot that is given away forgets the vehicle with its windows.

@@ -32,6 +32,11 @@ fn two_vehicles_that_add_windows_are_never_in_the_area_at_once() {
 }
 
 #[test]
+fn two_vehicles_that_come_into_the_zone_are_never_in_the_area_at_once() {
+    holds(Plan::QUEUE, 1_000_000);
+}
+
+#[test]
 fn three_vehicles_are_never_in_the_area_at_once() {
     holds(Plan::THREE, 500_000);
 }
@@ -52,7 +57,12 @@ fn the_checker_finds_who_has_not_got_through() {
 fn without_any_one_of_the_rules_two_vehicles_meet_in_the_area() {
     for broken in Broken::ALL {
         let is_of_clocks = matches!(broken, Broken::WaitsNoClocks | Broken::PadsNoClocks);
-        let plan = Plan { broken: Some(broken), ..if is_of_clocks { Plan::CLOCKS } else { Plan::LONG } };
+        let plan = match broken {
+            Broken::LeavesOutTheQueue => Plan::QUEUE,
+            _ if is_of_clocks => Plan::CLOCKS,
+            _ => Plan::LONG,
+        };
+        let plan = Plan { broken: Some(broken), ..plan };
         assert!(plan.checker().threads(2).spawn_bfs().join().discovery(APART).is_some(), "{broken:?}");
     }
 }
