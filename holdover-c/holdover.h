@@ -156,6 +156,8 @@ typedef int32_t holdover_status_t;
 #define HOLDOVER_MAP_PATH ((holdover_status_t)-20)
 // Between two conflict areas there is no room for the ego, which waits before each of them.
 #define HOLDOVER_MAP_CLOSE ((holdover_status_t)-21)
+// Of two movements only one conflicts with the other, two of one leg conflict, or two to one exit do not.
+#define HOLDOVER_MAP_CONFLICTS ((holdover_status_t)-22)
 // `base_id` is above 0x740.
 #define HOLDOVER_CONFIG_BASE_ID ((holdover_status_t)-32)
 // A switch is neither 0 nor 1.
