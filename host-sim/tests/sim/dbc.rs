@@ -238,6 +238,7 @@ fn expected_of(message: &Message) -> Expected {
                 .value("Leg", p.movement.leg)
                 .value("Turn", (8 + p.movement.exit - p.movement.leg) % 8)
                 .either("Left", p.left.map(f64::from), "none")
+                .name("Zone", if p.is_before_zone { "before the zone" } else { "in the zone" })
                 .value("PassStamp", f64::from(p.stamp.0) / 100.0)
                 .value("Arrival", f64::from(p.arrival) / 100.0);
             p.claims.iter().enumerate().fold(e, |e, (piece, claimed)| {
