@@ -66,7 +66,7 @@ fn those_who_wait_before_the_zone_hold_up_nobody_however_many_they_are() {
 }
 
 #[test]
-fn one_before_the_zone_that_falls_silent_holds_up_claims_that_count_after_it_could_have_come_in() {
+fn one_before_the_zone_that_falls_silent_holds_up_no_claim_that_counts_before_it_could_come_in() {
     let free = leaves_past(0, true, i64::MAX).expect("nobody is there");
     // The ego's claim counts 4.56 s after its first message.
     let left = |silent_from| leaves_past(1, true, silent_from);
