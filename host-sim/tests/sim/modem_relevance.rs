@@ -210,6 +210,29 @@ fn who_was_put_out_of_its_slot_is_heard_to_have_left() {
 }
 
 #[test]
+fn who_was_put_out_of_its_slot_is_heard_to_have_left_if_the_next_station_falls_silent_before_it_is_relayed() {
+    let mut bus = Bus::new();
+    for station in 1..PEERS as u8 {
+        assert!(bus.hear(0.0, &message(station, Some(route(5, 0, 10 * i32::from(station))))));
+    }
+    // The first one takes the slot in reserve, and the farthest one makes room. The second one gets that slot, which rests.
+    assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 80)))));
+    assert!(!bus.hear(0.2, &message(61, Some(route(4, 2, 80)))));
+    let out: Vec<u8> = (1..PEERS as u8)
+        .filter(|station| !bus.hear(0.3, &message(*station, Some(route(5, 0, 10 * i32::from(*station))))))
+        .collect();
+    assert_eq!(out.len(), 2, "{out:?}");
+    for (from_s, station) in [(4.0, out[0]), (6.0, out[1])] {
+        let heard: Vec<bool> = (0..6)
+            .map(|tenths| bus.hear(from_s + 0.1 * f64::from(tenths), &message(station, Some(route(5, 0, -41)))))
+            .collect();
+        assert_eq!(heard, [true, true, true, true, false, false], "{station}");
+    }
+    // The second one was put out for that, and has a slot again.
+    assert!((0..30).any(|tenths| bus.hear(7.0 + 0.1 * f64::from(tenths), &message(61, Some(route(4, 2, 80))))));
+}
+
+#[test]
 fn who_is_leaving_the_intersection_keeps_its_slot() {
     let mut bus = Bus::new();
     for station in 1..PEERS as u8 {

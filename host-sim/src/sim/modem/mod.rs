@@ -14,8 +14,8 @@
 //! unit takes the new station for an error.
 //!
 //! An irrelevant station is not relayed, even if a slot is free. A station in a slot that becomes irrelevant is still
-//! relayed until the unit has heard that. So is a station that lost its slot, as long as no other station has used that
-//! slot: the unit still has it at its last place, and may be waiting for it.
+//! relayed until the unit has heard that. So is a station that lost its slot, as long as no other station has been relayed
+//! in it: the unit still has it at its last place, and may be waiting for it.
 //!
 //! *Driving parameters* are relayed when a station gets its slot (on a route with its first messages) and when they
 //! change. Otherwise they are relayed every [`PARAMETERS_EVERY_S`], so that those of all stations fit the bus.
@@ -116,7 +116,7 @@ impl Placed {
 pub struct Relay {
     sender: Sender<PEERS>,
     slots: Vec<Option<Tenant>>,
-    /// The last station of each free slot: the unit still has it there.
+    /// The station that was relayed last in a slot in which no other one has been relayed since: the unit still has it there.
     left: Vec<Option<Tenant>>,
     /// Time from which a free slot may be used.
     rested_s: Vec<f64>,
@@ -192,6 +192,7 @@ impl Relay {
             Some(tenant) if at_s >= tenant.from_s - 1e-9 => {
                 tenant.relayed_s = at_s;
                 tenant.relayed = true;
+                self.left[slot] = None;
                 tenant.gone = if rank == Rank::Irrelevant { tenant.gone.saturating_add(1) } else { 0 };
             }
             _ => return,
@@ -220,8 +221,15 @@ impl Relay {
     /// Frees the slot of a station that has become irrelevant, once the unit has heard that.
     fn dismiss(&mut self, slot: usize, at_s: f64) {
         if self.slots[slot].is_some_and(|tenant| tenant.gone >= NEWS) {
-            self.left[slot] = self.slots[slot].take();
+            self.vacate(slot);
             self.rested_s[slot] = at_s + SLOT_REUSE_S;
+        }
+    }
+
+    /// Takes a slot from its station. If that one has not been relayed yet, the unit still has the one before it.
+    fn vacate(&mut self, slot: usize) {
+        if let Some(tenant) = self.slots[slot].take().filter(|tenant| tenant.relayed) {
+            self.left[slot] = Some(tenant);
         }
     }
 
@@ -252,7 +260,9 @@ impl Relay {
                 return None;
             }
         }
-        if let Some(slot) = self.left.iter().position(held) {
+        // One that only has to say that it has left does so before the next station is relayed in its slot.
+        let is_free = |slot: &usize| self.slots[*slot].is_none() || rank == Rank::Irrelevant;
+        if let Some(slot) = self.left.iter().position(held).filter(is_free) {
             self.slots[slot] = self.left[slot].take().map(|tenant| Tenant { from_s: at_s, ..tenant });
             return Some(slot);
         }
@@ -266,7 +276,8 @@ impl Relay {
             }
             (None, _) => self.least_relevant(rank, at_s, front)?,
         };
-        self.left[slot] = None;
+        self.vacate(slot);
+        self.left.iter_mut().filter(|tenant| held(tenant)).for_each(|tenant| *tenant = None);
         self.slots[slot] = Some(Tenant {
             station,
             relayed_s: at_s,
@@ -296,7 +307,7 @@ impl Relay {
             return true;
         }
         let Some((slot, rested_s)) = self.least_relevant(rank, at_s, front) else { return false };
-        self.left[slot] = self.slots[slot].take();
+        self.vacate(slot);
         self.rested_s[slot] = rested_s;
         true
     }
