@@ -29,7 +29,8 @@ pub struct Choice {
     pub leading: Slots,
     /// Those of `leading` that were out of the radio's reach when they were heard last.
     pub beyond: Slots,
-    /// The vehicles that are estimated to be out of reach far ahead, and have not been heard since. The ego does not follow them.
+    /// The vehicles that are out of reach far ahead, or are not in the area where they are estimated to be, and have not been heard since.
+    /// The ego does not go by their estimates.
     pub lost: Slots,
 }
 

@@ -342,7 +342,7 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.lane.passed(index)
     }
 
-    /// Notes the vehicles that are out of reach.
+    /// Notes the vehicles that are not where they are estimated to be.
     pub(crate) fn note_lost(&mut self, lost: Slots) {
         self.choice.lost = lost;
     }

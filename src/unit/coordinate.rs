@@ -100,7 +100,9 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
+/// The peers that have been silent for longer than a holdover and are not where they are estimated to be. One that is estimated to drive
+/// on far ahead is out of reach; if it stood when it was heard last, it still stands there. One that is estimated to be in the next conflict
+/// area has left it, or never came, if the ego sees that the area is empty.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -112,7 +114,8 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             let estimate = scene.rear(index, now);
             estimate.is_some_and(|(reading, rear)| rear > front.ahead(FAR_AHEAD) && reading.speed > Speed::ZERO)
         };
-        lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
+        let is_elsewhere = || drives_off() || scene.is_missed_in_area(index, now);
+        lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || is_elsewhere()));
     }
     lost
 }

@@ -87,6 +87,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
             };
             crossing.intersection.conflict(crossing.movement, approach.movement)
                 && (coordination.choice().ahead.contains(index) || is_inside())
+                && !coordination.choice().lost.contains(index)
                 && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end.ahead(approach.shift))
         };
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))

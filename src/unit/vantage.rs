@@ -55,7 +55,7 @@ impl Candidate {
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
     /// Whether the ego may follow a peer. The gate minds the peer all the same. A vehicle that was far ahead when it was heard last has
     /// got out of reach, and no vehicle is ahead then as far as it matters. This also holds if that vehicle is estimated to have stopped
-    /// since, behind a vehicle that is not heard any more.
+    /// since, behind a vehicle that is not heard any more. Nor does it follow one that the ego does not see where it is estimated to be.
     pub fn is_heeded(&self, peer: &Candidate) -> bool {
         self.scene.is_in_reach(peer.index, self.at)
             || !self.scene.coordination.choice().lost.contains(peer.index) && !self.is_far_ahead(peer)

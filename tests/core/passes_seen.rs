@@ -2,7 +2,7 @@
 //! vehicle: it does not go in, also if the sensor sees nothing for a moment then. A sensor that says nothing is not relied on.
 
 use crate::rig::config;
-use crate::rig::junction::{CROSSING, Driver, Junction, is_on_point};
+use crate::rig::junction::{CROSSING, Driver, HALF, Junction, is_on_point};
 use holdover::Config;
 
 fn sees(station: u8, way: usize, at: f64, speed: f64) -> Driver {
@@ -112,4 +112,32 @@ fn gets(is_blind: bool) -> f64 {
 fn a_pass_of_another_is_trusted_only_while_the_own_sensor_says_something() {
     assert!(gets(false) > CROSSING + 50.0, "{}", gets(false));
     assert!(gets(true) < CROSSING, "{}", gets(true));
+}
+
+/// How far the ego gets in 60 s. Another vehicle stood in the area, without a word of how it would drive, when the modem gave its slot
+/// away. It left 1 s later. Its passes are heard all the time, and the ego's sensor shows that the area is empty, or nothing.
+fn gets_past_one_without_slot(is_blind: bool) -> f64 {
+    let mut ego = sees(3, 0, 30.0, 10.0);
+    ego.body.position = CROSSING - 190.0;
+    let mut other = sees(2, 1, CROSSING - 140.0, 10.0);
+    other.says_plans = false;
+    let (mut junction, mut ticks) = (Junction::new(vec![ego, other]), 0);
+    junction.run(60.0, |junction| {
+        let [ego, other] = &mut junction.drivers[..] else { panic!("two") };
+        ticks += u32::from(other.body.position > CROSSING - 1.0);
+        if (1..400).contains(&ticks) {
+            (other.body.speed, other.body.acceleration) = (0.0, 0.0);
+        }
+        other.says_motion = ticks < 300;
+        ego.is_blind = is_blind && ticks > 500;
+        assert!(!(ego.is_inside() && other.is_inside()));
+    });
+    junction.drivers[0].body.position
+}
+
+#[test]
+fn an_old_estimate_in_the_area_holds_the_ego_only_while_it_does_not_see_that_the_area_is_empty() {
+    let [sees, is_blind] = [false, true].map(gets_past_one_without_slot);
+    assert!(sees > CROSSING + 50.0, "{sees}");
+    assert!(is_blind < CROSSING - HALF, "{is_blind}");
 }

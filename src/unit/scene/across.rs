@@ -3,6 +3,7 @@
 
 use super::Scene;
 use crate::envelope;
+use crate::model::Reading;
 use crate::model::bound::Bound;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
@@ -55,6 +56,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         (0..PEERS).any(|index| self.was_heard(index, now) && is_inside(index) && self.may_be_in_area(index, now))
     }
 
+    /// Whether a peer whose way crosses the ego's is estimated to be in the next conflict area, and the ego's sensor sees that nobody is.
+    #[cold]
+    pub fn is_missed_in_area(&self, index: usize, now: Instant) -> bool {
+        let is_there = |([begins, ends], (reading, rear)): ([Position; 2], (Reading, Position))| {
+            reading.position >= begins && rear <= ends
+        };
+        self.crosses_next(index)
+            && self.area_of(index).zip(self.rear(index, now)).is_some_and(is_there)
+            && self
+                .coordination
+                .end_of(self.coordination.next())
+                .is_some_and(|ends| self.ranging.is_free_up_to(ends, now))
+    }
+
     fn was_heard(&self, index: usize, now: Instant) -> bool {
         let silence = self.peers.get(index).and_then(|track| track.link().silence(now));
         silence.is_some_and(|silence| silence <= JUST_NOW)
@@ -65,10 +80,14 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let is_there = |([begins, ends], (rear, bound)): ([Position; 2], (Position, Bound))| {
             rear <= ends && bound.highest_position() >= begins
         };
-        let crosses = self.coordination.approach(index).zip(self.coordination.crossing()).is_some_and(|(peer, own)| {
+        self.crosses_next(index) && self.area_of(index).zip(self.near_rear(index, at)).is_some_and(is_there)
+    }
+
+    /// Whether a peer's way crosses the ego's at the next intersection.
+    fn crosses_next(&self, index: usize) -> bool {
+        self.coordination.approach(index).zip(self.coordination.crossing()).is_some_and(|(peer, own)| {
             self.coordination.is_here(peer) && own.intersection.conflict(own.movement, peer.movement)
-        });
-        crosses && self.area_of(index).zip(self.near_rear(index, at)).is_some_and(is_there)
+        })
     }
 
     /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, and the ego has to be able to

@@ -124,6 +124,8 @@ pub struct Driver {
     pub says_route: bool,
     /// Whether it says how it moves, and the others give it a slot.
     pub says_motion: bool,
+    /// Whether it says how it will drive.
+    pub says_plans: bool,
     /// Whether its range sensor sees the nearest vehicle ahead on its street.
     pub sees: bool,
     /// Whether its range sensor also sees vehicles of the other street that stand or drive across its way at the first crossing.
@@ -176,6 +178,7 @@ impl Driver {
             hears: true,
             says_route: true,
             says_motion: true,
+            says_plans: true,
             sees: false,
             sees_across: false,
             is_blind: false,
@@ -331,6 +334,7 @@ impl Junction {
             if driver.speaks {
                 for message in &heard.all {
                     match message {
+                        Message::Own(Said::Horizon(_) | Said::DrivingParameters(_)) if !driver.says_plans => {}
                         Message::Own(own) if driver.says_motion => said.push((index, *own)),
                         Message::OwnPass(pass) if driver.says_route => passes.push((index, *pass)),
                         _ => {}

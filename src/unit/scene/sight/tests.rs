@@ -78,6 +78,26 @@ fn a_sensor_is_relied_on_for_a_quarter_of_a_second_after_a_view_and_no_farther_t
 }
 
 #[test]
+fn only_the_last_view_shows_that_a_place_is_free() {
+    let place = Position::from_mm(40_000);
+    let mut ranging = Ranging::new();
+    assert!(!ranging.is_free_up_to(place, at(0)));
+    ranging.see_nobody(&sight(100, 41, 0));
+    assert!(ranging.is_free_up_to(place, at(350)) && !ranging.is_free_up_to(place, at(351)));
+    // One that crosses, and was heard, is not kept.
+    ranging.note_seen(at(200));
+    assert!(!ranging.is_free_up_to(place, at(200)));
+    for (millis, metres, is_free) in [(300, 39, false), (400, 41, true)] {
+        ranging.note_seen(at(millis));
+        ranging.see(sight(millis, metres, 0));
+        assert_eq!(ranging.is_free_up_to(place, at(millis)), is_free, "{metres} m");
+    }
+    assert!(ranging.is_free_up_to(place, at(650)) && !ranging.is_free_up_to(place, at(651)));
+    ranging.see_nobody(&sight(500, 39, 0));
+    assert!(!ranging.is_free_up_to(place, at(660)));
+}
+
+#[test]
 fn one_that_crosses_is_no_view_of_the_vehicle_ahead() {
     let mut ranging = Ranging::new();
     ranging.see_crossing(sight(50, 10, 0));
