@@ -29,9 +29,11 @@ pub struct Choice {
     pub leading: Slots,
     /// Those of `leading` that were out of the radio's reach when they were heard last.
     pub beyond: Slots,
-    /// The vehicles that are out of reach far ahead, or are not in the area where they are estimated to be, and have not been heard since.
-    /// The ego does not go by their estimates.
+    /// The vehicles that are estimated to be out of reach far ahead, and have not been heard since. The ego does not follow them.
     pub lost: Slots,
+    /// The vehicles that are estimated to be in the next conflict area, by estimates that are older than a holdover, and which the ego sees
+    /// not to be there. It does not go by these estimates.
+    pub missed: Slots,
 }
 
 impl Choice {
@@ -48,6 +50,7 @@ impl Choice {
         leading: Slots::NONE,
         beyond: Slots::NONE,
         lost: Slots::NONE,
+        missed: Slots::NONE,
     };
 
     /// Another station has this slot now.
@@ -61,6 +64,7 @@ impl Choice {
         self.leading.set(index, false);
         self.beyond.set(index, false);
         self.lost.set(index, false);
+        self.missed.set(index, false);
     }
 }
 

@@ -342,9 +342,9 @@ impl<const PEERS: usize> Coordination<PEERS> {
         self.lane.passed(index)
     }
 
-    /// Notes the vehicles that are not where they are estimated to be.
-    pub(crate) fn note_lost(&mut self, lost: Slots) {
-        self.choice.lost = lost;
+    /// Notes the vehicles that are out of reach, and those that are not in the area where they are estimated to be.
+    pub(crate) fn note_lost(&mut self, lost: Slots, missed: Slots) {
+        (self.choice.lost, self.choice.missed) = (lost, missed);
     }
 
     /// How gently the ego may brake for a peer with this approach, with the ego's front bumper at `front`, at this speed, and with `next`

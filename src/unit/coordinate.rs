@@ -53,7 +53,7 @@ pub(super) fn review<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     if scene.coordination.review(now, scene.config.station, &present, scene.has_slot_for_all(now)) {
         health.count(Cause::Overlooked);
     }
-    scene.coordination.note_lost(lost(scene, now, front));
+    scene.coordination.note_lost(lost(scene, now, front), missed(scene, now, front));
     choose(scene, now, front, speed, nearest);
     lane::note(scene, now, front);
 }
@@ -100,9 +100,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// The peers that have been silent for longer than a holdover and are not where they are estimated to be. One that is estimated to drive
-/// on far ahead is out of reach; if it stood when it was heard last, it still stands there. One that is estimated to be in the next conflict
-/// area has left it, or never came, if the ego sees that the area is empty.
+/// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -114,10 +112,25 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             let estimate = scene.rear(index, now);
             estimate.is_some_and(|(reading, rear)| rear > front.ahead(FAR_AHEAD) && reading.speed > Speed::ZERO)
         };
-        let is_elsewhere = || drives_off() || scene.is_missed_in_area(index, now);
-        lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || is_elsewhere()));
+        lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
     }
     lost
+}
+
+/// The peers that have been silent for longer than a holdover and are estimated to be in the next conflict area, before which the ego is and
+/// where its sensor sees nobody. They have left it, or have not come.
+#[inline(never)] // hardly ever, and the review is larger with it
+fn missed<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    now: Instant,
+    front: Position,
+) -> Slots {
+    let mut missed = Slots::NONE;
+    if scene.config.range_sensor && scene.sees_empty_area(now, front) {
+        let is_missed = |index| !scene.is_in_reach(index, now) && scene.is_estimated_in_area(index, now);
+        (0..PEERS).for_each(|index| missed.set(index, is_missed(index)));
+    }
+    missed
 }
 
 /// Chooses the vehicle that the ego follows from now on: of those that it lets pass first, and the vehicle just ahead on the leg, the one

@@ -67,7 +67,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     /// Where the ego waits for a vehicle that crosses its way: before the area. The vehicle is ahead in the order or already in the next
     /// conflict area, and is estimated not to have left the area by the time that the ego would be there. The law alone is not enough. It
     /// looks at one vehicle only, and only once that vehicle has been announced. It also starts early, and from a stand the
-    /// ego is in the area at once.
+    /// ego is in the area at once. The ego does not wait for a vehicle that it sees not to be where it is estimated to be.
     fn passes_first(&self) -> Option<Position> {
         let coordination = &self.scene.coordination;
         let (crossing, line) = (coordination.crossing()?, self.scene.area_begins()?);
@@ -87,7 +87,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
             };
             crossing.intersection.conflict(crossing.movement, approach.movement)
                 && (coordination.choice().ahead.contains(index) || is_inside())
-                && !coordination.choice().lost.contains(index)
+                && !self.scene.is_missed(index, self.at)
                 && self.scene.rear(index, then).is_some_and(|(_, rear)| rear < end.ahead(approach.shift))
         };
         (0..PEERS).any(is_due).then(|| line.ahead(LINE.negated()))

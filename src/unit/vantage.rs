@@ -55,10 +55,12 @@ impl Candidate {
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
     /// Whether the ego may follow a peer. The gate minds the peer all the same. A vehicle that was far ahead when it was heard last has
     /// got out of reach, and no vehicle is ahead then as far as it matters. This also holds if that vehicle is estimated to have stopped
-    /// since, behind a vehicle that is not heard any more. Nor does it follow one that the ego does not see where it is estimated to be.
+    /// since, behind a vehicle that is not heard any more. A vehicle that is estimated in an area which the ego sees to be empty is not
+    /// there.
     pub fn is_heeded(&self, peer: &Candidate) -> bool {
-        self.scene.is_in_reach(peer.index, self.at)
-            || !self.scene.coordination.choice().lost.contains(peer.index) && !self.is_far_ahead(peer)
+        let choice = self.scene.coordination.choice();
+        let is_elsewhere = || choice.lost.contains(peer.index) || choice.missed.contains(peer.index);
+        self.scene.is_in_reach(peer.index, self.at) || !is_elsewhere() && !self.is_far_ahead(peer)
     }
 
     fn is_far_ahead(&self, peer: &Candidate) -> bool {

@@ -209,27 +209,59 @@ fn who_was_put_out_of_its_slot_is_heard_to_have_left() {
     assert_eq!(heard, [true, true, true, true, false, false]);
 }
 
-#[test]
-fn who_was_put_out_of_its_slot_is_heard_to_have_left_if_the_next_station_falls_silent_before_it_is_relayed() {
-    let mut bus = Bus::new();
-    for station in 1..PEERS as u8 {
-        assert!(bus.hear(0.0, &message(station, Some(route(5, 0, 10 * i32::from(station))))));
-    }
-    // The first one takes the slot in reserve, and the farthest one makes room. The second one gets that slot, which rests.
+/// The stations that are put out for 60 and 61, and the slots in which the unit has them. Station 60 has the slot that was in reserve, and the
+/// slot of 61 rests.
+fn put_out(bus: &mut Bus) -> Vec<(u8, u8)> {
+    let at = |station: u8| message(station, Some(route(5, 0, 10 * i32::from(station))));
+    let slots: Vec<(u8, u8)> =
+        (1..PEERS as u8).map(|station| (station, bus.slot(0.0, &at(station)).unwrap())).collect();
     assert!(bus.hear(0.1, &message(60, Some(route(4, 0, 80)))));
     assert!(!bus.hear(0.2, &message(61, Some(route(4, 2, 80)))));
-    let out: Vec<u8> = (1..PEERS as u8)
-        .filter(|station| !bus.hear(0.3, &message(*station, Some(route(5, 0, 10 * i32::from(*station))))))
-        .collect();
+    slots.into_iter().filter(|(station, _)| !bus.hear(0.3, &at(*station))).collect()
+}
+
+/// The slots in which a station is relayed that has left, ten times a second from this time on.
+fn heard_to_have_left(bus: &mut Bus, from_s: f64, station: u8) -> Vec<Option<u8>> {
+    let at_s = |tenths| from_s + 0.1 * f64::from(tenths);
+    (0..6).map(|tenths| bus.slot(at_s(tenths), &message(station, Some(route(5, 0, -41))))).collect()
+}
+
+#[test]
+fn who_was_put_out_is_heard_to_have_left_if_the_next_station_falls_silent_before_it_is_relayed() {
+    let mut bus = Bus::new();
+    let out = put_out(&mut bus);
     assert_eq!(out.len(), 2, "{out:?}");
-    for (from_s, station) in [(4.0, out[0]), (6.0, out[1])] {
-        let heard: Vec<bool> = (0..6)
-            .map(|tenths| bus.hear(from_s + 0.1 * f64::from(tenths), &message(station, Some(route(5, 0, -41)))))
-            .collect();
-        assert_eq!(heard, [true, true, true, true, false, false], "{station}");
+    for (from_s, (station, slot)) in [4.0, 6.0].into_iter().zip(out) {
+        let (said, over) = (Some(slot), None);
+        let heard = heard_to_have_left(&mut bus, from_s, station);
+        assert_eq!(heard, [said, said, said, said, over, over], "{station}");
     }
-    // The second one was put out for that, and has a slot again.
+    // The next station was put out for that, and has a slot again.
     assert!((0..30).any(|tenths| bus.hear(7.0 + 0.1 * f64::from(tenths), &message(61, Some(route(4, 2, 80))))));
+}
+
+#[test]
+fn who_was_put_out_does_not_keep_the_next_station_from_its_slot_while_that_one_is_heard() {
+    let mut bus = Bus::new();
+    let out = put_out(&mut bus);
+    let next = message(61, Some(route(4, 2, 80)));
+    let rested = (0..30).map(|tenths| 0.4 + 0.1 * f64::from(tenths)).find_map(|at_s| {
+        let others = out.iter().map(|(station, _)| message(*station, Some(route(5, 0, -41))));
+        others.for_each(|other| _ = bus.slot(at_s, &other));
+        Some((at_s, bus.slot(at_s, &next)?))
+    });
+    let (at_s, slot) = rested.unwrap();
+    assert!(at_s <= SLOT_REUSE_S + 0.31 && out.iter().any(|(_, put_out)| *put_out == slot), "{at_s} s, {slot}");
+}
+
+#[test]
+fn who_gets_another_slot_and_loses_it_before_it_is_relayed_is_heard_to_have_left_where_the_unit_has_it() {
+    let mut bus = Bus::new();
+    let (station, slot) = put_out(&mut bus)[0];
+    // It comes near, gets a slot that rests, and turns off.
+    assert!(!bus.hear(0.4, &message(station, Some(route(4, 3, 10)))));
+    let heard = heard_to_have_left(&mut bus, 1.7, station);
+    assert_eq!(heard[..4], [Some(slot); 4]);
 }
 
 #[test]

@@ -56,18 +56,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         (0..PEERS).any(|index| self.was_heard(index, now) && is_inside(index) && self.may_be_in_area(index, now))
     }
 
-    /// Whether a peer whose way crosses the ego's is estimated to be in the next conflict area, and the ego's sensor sees that nobody is.
-    #[cold]
-    pub fn is_missed_in_area(&self, index: usize, now: Instant) -> bool {
+    /// Whether the ego's sensor sees that nobody is in the next conflict area, with its front bumper before that area.
+    pub fn sees_empty_area(&self, now: Instant, front: Position) -> bool {
+        let ends = self.coordination.end_of(self.coordination.next());
+        let is_before = self.area_begins().is_some_and(|begins| front <= begins);
+        is_before && ends.is_some_and(|ends| self.ranging.is_free_up_to(ends, now))
+    }
+
+    /// Whether a peer whose way crosses the ego's is estimated to be in the next conflict area.
+    #[cold] // only where a peer has been silent for longer than a holdover
+    pub fn is_estimated_in_area(&self, index: usize, now: Instant) -> bool {
         let is_there = |([begins, ends], (reading, rear)): ([Position; 2], (Reading, Position))| {
             reading.position >= begins && rear <= ends
         };
-        self.crosses_next(index)
-            && self.area_of(index).zip(self.rear(index, now)).is_some_and(is_there)
-            && self
-                .coordination
-                .end_of(self.coordination.next())
-                .is_some_and(|ends| self.ranging.is_free_up_to(ends, now))
+        self.crosses_next(index) && self.area_of(index).zip(self.rear(index, now)).is_some_and(is_there)
+    }
+
+    /// Whether a peer is not in the area where it is estimated to be, and has not been heard since that was seen.
+    pub fn is_missed(&self, index: usize, now: Instant) -> bool {
+        self.coordination.choice().missed.contains(index) && !self.is_in_reach(index, now)
     }
 
     fn was_heard(&self, index: usize, now: Instant) -> bool {

@@ -171,11 +171,11 @@ impl Ranging {
         self.seen.get().is_some_and(is_young) || self.free.get().is_some_and(|(at, near)| is_young(at) && near >= place)
     }
 
-    /// Whether the sensor sees that no vehicle is nearer than this place: the last view shows nobody, or one that is beyond it.
+    /// Whether the last view says that nobody is nearer than this place. A view of a vehicle beyond it does not say so of what is beside
+    /// the ego's path.
     pub(in crate::unit) fn is_free_up_to(&self, place: Position, now: Instant) -> bool {
         let is_last = |at: Instant| now.since(at) <= BLIND && self.seen.get().is_none_or(|seen| seen <= at);
         self.free.get().is_some_and(|(at, near)| is_last(at) && near >= place)
-            || self.newest.get().is_some_and(|sight| is_last(sight.at) && sight.bound.lowest_position() >= place)
     }
 
     /// Takes in that no vehicle is nearer than the near end of a place. Vehicles that would certainly be nearer have gone.

@@ -181,7 +181,7 @@ impl Relay {
             return;
         }
         let Some(slot) = self.slot_of(station, rank, at_s, &front) else {
-            self.turned_away += 1;
+            self.turned_away += u64::from(rank != Rank::Irrelevant);
             return;
         };
         let says_where = message.route.is_some() || !self.course.is_on_route();
@@ -193,6 +193,7 @@ impl Relay {
                 tenant.relayed_s = at_s;
                 tenant.relayed = true;
                 self.left[slot] = None;
+                self.left.iter_mut().for_each(|left| *left = left.filter(|left| left.station != station));
                 tenant.gone = if rank == Rank::Irrelevant { tenant.gone.saturating_add(1) } else { 0 };
             }
             _ => return,
@@ -250,21 +251,28 @@ impl Relay {
 
     fn slot_of(&mut self, station: StationHash, rank: Rank, at_s: f64, front: &Front) -> Option<usize> {
         let held = |tenant: &Option<Tenant>| tenant.is_some_and(|tenant| tenant.station == station);
+        let has_left = rank == Rank::Irrelevant;
+        let before = self.left.iter().position(held);
+        if let Some(slot) = before.filter(|slot| has_left && self.is_idle(*slot, at_s)) {
+            // The unit has it there, and not in a slot in which it has not been relayed yet.
+            self.slots.iter_mut().filter(|tenant| held(tenant)).for_each(|tenant| *tenant = None);
+            return Some(self.take_back(slot, at_s));
+        }
         if let Some(slot) = self.slots.iter().position(held) {
             return Some(slot);
+        }
+        if has_left {
+            return None;
         }
         if self.course.is_on_route() {
             let has_listened = self.begun_s.is_some_and(|begun_s| at_s - begun_s >= LISTENS_S - 1e-9);
             let is_served = has_listened && self.is_among_the_first(rank, at_s, front);
-            if rank != Rank::Irrelevant && (!is_served || !self.makes_room(rank, at_s, front)) {
+            if !is_served || !self.makes_room(rank, at_s, front) {
                 return None;
             }
         }
-        // One that only has to say that it has left does so before the next station is relayed in its slot.
-        let is_free = |slot: &usize| self.slots[*slot].is_none() || rank == Rank::Irrelevant;
-        if let Some(slot) = self.left.iter().position(held).filter(is_free) {
-            self.slots[slot] = self.left[slot].take().map(|tenant| Tenant { from_s: at_s, ..tenant });
-            return Some(slot);
+        if let Some(slot) = before.filter(|slot| self.slots[*slot].is_none()) {
+            return Some(self.take_back(slot, at_s));
         }
         let mut free = self.slots.iter().enumerate().filter(|(_, tenant)| tenant.is_none());
         let (slot, from_s) = match (free.next(), free.next()) {
@@ -277,7 +285,6 @@ impl Relay {
             (None, _) => self.least_relevant(rank, at_s, front)?,
         };
         self.vacate(slot);
-        self.left.iter_mut().filter(|tenant| held(tenant)).for_each(|tenant| *tenant = None);
         self.slots[slot] = Some(Tenant {
             station,
             relayed_s: at_s,
@@ -288,6 +295,19 @@ impl Relay {
             parameters: None,
         });
         Some(slot)
+    }
+
+    /// Whether nobody will be relayed in a slot soon: it is free, or its station is not heard.
+    fn is_idle(&self, slot: usize, at_s: f64) -> bool {
+        let is_heard = |placed: &Placed| at_s - placed.at_s < HEARD_S;
+        let of = |station| self.places.iter().filter(move |placed| placed.station == station);
+        self.slots[slot].is_none_or(|tenant| !of(tenant.station).any(is_heard))
+    }
+
+    /// Gives a slot back to the station that the unit has there.
+    fn take_back(&mut self, slot: usize, at_s: f64) -> usize {
+        self.slots[slot] = self.left[slot].take().map(|tenant| Tenant { from_s: at_s, ..tenant });
+        slot
     }
 
     /// Whether a station of this rank is relevant enough for a slot, besides the slot in reserve: few enough of the
