@@ -117,18 +117,19 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     lost
 }
 
-/// The peers that have been silent for longer than a holdover and are estimated to be in the next conflict area, before which the ego is and
-/// where its sensor sees nobody. They have left it, or have not come.
+/// The peers that have been silent for longer than a holdover and are estimated to be in the next conflict area, where the ego's sensor sees
+/// nobody. They have left it, or have not come. Once in the area itself, the ego goes by what it saw from before it.
 #[inline(never)] // hardly ever, and the review is larger with it
 fn missed<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     front: Position,
 ) -> Slots {
-    let mut missed = Slots::NONE;
-    if scene.config.range_sensor && scene.sees_empty_area(now, front) {
-        let is_missed = |index| !scene.is_in_reach(index, now) && scene.is_estimated_in_area(index, now);
-        (0..PEERS).for_each(|index| missed.set(index, is_missed(index)));
+    let (before, mut missed) = (scene.coordination.choice().missed, Slots::NONE);
+    let is_in_area = scene.area_begins().is_some_and(|begins| front > begins);
+    let is_empty = !is_in_area && scene.sees_empty_area(now);
+    for index in (0..PEERS).filter(|index| if is_in_area { before.contains(*index) } else { is_empty }) {
+        missed.set(index, !scene.is_in_reach(index, now) && scene.is_estimated_in_area(index, now));
     }
     missed
 }

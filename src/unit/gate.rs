@@ -2,7 +2,7 @@
 //! leaves.
 
 use super::lane;
-use super::pass::{self, Area, Range};
+use super::pass::{self, Area, Range, Stay};
 use super::scene::Scene;
 use crate::config::Envelope;
 use crate::envelope::{self, Obstacle, Reckoning, Spare};
@@ -11,7 +11,7 @@ use crate::model::State;
 use crate::model::bound::{AccelerationRange, Bound};
 use crate::parameters::{DEFAULT_LENGTH, POSITION_ROUNDING, SPEED_ROUNDING};
 use crate::peers::Sample;
-use crate::time::{Duration, Instant};
+use crate::time::{Duration, GnssTime, Instant};
 use crate::units::{Acceleration, Distance, Position};
 
 /// The gate's memory: the ego as the gate carries it on by the commands alone.
@@ -33,6 +33,9 @@ pub(super) struct Last {
     pub age: Duration,
 }
 
+/// A sample may move the ego ahead by this much.
+const MEASURED: Distance = Distance::from_mm(500);
+
 impl Gate {
     /// Nothing is known of the ego: all zero.
     pub const fn new() -> Self {
@@ -50,9 +53,24 @@ impl Gate {
         (self.is_covered, self.is_committed) = (false, false);
     }
 
-    /// Whether the ego goes into the next conflict area by a pass, or is in it.
-    pub const fn is_committed(&self) -> bool {
-        self.is_committed
+    /// Whether the ego goes into the next conflict area by a pass, or is in it, or may not be able to stop before it in the next tick, after
+    /// this command and whatever is measured until then. What is planned after the command must not take from the ego what the gate has gone
+    /// by.
+    pub fn may_commit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+        &self,
+        scene: &Scene<PEERS, SAMPLES, STEPS>,
+        command: Acceleration,
+    ) -> bool {
+        let can_stop = || {
+            let (limits, reckoning) = (scene.config.envelope.as_ref()?, self.reckoning.as_ref()?);
+            let (line, period) = (Obstacle::standing(scene.area_begins()?), scene.config.period);
+            let now = reckoning.ego(limits, command, scene.config.lag);
+            let speed = now.speed.plus(limits.acceleration.over(period.fine_seconds()));
+            let position = now.position.ahead(speed.over(period.seconds())).ahead(MEASURED);
+            let next = envelope::Ego { position, speed, acceleration: now.acceleration.max(command), ..now };
+            Some(envelope::is_safe(limits, &next, &line, period))
+        };
+        self.is_committed || self.is_covered && can_stop() != Some(true)
     }
 
     /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether the command differs from the
@@ -129,18 +147,17 @@ impl Gate {
             self.crossing = scene.coordination.next();
             self.is_covered = false;
         }
+        let (stay, gnss) = (pass::stay_at_worst(scene, &area, range), scene.pass_time(range.now));
         let line = Obstacle::standing(area.begins);
         let is_before = range.rearmost <= area.begins;
         let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
         if can_stop {
-            let stay = scene.pass_time(range.now).map(|now| pass::stay_at_worst(scene, &area, range, now));
-            let is_covered = stay.is_some_and(|stay| scene.is_stay_covered(range.now, &stay));
+            let is_covered = gnss.is_some_and(|now| scene.is_stay_covered(range.now, &stay.from(now)));
             self.is_covered = is_covered && is_left(limits, scene, &area, range);
         }
         let is_open = self.is_covered || !is_before;
         self.is_committed = is_open && !can_stop;
-        let opens_in = pass::soonest(scene, &area, range);
-        Entrance { area: Some(area), is_open, is_committed: self.is_committed, can_stop, opens_in }
+        Entrance { area: Some(area), is_open, is_committed: self.is_committed, can_stop, stay, gnss }
     }
 }
 
@@ -164,14 +181,16 @@ struct Entrance {
     is_committed: bool,
     /// Whether it can stop before it.
     can_stop: bool,
-    /// The ego cannot be there sooner than this.
-    opens_in: Duration,
+    /// The ego's stay in it, at both ends of what the ego may do.
+    stay: Stay,
+    /// GNSS time, if it is known well enough for passes.
+    gnss: Option<GnssTime>,
 }
 
 impl Entrance {
     /// No area comes.
     const NONE: Self =
-        Self { area: None, is_open: true, is_committed: false, can_stop: false, opens_in: Duration::ZERO };
+        Self { area: None, is_open: true, is_committed: false, can_stop: false, stay: Stay::NONE, gnss: None };
 
     fn demand<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         &self,
@@ -179,11 +198,13 @@ impl Entrance {
         range: &Range,
         demand: Acceleration,
     ) -> Acceleration {
-        let Some(area) = self.area.filter(|_| scene.fresh_ego(range.now).is_some()) else { return demand };
+        let area = self.area.filter(|_| scene.fresh_ego(range.now).is_some());
+        let Some((area, now)) = area.zip(self.gnss) else { return demand };
+        let stay = self.stay.from(now);
         if self.is_open {
-            pass::leave_in_time(scene, &area, range, demand)
+            pass::leave_in_time(scene, range, &stay, demand)
         } else {
-            pass::not_early(scene, &area, range, demand)
+            pass::not_early(scene, &area, range, now, stay.entry, demand)
         }
     }
 
@@ -248,7 +269,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Rearmost<'_, 
         let is_seen = ends.is_some_and(|ends| scene.ranging.sees_up_to(ends, now));
         let sees = scene.config.range_sensor && (self.entrance.is_committed || is_seen);
         let is_trusted = self.entrance.area.is_some() && self.entrance.is_open && sees;
-        let then = now.plus(self.entrance.opens_in);
+        let then = now.plus(self.entrance.stay.entry);
         let at = (!self.entrance.is_committed).then_some(now);
         (!is_trusted || !scene.has_pass(index, at) || scene.is_in_area_until(index, now, then)).then_some(stop)
     }

@@ -1,8 +1,11 @@
 //! The ego's passes. Where the ego will be, by its own horizon, enters; the windows that it claims, and whether it may go into the next
 //! conflict area, leave. The rules are those of [`crate::passes`].
 
+use core::num::NonZeroU32;
+
 use super::scene::Scene;
 use super::scene::passes::whole_steps;
+use crate::config::Config;
 use crate::fixed::quotient;
 use crate::model::State;
 use crate::parameters::{POSITION_ROUNDING, SPEED_ROUNDING};
@@ -47,7 +50,7 @@ pub(super) struct Range {
     pub foremost: Position,
     pub slowest: Speed,
     pub fastest: Speed,
-    /// Acceleration that is reached, as low as it may be.
+    /// The lower of the acceleration that is reached and the one that is commanded.
     pub least: Acceleration,
 }
 
@@ -77,8 +80,23 @@ impl Range {
             foremost: front.ahead(off),
             slowest: state.speed.minus(faster).max(Speed::ZERO),
             fastest: state.speed.plus(faster),
-            least: state.acceleration,
+            least: state.acceleration.min(state.demand),
         }
+    }
+
+    /// The lowest speed until the command has turned to this acceleration, with the envelope's jerk, and the actuators have followed; and the
+    /// time that this takes. With the command `a < 0`, the lag `τ` and the jerk `j` it is `v + a τ - a² / 2 j`, after `τ + (b - a) / j`.
+    fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
+        let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
+        let jerk = config.envelope.as_ref().map_or(config.limits.jerk, |envelope| envelope.jerk);
+        let jerk = NonZeroU32::new(jerk.to_mm_per_s3().max(1).unsigned_abs()).unwrap_or(NonZeroU32::MIN);
+        let braking = self.least.min(Acceleration::ZERO);
+        let braked = mm_per_s2(braking.negated());
+        let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
+        let lost = braked.saturating_mul(braked) / jerk / 2;
+        let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
+        let slowest = self.slowest.plus(braking.over(config.lag)).plus(lost).max(Speed::ZERO);
+        (slowest, Duration::of_fine_seconds(config.lag).plus(Duration::from_millis(i64::from(ramp_ms))))
     }
 }
 
@@ -107,58 +125,59 @@ impl Area {
     }
 }
 
-/// The stay in the area from now on at both ends of what the ego may do: it goes there as fast as it may at all, and gets out as slowly
-/// as [`leaving`] lets it.
+/// A stay in the area, from now on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stay {
+    pub entry: Duration,
+    pub exit: Duration,
+}
+
+impl Stay {
+    /// None at all.
+    pub const NONE: Self = Self { entry: Duration::ZERO, exit: Duration::ZERO };
+
+    /// In GNSS time.
+    pub fn from(&self, now: GnssTime) -> Window {
+        Window { entry: now.plus(self.entry), exit: now.plus(self.exit) }
+    }
+}
+
+/// The stay in the area at both ends of what the ego may do: it goes there as fast as it may at all, and gets out as slowly as [`leaving`]
+/// lets it.
 pub(super) fn stay_at_worst<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     area: &Area,
     ego: &Range,
-    now: GnssTime,
-) -> Window {
+) -> Stay {
     let (config, top) = (&scene.config, scene.target_speed());
-    let entry = soonest(scene, area, ego);
-    // What is lost until the actuators have turned to leaving.
-    let lost = ego.least.min(Acceleration::ZERO).over(config.lag);
-    let slowest = ego.slowest.plus(lost).max(Speed::ZERO);
-    let way = Way { length: area.is_left_at.ahead_of(ego.rearmost), top, acceleration: leaving(scene) };
-    let exit = way.within(slowest, Duration::of_fine_seconds(config.lag));
-    Window { entry: now.plus(entry), exit: now.plus(exit) }
-}
-
-/// The time in which the ego may be in the area at the earliest.
-pub(super) fn soonest<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
-    scene: &Scene<PEERS, SAMPLES, STEPS>,
-    area: &Area,
-    ego: &Range,
-) -> Duration {
-    let (length, top) = (area.begins.ahead_of(ego.foremost), scene.target_speed());
-    Way { length, top, acceleration: scene.config.limits.acceleration }.within(ego.fastest, Duration::ZERO)
+    let there = Way { length: area.begins.ahead_of(ego.foremost), top, acceleration: config.limits.acceleration };
+    let out = Way { length: area.is_left_at.ahead_of(ego.rearmost), top, acceleration: leaving(scene) };
+    let (slowest, turns) = ego.turning(config, out.acceleration);
+    Stay { entry: there.within(ego.fastest, Duration::ZERO), exit: out.within(slowest, turns) }
 }
 
 /// The demand of an ego that has a pass: no less than what gets it out of the area in time.
 pub(super) fn leave_in_time<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
-    area: &Area,
     ego: &Range,
+    stay: &Window,
     demand: Acceleration,
 ) -> Acceleration {
-    let Some(now) = scene.pass_time(ego.now) else { return demand };
-    let stay = stay_at_worst(scene, area, ego, now);
     let is_late = scene.is_covered_until(ego.now, stay.entry).is_some_and(|exit| stay.exit.plus(LATE) > exit);
     let least = if ego.slowest < scene.target_speed() { leaving(scene) } else { Acceleration::ZERO };
     if is_late { demand.max(least) } else { demand }
 }
 
-/// The demand of an ego that comes to the area before its pass begins: no more than what takes it there in time, as long as it need not
-/// stop for that.
+/// The demand of an ego that comes to the area at `soonest`, before its pass begins: no more than what takes it there in time, as long as it
+/// need not stop for that.
 pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     area: &Area,
     ego: &Range,
+    now: GnssTime,
+    soonest: GnssTime,
     demand: Acceleration,
 ) -> Acceleration {
-    let Some(now) = scene.pass_time(ego.now) else { return demand };
-    let soonest = stay_at_worst(scene, area, ego, now).entry;
     if scene.passes.own.reaches(soonest).is_some() {
         return demand;
     }
@@ -218,7 +237,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let mut stay = Window { entry: now.plus(entry), exit: now.plus(exit) };
     let is_slow = ego.fastest < SLOW && entry < NEAR;
     if is_slow || entry < AT_ONCE {
-        let worst = stay_at_worst(scene, area, ego, now);
+        let worst = stay_at_worst(scene, area, ego).from(now);
         stay = Window { entry: stay.entry.min(worst.entry), exit: stay.exit.max(worst.exit) };
     }
     if ego.fastest < WAITING && !is_committed {

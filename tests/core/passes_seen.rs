@@ -1,8 +1,8 @@
 //! A vehicle makes an emergency stop in the conflict area, and its radio dies. The ego has a pass for later, and its range sensor sees the
 //! vehicle: it does not go in, also if the sensor sees nothing for a moment then. A sensor that says nothing is not relied on.
 
-use crate::rig::config;
 use crate::rig::junction::{CROSSING, Driver, HALF, Junction, is_on_point};
+use crate::rig::{LENGTH, config};
 use holdover::Config;
 
 fn sees(station: u8, way: usize, at: f64, speed: f64) -> Driver {
@@ -115,21 +115,22 @@ fn a_pass_of_another_is_trusted_only_while_the_own_sensor_says_something() {
 }
 
 /// How far the ego gets in 60 s. Another vehicle stood in the area, without a word of how it would drive, when the modem gave its slot
-/// away. It left 1 s later. Its passes are heard all the time. The ego's sensor shows that the area is empty, or nothing.
-fn gets_past_one_without_slot(is_blind: bool, envelope: bool) -> f64 {
+/// away. It left 1 s later. Its passes are heard all the time. The ego's sensor shows that the area is empty, until it says nothing any more.
+fn gets_past_one_without_slot(blind_from: f64, stood_at: f64, envelope: bool) -> f64 {
     let mut ego = Driver::of(Config { range_sensor: true, ..config() }, 3, 0, CROSSING - 190.0, 10.0, envelope);
     ego.sees_across = true;
     let mut other = sees(2, 1, CROSSING - 140.0, 10.0);
     other.says_plans = false;
     let (mut junction, mut ticks) = (Junction::new(vec![ego, other]), 0);
     junction.run(60.0, |junction| {
+        let now = junction.now as f64 * 1e-6;
         let [ego, other] = &mut junction.drivers[..] else { panic!("two") };
-        ticks += u32::from(other.body.position > CROSSING - 1.0);
+        ticks += u32::from(other.body.position > stood_at);
         if (1..400).contains(&ticks) {
             (other.body.speed, other.body.acceleration) = (0.0, 0.0);
         }
         other.says_motion = ticks < 300;
-        ego.is_blind = is_blind && ticks > 500;
+        ego.is_blind = now > blind_from;
         assert!(!(ego.is_inside() && other.is_inside()));
     });
     junction.drivers[0].body.position
@@ -138,8 +139,14 @@ fn gets_past_one_without_slot(is_blind: bool, envelope: bool) -> f64 {
 #[test]
 fn an_old_estimate_in_the_area_holds_the_ego_only_while_it_does_not_see_that_the_area_is_empty() {
     for envelope in [true, false] {
-        let [sees, is_blind] = [false, true].map(|is_blind| gets_past_one_without_slot(is_blind, envelope));
-        assert!(sees > CROSSING + 50.0, "{envelope}: {sees}");
-        assert!(is_blind < CROSSING - HALF, "{envelope}: {is_blind}");
+        for stood_at in [CROSSING - 1.0, CROSSING + 1.0, CROSSING + 3.0, CROSSING + 5.0, CROSSING + 7.0] {
+            let at = |blind_from| gets_past_one_without_slot(blind_from, stood_at, envelope);
+            assert!(at(f64::INFINITY) > CROSSING + 50.0, "{envelope}, {stood_at}: {}", at(f64::INFINITY));
+            // The estimate is as old as a holdover at 32 s, and some seconds later the ego goes in.
+            let held = (CROSSING - HALF).max(stood_at - LENGTH);
+            for blind_from in [25.0, 33.0, 34.0] {
+                assert!(at(blind_from) < held, "{envelope}, {stood_at}, {blind_from}: {}", at(blind_from));
+            }
+        }
     }
 }

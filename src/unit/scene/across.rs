@@ -56,11 +56,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         (0..PEERS).any(|index| self.was_heard(index, now) && is_inside(index) && self.may_be_in_area(index, now))
     }
 
-    /// Whether the ego's sensor sees that nobody is in the next conflict area, with its front bumper before that area.
-    pub fn sees_empty_area(&self, now: Instant, front: Position) -> bool {
+    /// Whether the ego's sensor sees that nobody is in the next conflict area.
+    pub fn sees_empty_area(&self, now: Instant) -> bool {
         let ends = self.coordination.end_of(self.coordination.next());
-        let is_before = self.area_begins().is_some_and(|begins| front <= begins);
-        is_before && ends.is_some_and(|ends| self.ranging.is_free_up_to(ends, now))
+        self.config.range_sensor && ends.is_some_and(|ends| self.ranging.is_free_up_to(ends, now))
     }
 
     /// Whether a peer whose way crosses the ego's is estimated to be in the next conflict area.

@@ -14,8 +14,8 @@
 //! unit takes the new station for an error.
 //!
 //! An irrelevant station is not relayed, even if a slot is free. A station in a slot that becomes irrelevant is still
-//! relayed until the unit has heard that. So is a station that lost its slot, as long as no other station has been relayed
-//! in it: the unit still has it at its last place, and may be waiting for it.
+//! relayed until the unit has heard that. So is a station that lost its slot, until another station is relayed there or is
+//! about to be: the unit still has it at its last place, and may be waiting for it.
 //!
 //! *Driving parameters* are relayed when a station gets its slot (on a route with its first messages) and when they
 //! change. Otherwise they are relayed every [`PARAMETERS_EVERY_S`], so that those of all stations fit the bus.
@@ -285,6 +285,7 @@ impl Relay {
             (None, _) => self.least_relevant(rank, at_s, front)?,
         };
         self.vacate(slot);
+        self.rested_s[slot] = from_s;
         self.slots[slot] = Some(Tenant {
             station,
             relayed_s: at_s,
