@@ -372,8 +372,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)] // apart from the stack of the horizon
     fn plan(&mut self, now: Instant, ego: Option<&State>) {
         if let Some(range) = ego.filter(|_| self.keeps_passes(now)).and_then(|ego| Range::of(&self.scene, now, ego)) {
-            let is_committed = self.gate.may_commit(&self.scene, self.controller.last_demand());
-            pass::plan(&mut self.scene, &range, self.mode.is_by_law(), is_committed);
+            pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
         }
     }
 

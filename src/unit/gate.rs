@@ -33,9 +33,6 @@ pub(super) struct Last {
     pub age: Duration,
 }
 
-/// A sample may move the ego ahead by this much.
-const MEASURED: Distance = Distance::from_mm(500);
-
 impl Gate {
     /// Nothing is known of the ego: all zero.
     pub const fn new() -> Self {
@@ -53,24 +50,9 @@ impl Gate {
         (self.is_covered, self.is_committed) = (false, false);
     }
 
-    /// Whether the ego goes into the next conflict area by a pass, or is in it, or may not be able to stop before it in the next tick, after
-    /// this command and whatever is measured until then. What is planned after the command must not take from the ego what the gate has gone
-    /// by.
-    pub fn may_commit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
-        &self,
-        scene: &Scene<PEERS, SAMPLES, STEPS>,
-        command: Acceleration,
-    ) -> bool {
-        let can_stop = || {
-            let (limits, reckoning) = (scene.config.envelope.as_ref()?, self.reckoning.as_ref()?);
-            let (line, period) = (Obstacle::standing(scene.area_begins()?), scene.config.period);
-            let now = reckoning.ego(limits, command, scene.config.lag);
-            let speed = now.speed.plus(limits.acceleration.over(period.fine_seconds()));
-            let position = now.position.ahead(speed.over(period.seconds())).ahead(MEASURED);
-            let next = envelope::Ego { position, speed, acceleration: now.acceleration.max(command), ..now };
-            Some(envelope::is_safe(limits, &next, &line, period))
-        };
-        self.is_committed || self.is_covered && can_stop() != Some(true)
+    /// Whether the ego goes into the next conflict area by a pass, or is in it.
+    pub const fn is_committed(&self) -> bool {
+        self.is_committed
     }
 
     /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether the command differs from the
@@ -151,7 +133,9 @@ impl Gate {
         let line = Obstacle::standing(area.begins);
         let is_before = range.rearmost <= area.begins;
         let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
-        if can_stop {
+        // Also in the first tick in which it cannot stop: its claims may have been cut since the last one. Then it brakes, and stops within
+        // the envelope's margin.
+        if can_stop || self.is_covered && !self.is_committed {
             let is_covered = gnss.is_some_and(|now| scene.is_stay_covered(range.now, &stay.from(now)));
             self.is_covered = is_covered && is_left(limits, scene, &area, range);
         }

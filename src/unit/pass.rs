@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 
 use super::scene::Scene;
 use super::scene::passes::whole_steps;
-use crate::config::Config;
+use crate::config::{Config, Envelope};
 use crate::fixed::quotient;
 use crate::model::State;
 use crate::parameters::{POSITION_ROUNDING, SPEED_ROUNDING};
@@ -39,7 +39,7 @@ const LEAVING: Acceleration = Acceleration::from_mm_per_s2(1_500);
 /// An ego that would be early brakes by no more than this.
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
 /// From when on it would be late.
-const LATE: Duration = Duration::from_millis(100);
+const LATE: Duration = Duration::from_millis(200);
 
 /// The ego at now, from the least to the most that it may be ahead and fast.
 #[derive(Clone, Copy, Debug)]
@@ -84,19 +84,23 @@ impl Range {
         }
     }
 
-    /// The lowest speed until the command has turned to this acceleration, with the envelope's jerk, and the actuators have followed; and the
-    /// time that this takes. With the command `a < 0`, the lag `τ` and the jerk `j` it is `v + a τ - a² / 2 j`, after `τ + (b - a) / j`.
+    /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed;
+    /// and the time that this takes. With the acceleration `a < 0` and `τ`, the largest lag and the delay of the envelope, it is
+    /// `v + a τ - a² / 2 j`, after `τ + (b - a) / j`.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
+        let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
-        let jerk = config.envelope.as_ref().map_or(config.limits.jerk, |envelope| envelope.jerk);
-        let jerk = NonZeroU32::new(jerk.to_mm_per_s3().max(1).unsigned_abs()).unwrap_or(NonZeroU32::MIN);
+        let jerk = NonZeroU32::new(limits.jerk.to_mm_per_s3().max(1).unsigned_abs()).unwrap_or(NonZeroU32::MIN);
         let braking = self.least.min(Acceleration::ZERO);
         let braked = mm_per_s2(braking.negated());
         let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
+        let ramp = Duration::from_millis(i64::from(ramp_ms));
+        let lag = config.lag.plus(config.lag.fraction(limits.lag_tolerance));
+        let turns = Duration::of_fine_seconds(lag).plus(limits.delay);
         let lost = braked.saturating_mul(braked) / jerk / 2;
         let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
-        let slowest = self.slowest.plus(braking.over(config.lag)).plus(lost).max(Speed::ZERO);
-        (slowest, Duration::of_fine_seconds(config.lag).plus(Duration::from_millis(i64::from(ramp_ms))))
+        let slowest = self.slowest.plus(braking.over(turns.fine_seconds())).plus(lost).max(Speed::ZERO);
+        (slowest, turns.plus(ramp))
     }
 }
 
@@ -163,7 +167,7 @@ pub(super) fn leave_in_time<const PEERS: usize, const SAMPLES: usize, const STEP
     stay: &Window,
     demand: Acceleration,
 ) -> Acceleration {
-    let is_late = scene.is_covered_until(ego.now, stay.entry).is_some_and(|exit| stay.exit.plus(LATE) > exit);
+    let is_late = scene.is_covered_until(ego.now, stay.entry).is_none_or(|exit| stay.exit.plus(LATE) > exit);
     let least = if ego.slowest < scene.target_speed() { leaving(scene) } else { Acceleration::ZERO };
     if is_late { demand.max(least) } else { demand }
 }
