@@ -33,12 +33,9 @@ const FORESEEN: Duration = Duration::from_millis(25_000);
 const ZONE: Distance = Distance::from_mm(40_000);
 /// A horizon that ends at less than this says nothing of when the ego gets to a place beyond.
 const STANDS: Speed = Speed::from_mm_per_s(500);
-/// An ego that would leave the area too late otherwise accelerates by at least this, or by as much as it has published, up to the speed
-/// that it wants on a free road.
-const LEAVING: Acceleration = Acceleration::from_mm_per_s2(1_500);
 /// An ego that would be early brakes by no more than this.
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
-/// From when on it would be late.
+/// An ego that may leave the area later than so long before the end of its window is late.
 const LATE: Duration = Duration::from_millis(200);
 
 /// The ego at now, from the least to the most that it may be ahead and fast.
@@ -50,8 +47,9 @@ pub(super) struct Range {
     pub foremost: Position,
     pub slowest: Speed,
     pub fastest: Speed,
-    /// The lower of the acceleration that is reached and the one that is commanded.
-    pub least: Acceleration,
+    /// Acceleration that is reached, and the one that is commanded.
+    reached: Acceleration,
+    commanded: Acceleration,
 }
 
 impl Range {
@@ -80,35 +78,35 @@ impl Range {
             foremost: front.ahead(off),
             slowest: state.speed.minus(faster).max(Speed::ZERO),
             fastest: state.speed.plus(faster),
-            least: state.acceleration.min(state.demand),
+            reached: state.acceleration,
+            commanded: state.demand,
         }
     }
 
     /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed;
-    /// and the time that this takes. With the acceleration `a < 0` and `τ`, the largest lag and the delay of the envelope, it is
-    /// `v + a τ - a² / 2 j`, after `τ + (b - a) / j`.
+    /// and the time that this takes. With `a` reached and `u` commanded, neither above 0, and `τ`, the largest lag and the delay of the
+    /// envelope, it is `v + a τ - u² / 2 j`, after `τ + (b - u) / j`.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
         let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
         let jerk = NonZeroU32::new(limits.jerk.to_mm_per_s3().max(1).unsigned_abs()).unwrap_or(NonZeroU32::MIN);
-        let braking = self.least.min(Acceleration::ZERO);
-        let braked = mm_per_s2(braking.negated());
+        let braked = mm_per_s2(self.commanded.negated());
         let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
         let ramp = Duration::from_millis(i64::from(ramp_ms));
         let lag = config.lag.plus(config.lag.fraction(limits.lag_tolerance));
         let turns = Duration::of_fine_seconds(lag).plus(limits.delay);
         let lost = braked.saturating_mul(braked) / jerk / 2;
         let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
-        let slowest = self.slowest.plus(braking.over(turns.fine_seconds())).plus(lost).max(Speed::ZERO);
-        (slowest, turns.plus(ramp))
+        let braking = self.reached.min(Acceleration::ZERO).over(turns.fine_seconds());
+        (self.slowest.plus(braking).plus(lost).max(Speed::ZERO), turns.plus(ramp))
     }
 }
 
-/// The acceleration of an ego that leaves.
+/// The acceleration of an ego that leaves: the largest that it has published.
 fn leaving<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
 ) -> Acceleration {
-    LEAVING.min(scene.config.limits.acceleration)
+    scene.config.limits.acceleration
 }
 
 /// The next conflict area on the ego's axis.
