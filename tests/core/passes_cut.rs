@@ -45,7 +45,10 @@ fn is_inside(start: f64, heard: i64, from: f64, to: f64) -> (bool, bool) {
         }
         let gnss = gnss(now - PERIOD, 0);
         let all = ego.last.iter().flat_map(|last| &last.all);
-        said = all.filter_map(|one| if let Message::OwnPass(pass) = one { Some(*pass) } else { None }).last().or(said);
+        said = all
+            .filter_map(|one| if let Message::OwnPass(pass) = one { Some(*pass) } else { None })
+            .next_back()
+            .or(said);
         let covers = |claimed: &Claimed| {
             let entry = claimed.entry.near(gnss);
             claimed.at.near(gnss) < crate::rig::gnss(heard, 0)
