@@ -33,9 +33,6 @@ const FORESEEN: Duration = Duration::from_millis(25_000);
 const ZONE: Distance = Distance::from_mm(40_000);
 /// A horizon that ends at less than this says nothing of when the ego gets to a place beyond.
 const STANDS: Speed = Speed::from_mm_per_s(500);
-/// An ego that would leave the area too late otherwise accelerates by at least this, or by as much as it has published, up to the speed
-/// that it wants on a free road.
-const LEAVING: Acceleration = Acceleration::from_mm_per_s2(1_500);
 /// An ego that would be early brakes by no more than this.
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
 /// An ego that may leave the area later than so long before the end of its window is late.
@@ -86,9 +83,9 @@ impl Range {
         }
     }
 
-    /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed
-    /// with the lag `τ`; and the time that this takes. With `a` reached and `u` commanded, neither above 0, it is `v + a τ - u² / 2 j`, after
-    /// `τ + (b - u) / j`.
+    /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed;
+    /// and the time that this takes. With `a` reached and `u` commanded, neither above 0, and `τ`, the largest lag and the delay of the
+    /// envelope, it is `v + a τ - u² / 2 j`, after `τ + (b - u) / j`.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
         let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
@@ -96,19 +93,20 @@ impl Range {
         let braked = mm_per_s2(self.commanded.negated());
         let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
         let ramp = Duration::from_millis(i64::from(ramp_ms));
-        let turns = Duration::of_fine_seconds(config.lag);
+        let lag = config.lag.plus(config.lag.fraction(limits.lag_tolerance));
+        let turns = Duration::of_fine_seconds(lag).plus(limits.delay);
         let lost = braked.saturating_mul(braked) / jerk / 2;
         let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
-        let braking = self.reached.min(Acceleration::ZERO).over(config.lag);
+        let braking = self.reached.min(Acceleration::ZERO).over(turns.fine_seconds());
         (self.slowest.plus(braking).plus(lost).max(Speed::ZERO), turns.plus(ramp))
     }
 }
 
-/// The acceleration of an ego that leaves.
+/// The acceleration of an ego that leaves: the largest that it has published.
 fn leaving<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
 ) -> Acceleration {
-    LEAVING.min(scene.config.limits.acceleration)
+    scene.config.limits.acceleration
 }
 
 /// The next conflict area on the ego's axis.
