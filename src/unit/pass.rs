@@ -37,6 +37,8 @@ const STANDS: Speed = Speed::from_mm_per_s(500);
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
 /// An ego that may leave the area later than so long before the end of its window is late.
 const LATE: Duration = Duration::from_millis(200);
+/// The acceleration with which a car leaves the area.
+const LEAVES: Acceleration = Acceleration::from_mm_per_s2(2_000);
 
 /// The ego at now, from the least to the most that it may be ahead and fast.
 #[derive(Clone, Copy, Debug)]
@@ -102,11 +104,11 @@ impl Range {
     }
 }
 
-/// The acceleration of an ego that leaves: the largest that it has published.
+/// The acceleration of an ego that leaves: [`LEAVES`], and no more than it has published.
 fn leaving<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
 ) -> Acceleration {
-    scene.config.limits.acceleration
+    scene.config.limits.acceleration.min(LEAVES)
 }
 
 /// The next conflict area on the ego's axis.
