@@ -8,6 +8,7 @@ use holdover::coordination::Itinerary;
 use super::beliefs::Beliefs;
 use super::conditions::{Conditions, Heeds, WhenLost};
 use super::description::{Corridor, Wrong};
+use super::entries::Entries;
 use super::figures::{Outcome, Side, StepRow, WrongRow};
 use super::journal::Journal;
 use super::map::itineraries;
@@ -117,9 +118,10 @@ impl Experiment {
         let (trips, _) = self.trips(seed);
         let logged = journal.as_ref().and_then(|journal| journal.ego);
         let (mut referee, mut beliefs) = (Referee::new(&self.network, &trips), Beliefs::new(&self.network, logged));
+        let mut entries = Entries::new(&self.network);
         let mut traffic = Traffic::new(&self.corridor, &self.network, &self.itineraries, &trips, conditions, seed);
         traffic.log(logged);
-        let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs];
+        let mut watches: Vec<&mut dyn Watch> = vec![&mut referee, &mut beliefs, &mut entries];
         for other in others {
             watches.push(&mut **other);
         }
@@ -134,7 +136,7 @@ impl Experiment {
             }
             None => traffic.run(&mut watches, &mut log).map_err(refused)?,
         };
-        Ok(Outcome::of(seed, &referee, &beliefs, remains))
+        Ok(Outcome::of(seed, &referee, &beliefs, entries.errors, remains))
     }
 
     /// The runs of all seeds, beside the references. `done` is called after each run.

@@ -5,6 +5,7 @@ use crate::measure::bootstrap::{Interval, interval};
 use serde::Serialize;
 
 use super::beliefs::{Beliefs, Class};
+use super::entries::{EntryFigures, Errors};
 use super::referee::Referee;
 use super::touching::Place;
 use super::traffic::Remains;
@@ -34,6 +35,8 @@ pub struct Outcome {
     pub errors: [Class; 3],
     /// Pairs of a unit and its target with a settled error beyond 0.2 m.
     pub beyond: usize,
+    /// Errors of the times at which vehicles foresaw to come to a conflict area.
+    pub entries: Errors,
     /// Changes of association.
     pub changes: u64,
     /// Ticks at which a target was outside its bound; the second number is of those where a clock was off.
@@ -45,7 +48,7 @@ pub struct Outcome {
 impl Outcome {
     /// The result of a run that has ended.
     #[must_use]
-    pub fn of(seed: u64, referee: &Referee, beliefs: &Beliefs, remains: Remains) -> Self {
+    pub fn of(seed: u64, referee: &Referee, beliefs: &Beliefs, entries: Errors, remains: Remains) -> Self {
         let on_roads = referee.collisions.iter().filter(|one| matches!(one.place, Place::Road(_))).count();
         Self {
             seed,
@@ -59,6 +62,7 @@ impl Outcome {
             ticks: referee.ticks,
             errors: [beliefs.settled, beliefs.changing, beliefs.unheard],
             beyond: beliefs.beyond.len(),
+            entries,
             changes: beliefs.changes,
             violations: beliefs.violations,
             remains,
@@ -120,6 +124,8 @@ pub struct Side {
     pub position_error_unheard: ErrorFigures,
     /// Pairs of a unit and its target with an error beyond 0.2 m in `position_error`.
     pub pairs_beyond: usize,
+    /// How far off the times are at which vehicles foresee to come to a conflict area.
+    pub entry_error: EntryFigures,
     /// Changes of association.
     pub association_changes: u64,
     /// Ticks at which a target was outside its bound, while neither its clock nor that of the unit was off.
@@ -164,6 +170,7 @@ impl Side {
             position_error_after_change: class(1),
             position_error_unheard: class(2),
             pairs_beyond: all().map(|outcome| outcome.beyond).sum(),
+            entry_error: all().map(|outcome| outcome.entries).fold(Errors::default(), Errors::with).into(),
             association_changes: all().map(|outcome| outcome.changes).sum(),
             bound_violations: all().map(|outcome| outcome.violations[0]).sum(),
             bound_violations_by_clock: all().map(|outcome| outcome.violations[1]).sum(),
@@ -242,6 +249,7 @@ mod tests {
             ticks: [10, 5],
             errors: [settled, Class::default(), Class::default()],
             beyond: 3,
+            entries: Errors::default(),
             changes: 4,
             violations: [5, 6],
             remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5, faults: 6 },

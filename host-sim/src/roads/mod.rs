@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! file -> read, fit (does it fit together) -> description -> network (roads, crossing points) -> trips -> traffic (the world)
-//!                                               referee (collisions, gaps, stops), beliefs (errors) <-'
+//!            referee (collisions, gaps, stops), beliefs (errors), entries (how well they are foreseen) <-'
 //! ```
 
 pub mod alone;
@@ -11,6 +11,7 @@ pub mod beliefs;
 pub mod capacity;
 pub mod conditions;
 pub mod description;
+pub mod entries;
 #[cfg(test)]
 pub(crate) mod example;
 pub mod experiment;

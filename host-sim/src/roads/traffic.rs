@@ -16,6 +16,7 @@ use holdover::wire::StationHash;
 use super::alone::{self, Lost};
 use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Radio};
+use super::entries::AHEAD_S;
 use super::network::Network;
 use super::sight::{Body, Sights};
 use super::tally::Tally;
@@ -40,6 +41,7 @@ mod events;
 mod faults;
 mod looks;
 mod numbers;
+mod stuck;
 mod traveller;
 
 use arrivals::LISTENING_S;
@@ -69,6 +71,8 @@ pub struct Traffic<'a> {
     logged: Option<usize>,
     sights: Sights,
     happenings: Happenings,
+    /// When a vehicle moved last.
+    moved_s: f64,
 }
 
 /// The counts at the end of a run.
@@ -130,6 +134,7 @@ impl<'a> Traffic<'a> {
             logged: None,
             sights: Sights::of(network),
             happenings: Happenings::of(&corridor.events, conditions.heeds),
+            moved_s: 0.0,
         }
     }
 
@@ -138,13 +143,14 @@ impl<'a> Traffic<'a> {
         self.logged = trip;
     }
 
-    /// Runs the world until every vehicle has left. It stops at the latest after twice the duration and five minutes.
+    /// Runs the world until every vehicle has left. It gives up when nobody will move any more, and at the latest after twice the duration
+    /// and five minutes.
     ///
     /// # Errors
     /// Errors of the buses. A configuration that the units refuse is an error of invalid input.
     pub fn run(mut self, watches: &mut [&mut dyn Watch], log: &mut Vec<(f64, Frame)>) -> io::Result<Remains> {
         let longest_s = 2.0 * self.corridor.duration_s + 300.0;
-        while !self.is_over() && self.at_s() <= longest_s {
+        while !self.is_over() && !self.is_stuck() && self.at_s() <= longest_s {
             self.step(watches, log)?;
         }
         let on_way = self.travellers.values().filter(|traveller| !traveller.has_left()).count();
@@ -196,6 +202,7 @@ impl<'a> Traffic<'a> {
         self.ticks += 1;
         self.tick(at_s, |traffic| {
             traffic.show(at_s, watches);
+            traffic.note_motion(at_s);
             Ok(())
         })?;
         self.dismiss(at_s, watches, log)
@@ -250,6 +257,7 @@ impl<'a> Traffic<'a> {
             odometer_m: traveller.ground.odometer_m,
             next: vehicle.unit.coordination().crossing().map(|crossing| usize::from(crossing.intersection.id)),
             followed: followed(vehicle),
+            foreseen_m: foreseen_m(vehicle, at_s),
             belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
             limited: vehicle.limited,
             dark: traveller.is_dark(at_s),
@@ -323,6 +331,13 @@ impl Stages for Traffic<'_> {
         self.broadcast(at_s, broadcasts);
         Ok(())
     }
+}
+
+/// The way that a vehicle's own horizon has it make from now on until its claims count.
+fn foreseen_m(vehicle: &Vehicle, at_s: f64) -> Option<f64> {
+    let read = |at_s| vehicle.unit.estimator().read_own(vehicle.instant(at_s));
+    let (now, then) = (read(at_s)?, read(at_s + AHEAD_S)?);
+    Some(then.position.ahead_of(now.position).to_mm() as f64 / 1_000.0)
 }
 
 /// The station that a vehicle's unit follows.

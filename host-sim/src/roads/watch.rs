@@ -35,6 +35,8 @@ pub struct Sighting {
     pub followed: Option<StationHash>,
     /// Its unit's estimate of the target, on the axis of its own odometer.
     pub belief: Option<TargetBelief>,
+    /// The way that its own horizon has it make in the next [`AHEAD_S`](super::entries::AHEAD_S), in metres.
+    pub foreseen_m: Option<f64>,
     /// Whether its envelope changed the command.
     pub limited: bool,
     /// Whether its radio is silent.

@@ -33,6 +33,8 @@ pub const LINES: &[Line] = &[
     ("position error, rms, m", |side| number(side.position_error.rms_m, 4)),
     ("  within 1 s of a change, max", |side| number(side.position_error_after_change.max_m, 3)),
     ("  change not heard of, max", |side| number(side.position_error_unheard.max_m, 3)),
+    ("entry time, off by, mean, s", |side| number(side.entry_error.mean_s, 2)),
+    ("  standard deviation, s", |side| number(side.entry_error.std_s, 2)),
     ("changes of association", |side| side.association_changes.to_string()),
     ("order disagreements", |side| side.order_disagreements.to_string()),
     ("outside the bound, ticks", |side| side.bound_violations.to_string()),
