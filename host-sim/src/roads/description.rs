@@ -11,7 +11,7 @@ use crate::sim::ground::Point;
 pub struct Corridor {
     /// Seed of everything random.
     pub seed: u64,
-    /// Time in which vehicles arrive; 10 s to a day. A run ends when the last of them has left.
+    /// Time in which vehicles arrive; 10 s to a day. A run ends when the last of them has left, or nobody will move any more.
     pub duration_s: f64,
     /// Tick of every unit and step of the plants; 1 ms to 0.1 s.
     pub period_s: f64,

@@ -1,9 +1,9 @@
 //! How well vehicles foresee when they will come to a conflict area: sightings enter, tick by tick; the error of the foreseen times leaves.
 //!
 //! A claim of a pass can be firm [`AHEAD_S`] after it was made, and no sooner. So what counts is the time that a vehicle's own horizon has
-//! for its entry so long before it. What has to be claimed besides, before and after the stay, follows from how far that time is off.
+//! for its entry so long before it. A vehicle whose horizon does not reach the area then has no such time.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, VecDeque};
 
 use holdover::passes::Rules;
 use serde::Serialize;
@@ -11,8 +11,11 @@ use serde::Serialize;
 use super::network::Network;
 use super::watch::{Sighting, Watch};
 
-/// So long before an entry its time is foreseen, in seconds: the time after which a claim counts.
+/// So long before an entry the foreseen time is taken, in seconds: the time after which a claim counts.
 pub const AHEAD_S: f64 = (Rules::UNIT.silence.as_micros() + Rules::UNIT.clocks.as_micros()) as f64 / 1e6;
+
+/// What is foreseen is asked once in so long, in seconds.
+pub const ASKED_S: f64 = 0.1;
 
 /// Errors of foreseen times: the true minus the foreseen time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +26,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    fn add(&mut self, error_s: f64) {
+    pub(super) fn add(&mut self, error_s: f64) {
         *self = self.with(Self { count: 1, sum_s: error_s, squares: error_s * error_s });
     }
 
@@ -53,45 +56,54 @@ impl From<Errors> for EntryFigures {
     }
 }
 
+/// What a vehicle foresees of its next area.
+struct Foreseen {
+    /// The area, by its place among those of the road.
+    next: usize,
+    /// When it was asked, and the time that it foresaw.
+    times_s: VecDeque<(f64, f64)>,
+}
+
 /// The errors of all vehicles.
 pub struct Entries<'a> {
     network: &'a Network,
     /// The errors so far.
     pub errors: Errors,
-    /// Trips and intersections that a vehicle's own horizon did not reach in the last tick.
-    short: BTreeSet<(usize, usize)>,
-    /// The foreseen times, until the vehicle is there.
-    foreseen_s: BTreeMap<(usize, usize), f64>,
+    foreseen: BTreeMap<usize, Foreseen>,
 }
 
 impl<'a> Entries<'a> {
     /// Nothing is foreseen yet.
     #[must_use]
     pub fn new(network: &'a Network) -> Self {
-        Self { network, errors: Errors::default(), short: BTreeSet::new(), foreseen_s: BTreeMap::new() }
+        Self { network, errors: Errors::default(), foreseen: BTreeMap::new() }
     }
 }
 
 impl Watch for Entries<'_> {
     fn tick(&mut self, at_s: f64, sightings: &[Sighting]) {
         for own in sightings {
-            for stop in &self.network.lanes[own.road].stops {
-                let key = (own.trip, stop.intersection);
-                let way_m = stop.at_m - self.network.junctions[stop.intersection].half_m - own.way_m;
-                if way_m <= 0.0 {
-                    if let Some(foreseen_s) = self.foreseen_s.remove(&key) {
-                        self.errors.add(at_s - foreseen_s);
-                    }
-                } else if own.foreseen_m.is_some_and(|foreseen_m| foreseen_m < way_m) {
-                    self.short.insert(key);
-                } else if own.foreseen_m.is_some() && self.short.remove(&key) {
-                    self.foreseen_s.entry(key).or_insert(at_s + AHEAD_S);
+            let (next, _) = self.network.next_area(own.road, own.way_m);
+            let nothing = || Foreseen { next, times_s: VecDeque::new() };
+            let foreseen = self.foreseen.entry(own.trip).or_insert_with(nothing);
+            let off_s = |asked_s: f64| (at_s - AHEAD_S - asked_s).abs();
+            if foreseen.next != next {
+                let then = foreseen.times_s.iter().find(|(asked_s, _)| off_s(*asked_s) <= 0.5 * ASKED_S + 1e-9);
+                if let Some((_, entry_s)) = then {
+                    self.errors.add(at_s - entry_s);
                 }
+                *foreseen = nothing();
+            }
+            foreseen.times_s.extend(own.foreseen_entry_s.map(|entry_s| (at_s, entry_s)));
+            while foreseen.times_s.front().is_some_and(|(asked_s, _)| *asked_s < at_s - AHEAD_S - ASKED_S) {
+                foreseen.times_s.pop_front();
             }
         }
     }
 
-    fn left(&mut self, _: f64, _: usize) {}
+    fn left(&mut self, _: f64, trip: usize) {
+        self.foreseen.remove(&trip);
+    }
 }
 
 #[cfg(test)]
@@ -99,41 +111,38 @@ mod tests {
     use super::*;
     use crate::roads::example;
 
-    /// The errors of a vehicle that comes to the first intersection at 10 m/s, from 100 m before the area on. `reads` is the way that its
-    /// own horizon has at each time.
-    fn figures(reads: impl Fn(f64) -> Option<f64>) -> EntryFigures {
+    /// The errors of a vehicle that comes to the first intersection at 10 m/s, from so many metres before the area on. `reads` is the time
+    /// that it foresees at each time; it is there at 0 s.
+    fn figures(from_m: f64, reads: impl Fn(f64) -> Option<f64>) -> EntryFigures {
         let network = Network::of(&example::corridor());
-        let stop = network.lanes[2].stops[0];
-        let begins_m = stop.at_m - network.junctions[stop.intersection].half_m;
+        let (_, way_m) = network.next_area(2, 0.0);
         let mut entries = Entries::new(&network);
-        for tick in 0..=1_000 {
+        for tick in (-10.0 * from_m) as i32..=500 {
             let at_s = f64::from(tick) / 100.0;
-            let own = example::sighting(7, 2, begins_m - 100.0 + 10.0 * at_s);
-            entries.tick(at_s, &[Sighting { foreseen_m: reads(at_s), ..own }]);
+            let foreseen_entry_s = (tick % 10 == 0).then(|| reads(at_s)).flatten();
+            let own = example::sighting(7, 2, way_m.unwrap() + 10.0 * at_s);
+            entries.tick(at_s, &[Sighting { foreseen_entry_s, ..own }]);
         }
         entries.errors.into()
     }
 
     #[test]
-    fn a_vehicle_that_drives_as_foreseen_is_there_at_the_foreseen_time() {
-        let figures = figures(|_| Some(10.0 * AHEAD_S));
-        assert_eq!(figures.entries, 1);
-        assert!(figures.mean_s.unwrap().abs() < 0.011 && figures.std_s.unwrap() < 1e-9, "{figures:?}");
+    fn what_counts_is_what_was_foreseen_4_56_s_before() {
+        let right = figures(100.0, |_| Some(0.0));
+        assert_eq!(right.entries, 1);
+        assert!(right.mean_s.unwrap().abs() < 0.011, "{right:?}");
+        let late = figures(100.0, |at_s| Some(if (-4.62..-4.5).contains(&at_s) { -0.4 } else { 3.0 }));
+        assert_eq!(late.entries, 1);
+        assert!((late.mean_s.unwrap() - 0.4).abs() < 0.011, "{late:?}");
     }
 
     #[test]
-    fn one_that_is_slower_than_foreseen_is_late_by_that_and_counts_once_whatever_it_foresees_later() {
-        // It foresees 11 m/s, and so its entry 4.56 s after it is 50.16 m before the area; it takes 5.016 s.
-        let figures = figures(|at_s| Some(if (5.2..5.4).contains(&at_s) { 0.0 } else { 11.0 * AHEAD_S }));
-        assert_eq!(figures.entries, 1);
-        assert!((figures.mean_s.unwrap() - 0.456).abs() < 0.011, "{figures:?}");
-    }
-
-    #[test]
-    fn without_a_horizon_and_for_one_that_begins_too_near_there_is_no_error() {
+    fn an_entry_that_was_not_foreseen_so_long_before_has_no_error() {
         let nothing = EntryFigures { entries: 0, mean_s: None, std_s: None };
-        assert_eq!(figures(|_| None), nothing);
-        assert_eq!(figures(|_| Some(200.0)), nothing);
+        assert_eq!(figures(100.0, |_| None), nothing);
+        assert_eq!(figures(100.0, |at_s| (at_s > -4.4).then_some(0.0)), nothing);
+        assert_eq!(figures(100.0, |at_s| (at_s < -4.7).then_some(0.0)), nothing);
+        assert_eq!(figures(40.0, |_| Some(0.0)), nothing);
     }
 
     #[test]

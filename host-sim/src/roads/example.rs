@@ -45,7 +45,7 @@ pub fn sighting(trip: usize, road: usize, way_m: f64) -> Sighting {
         next: None,
         followed: None,
         belief: None,
-        foreseen_m: None,
+        foreseen_entry_s: None,
         limited: false,
         dark: false,
         mistakes_time: false,

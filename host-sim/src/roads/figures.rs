@@ -237,6 +237,8 @@ mod tests {
     fn outcome(travel_times_s: &[f64], gap_m: Option<f64>, error_m: f64) -> Outcome {
         let worst = Worst { error_m, at_s: 1.0, by: 0, target: 1, age_s: 0.1 };
         let settled = Class { count: 2, worst: Some(worst), squares: error_m * error_m };
+        let mut entries = Errors::default();
+        entries.add(error_m);
         Outcome {
             seed: 1,
             travel_times_s: travel_times_s.to_vec(),
@@ -249,7 +251,7 @@ mod tests {
             ticks: [10, 5],
             errors: [settled, Class::default(), Class::default()],
             beyond: 3,
-            entries: Errors::default(),
+            entries,
             changes: 4,
             violations: [5, 6],
             remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5, faults: 6 },
@@ -269,6 +271,10 @@ mod tests {
         );
         assert_eq!((side.position_error.ticks, side.position_error.max_m), (4, Some(0.3)));
         assert!((side.position_error.rms_m.unwrap() - 0.025_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(
+            (side.entry_error.entries, side.entry_error.mean_s.map(|mean_s| (mean_s * 100.0).round())),
+            (2, Some(-10.0))
+        );
         assert_eq!(side.position_error_unheard, ErrorFigures { ticks: 0, max_m: None, rms_m: None });
         assert_eq!(
             (side.full_stops, side.pairs_beyond, side.association_changes, side.bound_violations),

@@ -87,6 +87,16 @@ impl Network {
         Self { lanes, junctions, shared }
     }
 
+    /// The next conflict area of a vehicle on a road with its front at `front_m`: how many it has come to already, and where the next one
+    /// begins along the road.
+    #[must_use]
+    pub fn next_area(&self, road: usize, front_m: f64) -> (usize, Option<f64>) {
+        let begins_m = |stop: &Stop| stop.at_m - self.junctions[stop.intersection].half_m;
+        let stops = &self.lanes[road].stops;
+        let next = stops.iter().position(|stop| begins_m(stop) > front_m).unwrap_or(stops.len());
+        (next, stops.get(next).map(begins_m))
+    }
+
     /// Where the rear and the front of a vehicle are along a road, as far as it is on that road. It drives on the road `other`,
     /// with its front at `front_m`.
     #[must_use]

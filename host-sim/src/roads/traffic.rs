@@ -16,7 +16,6 @@ use holdover::wire::StationHash;
 use super::alone::{self, Lost};
 use super::conditions::{Conditions, WhenLost};
 use super::description::{Corridor, Radio};
-use super::entries::AHEAD_S;
 use super::network::Network;
 use super::sight::{Body, Sights};
 use super::tally::Tally;
@@ -39,6 +38,7 @@ mod departures;
 mod emergencies;
 mod events;
 mod faults;
+mod foresight;
 mod looks;
 mod numbers;
 mod stuck;
@@ -71,8 +71,8 @@ pub struct Traffic<'a> {
     logged: Option<usize>,
     sights: Sights,
     happenings: Happenings,
-    /// When a vehicle moved last.
-    moved_s: f64,
+    /// When something happened last.
+    alive_s: f64,
 }
 
 /// The counts at the end of a run.
@@ -134,7 +134,7 @@ impl<'a> Traffic<'a> {
             logged: None,
             sights: Sights::of(network),
             happenings: Happenings::of(&corridor.events, conditions.heeds),
-            moved_s: 0.0,
+            alive_s: 0.0,
         }
     }
 
@@ -202,7 +202,7 @@ impl<'a> Traffic<'a> {
         self.ticks += 1;
         self.tick(at_s, |traffic| {
             traffic.show(at_s, watches);
-            traffic.note_motion(at_s);
+            traffic.note_life(at_s);
             Ok(())
         })?;
         self.dismiss(at_s, watches, log)
@@ -212,8 +212,10 @@ impl<'a> Traffic<'a> {
     fn show(&mut self, at_s: f64, watches: &mut [&mut dyn Watch]) {
         let (beyond, on_way): (Vec<&Traveller>, Vec<&Traveller>) =
             self.travellers.values().partition(|traveller| traveller.has_left());
-        let [beyond, on_way] = [beyond, on_way]
-            .map(|some| some.into_iter().map(|traveller| self.sight(at_s, traveller)).collect::<Vec<Sighting>>());
+        let beyond: Vec<Sighting> = beyond.into_iter().map(|traveller| self.sight(at_s, traveller)).collect();
+        let foreseen = |one: &Traveller| self.is_asked().then(|| self.foreseen_entry_s(at_s, one)).flatten();
+        let sight = |one: &Traveller| Sighting { foreseen_entry_s: foreseen(one), ..self.sight(at_s, one) };
+        let on_way: Vec<Sighting> = on_way.into_iter().map(sight).collect();
         self.tally.on_way += on_way.len() as u64;
         for watch in watches.iter_mut() {
             watch.beyond(&beyond);
@@ -257,7 +259,7 @@ impl<'a> Traffic<'a> {
             odometer_m: traveller.ground.odometer_m,
             next: vehicle.unit.coordination().crossing().map(|crossing| usize::from(crossing.intersection.id)),
             followed: followed(vehicle),
-            foreseen_m: foreseen_m(vehicle, at_s),
+            foreseen_entry_s: None,
             belief: vehicle.estimate.map(|estimate| TargetBelief::of(&estimate, vehicle.plant.position_m)),
             limited: vehicle.limited,
             dark: traveller.is_dark(at_s),
@@ -331,13 +333,6 @@ impl Stages for Traffic<'_> {
         self.broadcast(at_s, broadcasts);
         Ok(())
     }
-}
-
-/// The way that a vehicle's own horizon has it make from now on until its claims count.
-fn foreseen_m(vehicle: &Vehicle, at_s: f64) -> Option<f64> {
-    let read = |at_s| vehicle.unit.estimator().read_own(vehicle.instant(at_s));
-    let (now, then) = (read(at_s)?, read(at_s + AHEAD_S)?);
-    Some(then.position.ahead_of(now.position).to_mm() as f64 / 1_000.0)
 }
 
 /// The station that a vehicle's unit follows.

@@ -35,8 +35,8 @@ pub struct Sighting {
     pub followed: Option<StationHash>,
     /// Its unit's estimate of the target, on the axis of its own odometer.
     pub belief: Option<TargetBelief>,
-    /// The way that its own horizon has it make in the next [`AHEAD_S`](super::entries::AHEAD_S), in metres.
-    pub foreseen_m: Option<f64>,
+    /// The time at which its own horizon has it at the next conflict area, once in [`ASKED_S`](super::entries::ASKED_S).
+    pub foreseen_entry_s: Option<f64>,
     /// Whether its envelope changed the command.
     pub limited: bool,
     /// Whether its radio is silent.

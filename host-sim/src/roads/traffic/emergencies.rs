@@ -46,6 +46,11 @@ impl Emergency {
         })
     }
 
+    /// Whether the vehicle brakes or stands because of it.
+    pub const fn is_under_way(&self) -> bool {
+        matches!(self.phase, Phase::Braking | Phase::StandingUntil(_))
+    }
+
     /// Whether the vehicle brakes or stands now, with its front at `way_m`, and whether that begins now.
     fn at(&mut self, at_s: f64, way_m: f64, speed_mps: f64) -> (bool, bool) {
         let before = self.phase;
@@ -55,7 +60,7 @@ impl Emergency {
             Phase::StandingUntil(until_s) if at_s >= until_s => Phase::Over,
             same => same,
         };
-        let is_braking = matches!(self.phase, Phase::Braking | Phase::StandingUntil(_));
+        let is_braking = self.is_under_way();
         (is_braking, is_braking && before == Phase::Ahead)
     }
 }

@@ -29,6 +29,11 @@ impl Happenings {
         Self { events: heeded(events, heeds), happened: 0, heeds, fits_twins: false, standing: [None; Part::ALL.len()] }
     }
 
+    /// Whether nothing happens at any time.
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
     /// Whether the envelope of the vehicle is switched at some time. For that its unit has a twin since it appears.
     fn needs_twin(&self, trip: usize) -> bool {
         let is = |event: &&Event| matches!(event.change, Change::Switch(Part::Envelope, _)) && event.is_of(trip);

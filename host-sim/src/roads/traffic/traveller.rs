@@ -108,6 +108,19 @@ impl Traveller {
         self.sees && !matches!(self.fault, Some(Fault::BlindFrom(from_s)) if at_s >= from_s)
     }
 
+    /// Whether it stands in an emergency stop, or brakes for it.
+    pub(super) fn stops_by_itself(&self) -> bool {
+        self.emergency.as_ref().is_some_and(Emergency::is_under_way)
+    }
+
+    /// Whether its fault has not begun.
+    pub(super) fn fault_is_to_come(&self, at_s: f64) -> bool {
+        let Some(Fault::DeafFrom(from_s) | Fault::MuteFrom(from_s) | Fault::BlindFrom(from_s)) = self.fault else {
+            return false;
+        };
+        at_s < from_s
+    }
+
     /// Whether its clock is off.
     #[must_use]
     pub fn mistakes_time(&self) -> bool {
