@@ -19,6 +19,7 @@ ROWS = {
     "target outside its bound, ticks": lambda side: side["bound_violations"],
     "target's position error, max": lambda side: side["position_error"]["max_m"],
     "the same, rms": lambda side: side["position_error"]["rms_m"],
+    "entry error, standard deviation": lambda side: side["entry_error"]["std_s"],
 }
 
 
