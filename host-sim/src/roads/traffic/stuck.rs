@@ -5,13 +5,13 @@
 use super::{Traffic, Traveller};
 use crate::measure::metrics::STANDING_BELOW_MPS;
 
-/// A run is given up when nothing has happened for so long, in seconds: four times the longest time that a unit measures, which is that after
-/// which it forgets a station.
+/// A run is given up when nothing has happened for so long, in seconds: four times the longest time that a unit measures, which is that
+/// after which it forgets a station.
 const STUCK_S: f64 = 120.0;
 
 impl Traffic<'_> {
-    /// Notes whether something happens, or is still to happen: somebody moves or is to come, a vehicle makes an emergency stop, or its silence
-    /// or its fault has not begun or is not over.
+    /// Notes whether something happens, or is still to happen: somebody moves or is to come, a vehicle makes an emergency stop, or its
+    /// silence or its fault has not begun, or a silence is not over.
     pub(super) fn note_life(&mut self, at_s: f64) {
         let is_alive = |one: &Traveller| {
             let is_on_way = !one.has_left();
