@@ -38,7 +38,7 @@ const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
 /// An ego that may leave the area later than so long before the end of its window is late.
 const LATE: Duration = Duration::from_millis(200);
 /// The acceleration with which a car leaves the area.
-const LEAVES: Acceleration = Acceleration::from_mm_per_s2(2_000);
+const LEAVES: Acceleration = Acceleration::from_mm_per_s2(1_500);
 
 /// The ego at now, from the least to the most that it may be ahead and fast.
 #[derive(Clone, Copy, Debug)]
@@ -88,6 +88,9 @@ impl Range {
     /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed;
     /// and the time that this takes. With `a` reached and `u` commanded, neither above 0, and `τ`, the largest lag and the delay of the
     /// envelope, it is `v + a τ - u² / 2 j`, after `τ + (b - u) / j`.
+    ///
+    /// By as much as `τ` is longer than the lag the ego may be late at the end of its window: until another one comes, the area stays empty
+    /// for longer. So that part of `τ` is in the speed, and in the time only as far as it is longer than the clearance.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
         let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
@@ -95,12 +98,14 @@ impl Range {
         let braked = mm_per_s2(self.commanded.negated());
         let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
         let ramp = Duration::from_millis(i64::from(ramp_ms));
-        let lag = config.lag.plus(config.lag.fraction(limits.lag_tolerance));
-        let turns = Duration::of_fine_seconds(lag).plus(limits.delay);
+        let lag = Duration::of_fine_seconds(config.lag);
+        let longer = Duration::of_fine_seconds(config.lag.fraction(limits.lag_tolerance)).plus(limits.delay);
+        let late = longer.min(Rules::UNIT.clearance);
         let lost = braked.saturating_mul(braked) / jerk / 2;
         let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
+        let turns = lag.plus(longer);
         let braking = self.reached.min(Acceleration::ZERO).over(turns.fine_seconds());
-        (self.slowest.plus(braking).plus(lost).max(Speed::ZERO), turns.plus(ramp))
+        (self.slowest.plus(braking).plus(lost).max(Speed::ZERO), turns.minus(late).plus(ramp))
     }
 }
 
