@@ -2,7 +2,7 @@
 //! claimed, who gives way, and which window may be used.
 //!
 //! A *pass* is a window of GNSS time. Its vehicle may be in one conflict area only during that window: it goes in only if it is certain
-//! to be out by the end. So the vehicle need not hear anything while it is in the area. Each vehicle *claims* windows and publishes its
+//! to be out by the end, or by the clearance later. So the vehicle need not hear anything while it is in the area. Each vehicle *claims* windows and publishes its
 //! claims with every message. The model checker in `tests/passes` runs these functions, and so does the unit. The rules and their proof are
 //! in `docs/COORDINATION.md`.
 //!
@@ -101,7 +101,8 @@ pub struct Rules {
     pub silence: Duration,
     /// The largest difference of two clocks.
     pub clocks: Duration,
-    /// The time for which the area stays empty between two vehicles.
+    /// By so much longer than clocks differ two windows are apart. Part of it a vehicle may take that leaves late because its actuators are
+    /// lazier than it believes.
     pub clearance: Duration,
     /// A vehicle that has been silent for so long is forgotten, if its windows are over.
     pub forgotten: Duration,
@@ -187,7 +188,7 @@ impl Rules {
     /// at `exit`, if it has had one.
     #[must_use]
     pub fn is_forgotten(&self, now: GnssTime, heard: GnssTime, exit: Option<GnssTime>) -> bool {
-        now > heard.plus(self.forgotten) && exit.is_none_or(|exit| now > exit.plus(self.clocks))
+        now > heard.plus(self.forgotten) && exit.is_none_or(|exit| now > exit.plus(self.clocks).plus(self.clearance))
     }
 }
 
@@ -296,8 +297,8 @@ pub(crate) mod tests {
     fn a_vehicle_is_forgotten_after_its_window_and_a_long_silence() {
         assert!(!RULES.is_forgotten(time(1_300), time(1_000), None));
         assert!(RULES.is_forgotten(time(1_301), time(1_000), None));
-        assert!(!RULES.is_forgotten(time(1_402), time(1_000), Some(time(1_400))));
-        assert!(RULES.is_forgotten(time(1_403), time(1_000), Some(time(1_400))));
+        assert!(!RULES.is_forgotten(time(1_405), time(1_000), Some(time(1_400))));
+        assert!(RULES.is_forgotten(time(1_406), time(1_000), Some(time(1_400))));
     }
 
     #[test]

@@ -224,7 +224,7 @@ mod tests {
         let mut list = List::EMPTY;
         let claims = [Some(claim(1, window(1_100, 1_400), 7)), None];
         list.hear(Station::new(7, Movement::straight(1), time(1_000), Arrival(5), claims)).unwrap();
-        for (now, known) in [(1_301, 1), (1_402, 1), (1_403, 0)] {
+        for (now, known) in [(1_301, 1), (1_405, 1), (1_406, 0)] {
             list.forget(&RULES, time(now));
             assert_eq!(list.iter().count(), known, "{now}");
         }

@@ -7,7 +7,7 @@ use super::scene::Scene;
 use super::scene::passes::whole_steps;
 use crate::config::{Config, Envelope};
 use crate::fixed::quotient;
-use crate::model::State;
+use crate::model::{State, catch_up};
 use crate::parameters::{POSITION_ROUNDING, SPEED_ROUNDING};
 use crate::passes::{Outlook, Rules, Slack, Window};
 use crate::peers::Sample;
@@ -85,27 +85,31 @@ impl Range {
         }
     }
 
-    /// The lowest speed until the command has turned to this acceleration `b`, with the envelope's jerk `j`, and the actuators have followed;
-    /// and the time that this takes. With `a` reached and `u` commanded, neither above 0, and `τ`, the largest lag and the delay of the
-    /// envelope, it is `v + a τ - u² / 2 j`, after `τ + (b - u) / j`.
+    /// How an ego gets faster that goes over to this acceleration `b`: it may be taken to go on at a speed until a time from now on, and to
+    /// accelerate with `b` from then on.
     ///
-    /// By as much as `τ` is longer than the lag the ego may be late at the end of its window: until another one comes, the area stays empty
-    /// for longer. So that part of `τ` is in the speed, and in the time only as far as it is longer than the clearance.
+    /// With `a` reached and `u` commanded, neither above 0, the envelope's jerk `j`, its largest lag `τ`, and its delay and a period `d`, the
+    /// speed is at least `v + a τ + u d - u² / 2 j + b (t - τ - d - (b - u) / j)`, and it never is below 0. So an ego that would be at less
+    /// than 0 is taken to stand until it would not. The time by which delay and largest lag are longer than the lag is not counted, as far as
+    /// it is no longer than the clearance: for so long no other one has the area when the ego's window is over.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
         let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
         let jerk = NonZeroU32::new(limits.jerk.to_mm_per_s3().max(1).unsigned_abs()).unwrap_or(NonZeroU32::MIN);
-        let braked = mm_per_s2(self.commanded.negated());
+        let commanded = self.commanded.min(Acceleration::ZERO);
+        let braked = mm_per_s2(commanded.negated());
         let ramp_ms = braked.saturating_add(mm_per_s2(to)).saturating_mul(1_000) / jerk;
-        let ramp = Duration::from_millis(i64::from(ramp_ms));
-        let lag = Duration::of_fine_seconds(config.lag);
-        let longer = Duration::of_fine_seconds(config.lag.fraction(limits.lag_tolerance)).plus(limits.delay);
-        let late = longer.min(Rules::UNIT.clearance);
-        let lost = braked.saturating_mul(braked) / jerk / 2;
-        let lost = Speed::from_mm_per_s(i32::try_from(lost).unwrap_or(i32::MAX)).negated();
-        let turns = lag.plus(longer);
-        let braking = self.reached.min(Acceleration::ZERO).over(turns.fine_seconds());
-        (self.slowest.plus(braking).plus(lost).max(Speed::ZERO), turns.minus(late).plus(ramp))
+        let lag = config.lag.plus(config.lag.fraction(limits.lag_tolerance));
+        let delay = limits.delay.plus(config.period);
+        let turns = Duration::of_fine_seconds(lag).plus(delay);
+        let longer = turns.minus(Duration::of_fine_seconds(config.lag));
+        let ramp = Speed::from_mm_per_s(i32::try_from(braked.saturating_mul(braked) / jerk / 2).unwrap_or(i32::MAX));
+        let fading = self.reached.min(Acceleration::ZERO).over(lag).plus(commanded.over(delay.fine_seconds()));
+        let lowest = self.slowest.plus(fading).minus(ramp);
+        let stands_ms = lowest.negated().to_mm_per_s().max(0).unsigned_abs().saturating_mul(1_000)
+            / NonZeroU32::new(mm_per_s2(to)).unwrap_or(NonZeroU32::MIN);
+        let ramp_and_stand = Duration::from_millis(i64::from(ramp_ms.saturating_add(stands_ms)));
+        (lowest.max(Speed::ZERO), turns.minus(longer.min(Rules::UNIT.clearance)).plus(ramp_and_stand))
     }
 }
 
@@ -159,7 +163,10 @@ pub(super) fn stay_at_worst<const PEERS: usize, const SAMPLES: usize, const STEP
     ego: &Range,
 ) -> Stay {
     let (config, top) = (&scene.config, scene.target_speed());
-    let there = Way { length: area.begins.ahead_of(ego.foremost), top, acceleration: config.limits.acceleration };
+    // The law drives faster to catch up.
+    let fastest = catch_up(top, config.law.catch_up);
+    let there =
+        Way { length: area.begins.ahead_of(ego.foremost), top: fastest, acceleration: config.limits.acceleration };
     let out = Way { length: area.is_left_at.ahead_of(ego.rearmost), top, acceleration: leaving(scene) };
     let (slowest, turns) = ego.turning(config, out.acceleration);
     Stay { entry: there.within(ego.fastest, Duration::ZERO), exit: out.within(slowest, turns) }
@@ -331,3 +338,6 @@ impl Way {
         turns.plus(Duration::from_micros(micros)).min(NEVER)
     }
 }
+
+#[cfg(test)]
+mod tests;
