@@ -2,9 +2,9 @@
 //! claimed, who gives way, and which window may be used.
 //!
 //! A *pass* is a window of GNSS time. Its vehicle may be in one conflict area only during that window: it goes in only if it is certain
-//! to be out by the end, or by the clearance later. So the vehicle need not hear anything while it is in the area. Each vehicle *claims* windows and publishes its
-//! claims with every message. The model checker in `tests/passes` runs these functions, and so does the unit. The rules and their proof are
-//! in `docs/COORDINATION.md`.
+//! to be out by the end, or by the clearance later. So the vehicle need not hear anything while it is in the area. Each vehicle *claims*
+//! windows and publishes its claims with every message. The model checker in `tests/passes` runs these functions, and so does the unit.
+//! The rules and their proof are in `docs/COORDINATION.md`.
 //!
 //! | rule | what | here |
 //! |---|---|---|
@@ -101,8 +101,8 @@ pub struct Rules {
     pub silence: Duration,
     /// The largest difference of two clocks.
     pub clocks: Duration,
-    /// By so much longer than clocks differ two windows are apart. Part of it a vehicle may take that leaves late because its actuators are
-    /// lazier than it believes.
+    /// By so much longer than clocks differ two windows are apart. A vehicle whose actuators are lazier than it believes may leave late by up
+    /// to this.
     pub clearance: Duration,
     /// A vehicle that has been silent for so long is forgotten, if its windows are over.
     pub forgotten: Duration,

@@ -39,8 +39,8 @@ pub struct Slack {
 }
 
 impl Slack {
-    /// What a unit claims beyond the stay that it foresees: about three standard deviations of how far entries of all vehicles are off. It is
-    /// more often later than earlier.
+    /// What a unit claims beyond the stay that it foresees: three standard deviations of how far entries are off where vehicles make
+    /// emergency stops. It is more often later than earlier.
     pub const UNIT: Self = Self { before: Duration::from_millis(600), after: Duration::from_millis(800) };
     const KEPT: Self = Self { before: KEPT, after: KEPT };
 

@@ -88,10 +88,13 @@ impl Range {
     /// How an ego gets faster that goes over to this acceleration `b`: it may be taken to go on at a speed until a time from now on, and to
     /// accelerate with `b` from then on.
     ///
-    /// With `a` reached and `u` commanded, neither above 0, the envelope's jerk `j`, its largest lag `τ`, and its delay and a period `d`, the
-    /// speed is at least `v + a τ + u d - u² / 2 j + b (t - τ - d - (b - u) / j)`, and it never is below 0. So an ego that would be at less
-    /// than 0 is taken to stand until it would not. The time by which delay and largest lag are longer than the lag is not counted, as far as
-    /// it is no longer than the clearance: for so long no other one has the area when the ego's window is over.
+    /// With `a` reached and `u` commanded, neither above 0, the envelope's jerk `j`, its largest lag `τ`, and its delay and a period `d`,
+    /// the speed is at least `v + a τ + u d - u² / 2 j + b (t - τ - d - (b - u) / j)`, and it never is below 0. So an ego that would be at
+    /// less than 0 is taken to stand until it would not. The time by which `τ + d` is longer than the lag is not counted, as far as it is
+    /// no longer than the clearance: nobody else enters within that after the ego's window.
+    ///
+    /// Commands on their way may be harder than `u`, by `j` times the delay. What that costs is less than `b² / 2 j`, by which the ramp is
+    /// better than counted, while the delay is at most `b / j`.
     fn turning(&self, config: &Config, to: Acceleration) -> (Speed, Duration) {
         let limits = config.envelope.as_ref().unwrap_or(&Envelope::CAR);
         let mm_per_s2 = |acceleration: Acceleration| acceleration.to_mm_per_s2().max(0).unsigned_abs();
