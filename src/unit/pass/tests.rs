@@ -1,3 +1,5 @@
+//! The longest stay of an ego in an area beside a body that is as lazy as the envelope allows, in float64.
+
 use super::*;
 use crate::units::FineSeconds;
 use crate::wire::StationHash;
