@@ -39,7 +39,7 @@ mod tests {
     use crate::roads::experiment::Experiment;
     use crate::roads::trips::Trip;
 
-    /// The state of a run with these two trips and events after so many seconds, of which nothing has happened in the last `still_s`.
+    /// Whether a run with these trips and events is given up after so many seconds, of which nothing has happened in the last `still_s`.
     fn is_stuck(trips: &[Trip], events: Vec<Event>, after_s: f64, still_s: f64) -> bool {
         let experiment = Experiment::new(Corridor { events, ..example::corridor() });
         let Experiment { corridor, network, itineraries } = &experiment;
