@@ -8,10 +8,17 @@
 
 use super::{Claim, Known, PIECES, Rules, Window, is_covered};
 use crate::held::Held;
+use crate::parameters::DEFAULT_LENGTH;
 use crate::time::{Duration, GnssTime};
+use crate::units::Distance;
+use crate::wire::pass::STEP;
 
 /// Time beyond what is wanted that a vehicle does not give back, so that a claim does not follow every change of what is foreseen.
 const KEPT: Duration = Duration::from_millis(400);
+
+/// [`STEP`].
+const STEP_MICROS: i32 = 10_000;
+const _: () = assert!(STEP.as_micros() == STEP_MICROS as i64);
 
 /// A vehicle that has said nothing for so long is not on air any more. It speaks every 200 ms.
 const SILENT: Duration = Duration::from_millis(500);
@@ -39,9 +46,17 @@ pub struct Slack {
 }
 
 impl Slack {
-    /// What a unit claims beyond the stay that it foresees: three standard deviations of how far entries are off where vehicles make
-    /// emergency stops. It is more often later than earlier.
-    pub const UNIT: Self = Self { before: Duration::from_millis(600), after: Duration::from_millis(800) };
+    /// What the unit of a vehicle of this length claims beyond the stay that it foresees, in whole [steps](STEP): 0.6 s before it,
+    /// and after it 0.8 s for a car of 4.8 m and 75 ms more for each metre more.
+    ///
+    /// They are three standard deviations of how far entries are off where vehicles make emergency stops. A vehicle is more often later than
+    /// earlier, and the time that it has lost before the area grows with the way until its rear has left.
+    #[must_use]
+    pub fn of(length: Distance) -> Self {
+        let micros = length.minus(DEFAULT_LENGTH).to_mm().saturating_mul(75).saturating_add(800_000);
+        Self { before: Duration::from_millis(600), after: STEP.times(i64::from(micros / STEP_MICROS)) }
+    }
+
     const KEPT: Self = Self { before: KEPT, after: KEPT };
 
     /// A window with this before and after it.

@@ -15,8 +15,6 @@ use crate::time::{Duration, GnssTime, Instant};
 use crate::units::{Acceleration, Distance, Position, Speed};
 use crate::wire::pass::STEP;
 
-/// How much earlier or later than foreseen the ego may be in the area.
-const SLACK: Slack = Slack::UNIT;
 /// With less than this left, more is claimed.
 const LEAST: Slack = Slack { before: Duration::from_millis(200), after: Duration::from_millis(400) };
 /// A stay that begins sooner than this has to be possible at both ends of what the ego can do.
@@ -263,7 +261,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         stay.exit = stay.exit.plus(WAITS);
     }
     let stay = Window { entry: whole_steps(stay.entry), exit: whole_steps(stay.exit.plus(STEP)) };
-    Some(Outlook { stay, slack: SLACK, least: LEAST, is_committed })
+    Some(Outlook { stay, slack: Slack::of(scene.config.length), least: LEAST, is_committed })
 }
 
 /// The time until the ego's front is at a place, by its own horizon; beyond the end of that, at the speed there.

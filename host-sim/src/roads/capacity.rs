@@ -7,6 +7,7 @@
 use holdover::coordination::UNSEEN;
 use holdover::passes::{Rules, Slack};
 use holdover::time::Duration;
+use holdover::units::Distance;
 use serde::Serialize;
 
 use super::description::Corridor;
@@ -45,7 +46,8 @@ impl Capacity {
         let traffic = &corridor.traffic;
         let (speed_mps, length_m) = (traffic.target_speed_mps, mean_length_m(corridor));
         let apart_s = seconds(Rules::UNIT.clocks) + seconds(Rules::UNIT.clearance);
-        let slack_s = seconds(Slack::UNIT.before) + seconds(Slack::UNIT.after);
+        let slack = Slack::of(Distance::from_mm((length_m * 1e3).round() as i32));
+        let slack_s = seconds(slack.before) + seconds(slack.after);
         let at = |index: usize, junction: &Junction| {
             let rate = |leg: usize| corridor.roads[junction.legs[leg].road].vehicles_per_min;
             let load: f64 = (0..junction.legs.len()).map(rate).sum();

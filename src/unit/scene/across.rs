@@ -2,6 +2,7 @@
 //! for each of them leaves, and whether a view of the range sensor is of one of them.
 
 use super::Scene;
+use super::sight::Sight;
 use crate::envelope;
 use crate::model::Reading;
 use crate::model::bound::Bound;
@@ -101,13 +102,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// vehicle ahead on the own leg, which the crossing one hides. And it need not be remembered, because the crossing vehicle is minded
     /// until it has left the area for certain, by what was heard of it. *Alternative:* taken for a vehicle that stands in the way, each
     /// one that crosses would hold the ego for as long as one that stood is remembered.
-    pub(super) fn is_of_one_that_crosses(&self, at: Instant, own_front: Position, seen: Position) -> bool {
+    pub(super) fn is_of_one_that_crosses(&self, sight: &Sight, own_front: Position) -> bool {
         let area = self.coordination.crossing().and_then(|crossing| {
             Some((self.area_begins()?, self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)))
         });
-        let is_in_area = area.is_some_and(|(begins, ends)| begins <= seen && seen <= ends);
+        let is_in_area = area.is_some_and(|(begins, ends)| begins <= sight.rear && sight.rear <= ends);
         is_in_area
-            && (0..PEERS)
-                .any(|index| self.may_be_in_area(index, at) || self.stop_before_area(index, at, own_front).is_some())
+            && !self.ranging.goes_on(sight)
+            && (0..PEERS).any(|index| {
+                self.may_be_in_area(index, sight.at) || self.stop_before_area(index, sight.at, own_front).is_some()
+            })
     }
 }

@@ -230,6 +230,21 @@ impl Ranging {
         self.newest.set(sight);
     }
 
+    /// Whether a view goes on with the vehicle that drove ahead on the ego's path just now: its place and its speed are those that that one
+    /// may have by now. Another vehicle at that place would touch it.
+    pub(in crate::unit) fn goes_on(&self, sight: &Sight) -> bool {
+        let Some(last) = self.newest.as_ref() else { return false };
+        let (age, seen) = (sight.at.since(last.at), &sight.bound);
+        if age < Duration::ZERO || age > RANGE_TIMEOUT || last.stands() {
+            return false;
+        }
+        let then = last.bound.after(sight.at, &AccelerationRange::WORST);
+        seen.lowest_position() <= then.highest_position()
+            && seen.highest_position() >= then.lowest_position()
+            && seen.lowest_speed() <= then.highest_speed()
+            && seen.highest_speed() >= then.lowest_speed()
+    }
+
     /// For how long the sensor has seen no vehicle on the ego's way; `None` if it sees that none is there, or never saw one.
     pub(in crate::unit) fn unseen(&self, now: Instant) -> Option<Duration> {
         self.newest.get().map(|newest| now.since(newest.at))
