@@ -47,13 +47,14 @@ pub struct Slack {
 
 impl Slack {
     /// What the unit of a vehicle of this length claims beyond the stay that it foresees, in whole [steps](STEP): 0.6 s before it,
-    /// and after it 0.8 s for a car of 4.8 m and 75 ms more for each metre more.
+    /// and after it 0.8 s for a car of 4.8 m, and 75 ms more for each metre by which it is longer.
     ///
     /// They are three standard deviations of how far entries are off where vehicles make emergency stops. A vehicle is more often later than
     /// earlier, and the time that it has lost before the area grows with the way until its rear has left.
     #[must_use]
     pub fn of(length: Distance) -> Self {
-        let micros = length.minus(DEFAULT_LENGTH).to_mm().saturating_mul(75).saturating_add(800_000);
+        let micros =
+            length.minus(DEFAULT_LENGTH).max(Distance::ZERO).to_mm().saturating_mul(75).saturating_add(800_000);
         Self { before: Duration::from_millis(600), after: STEP.times(i64::from(micros / STEP_MICROS)) }
     }
 

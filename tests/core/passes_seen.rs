@@ -150,3 +150,32 @@ fn an_old_estimate_in_the_area_holds_the_ego_only_while_it_does_not_see_that_the
         }
     }
 }
+
+/// The least speed of an ego at 10 m/s that comes to the area so far behind another vehicle of its leg. A third one, which crosses, was
+/// there before them, and its radio dies there. It drives on.
+fn slows_to(behind: f64) -> f64 {
+    let mut ego = sees(3, 0, CROSSING - 170.0 - behind, 10.0);
+    ego.sees_across = true;
+    let ahead = sees(4, 0, CROSSING - 170.0, 10.0);
+    let mut junction = Junction::new(vec![ego, ahead, sees(2, 1, CROSSING - 140.0, 10.0)]);
+    let mut least = f64::MAX;
+    junction.run(40.0, |junction| {
+        let [ego, _, crossing] = &mut junction.drivers[..] else { panic!("three") };
+        if crossing.body.position > CROSSING {
+            (crossing.speaks, crossing.hears) = (false, false);
+        }
+        if ego.body.position < CROSSING {
+            least = least.min(ego.body.speed);
+        }
+    });
+    assert!(junction.drivers[0].body.position > CROSSING + 50.0);
+    least
+}
+
+#[test]
+fn one_ahead_on_the_own_leg_that_is_seen_to_drive_through_the_area_does_not_hold_the_ego() {
+    for behind in (20..=40).step_by(2).map(f64::from) {
+        let least = slows_to(behind);
+        assert!(least > 7.0, "{behind} m behind: {least:.1} m/s");
+    }
+}

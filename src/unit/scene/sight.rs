@@ -17,7 +17,7 @@ use crate::held::Held;
 use crate::model::Reading;
 use crate::model::bound::{AccelerationRange, Bound, Uncertainty};
 use crate::time::{Duration, Instant};
-use crate::units::{Position, Speed};
+use crate::units::{Distance, Position, Speed};
 use crate::wire::range_sensor::RangeSample;
 use crate::wire::{Slot, StationHash};
 
@@ -42,6 +42,11 @@ const CROSSING: Duration = Duration::from_millis(1_000);
 /// A sensor of which no view is younger than this is not relied on to see who crosses. What it says of nobody is up to 63 ms old, and it
 /// says so only some views after it has seen somebody.
 const BLIND: Duration = Duration::from_millis(250);
+
+/// How far from where the vehicle ahead was to be, and by how much slower or faster, a view may be of the same vehicle. Two views err by
+/// half a metre, and a vehicle that brakes at its hardest loses 1.5 m/s in 0.12 s, which is six views.
+const GOES_ON: Distance = Distance::from_mm(1_000);
+const FASTER: Speed = Speed::from_mm_per_s(1_500);
 
 /// This many views in a row that contradict what is certain of the target are a disagreement.
 const DISAGREEMENT: u8 = 3;
@@ -230,19 +235,17 @@ impl Ranging {
         self.newest.set(sight);
     }
 
-    /// Whether a view goes on with the vehicle that drove ahead on the ego's path just now: its place and its speed are those that that one
-    /// may have by now. Another vehicle at that place would touch it.
+    /// Whether a view goes on with the vehicle that drove ahead on the ego's path just now: the view is of a vehicle that drives along that
+    /// path for certain, where that one was to be by now, and about as fast. Another one there would touch it.
     pub(in crate::unit) fn goes_on(&self, sight: &Sight) -> bool {
         let Some(last) = self.newest.as_ref() else { return false };
-        let (age, seen) = (sight.at.since(last.at), &sight.bound);
-        if age < Duration::ZERO || age > RANGE_TIMEOUT || last.stands() {
+        let age = sight.at.since(last.at);
+        if age < Duration::ZERO || age > RANGE_TIMEOUT || last.stands() || sight.stands() {
             return false;
         }
-        let then = last.bound.after(sight.at, &AccelerationRange::WORST);
-        seen.lowest_position() <= then.highest_position()
-            && seen.highest_position() >= then.lowest_position()
-            && seen.lowest_speed() <= then.highest_speed()
-            && seen.highest_speed() >= then.lowest_speed()
+        let off = sight.rear.ahead_of(last.rear.ahead(last.speed.over(age.seconds())));
+        let faster = sight.speed.minus(last.speed);
+        off <= GOES_ON && off >= GOES_ON.negated() && faster <= FASTER && faster >= FASTER.negated()
     }
 
     /// For how long the sensor has seen no vehicle on the ego's way; `None` if it sees that none is there, or never saw one.
