@@ -97,8 +97,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         })
     }
 
-    /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, and the ego has to be able to
-    /// stop before the area for a vehicle that it has heard. Such a view says nothing new. It does not contradict what is heard of the
+    /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, the ego has to be able to stop
+    /// before the area for a vehicle that it has heard, and the view does not go on with those of the vehicle ahead. Such a view says
+    /// nothing new. It does not contradict what is heard of the
     /// vehicle ahead on the own leg, which the crossing one hides. And it need not be remembered, because the crossing vehicle is minded
     /// until it has left the area for certain, by what was heard of it. *Alternative:* taken for a vehicle that stands in the way, each
     /// one that crosses would hold the ego for as long as one that stood is remembered.
