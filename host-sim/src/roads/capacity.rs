@@ -110,7 +110,7 @@ mod tests {
         let capacity = of(example::TEXT);
         // Cars, vans and buses are 5.7 m long on average. 11.4 of 30 vehicles pass each intersection that has four legs.
         assert!((capacity.conflict_s - (12.7 / 11.0 + 0.2)).abs() < 1e-9, "{capacity:?}");
-        assert!((capacity.claimed_s - capacity.conflict_s - 1.4).abs() < 1e-9);
+        assert!((capacity.claimed_s - capacity.conflict_s - 1.46).abs() < 1e-9);
         assert!((capacity.headway_s - (1.0 + 15.7 / 11.0)).abs() < 1e-9);
         assert!((capacity.share - 11.4 / 30.0).abs() < 1e-9 && (capacity.abreast - 2.0).abs() < 1e-9);
         for (each_s, per_min) in [

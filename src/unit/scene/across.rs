@@ -9,6 +9,9 @@ use crate::model::bound::Bound;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 
+/// So far before the area nobody is seen who crosses or joins in it, though the ego's position may be off.
+const WELL_BEFORE: Distance = Distance::from_mm(-2_000);
+
 /// A peer that was heard no longer ago than this says where it is itself.
 const JUST_NOW: Duration = Duration::from_millis(500);
 
@@ -104,14 +107,25 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// until it has left the area for certain, by what was heard of it. *Alternative:* taken for a vehicle that stands in the way, each
     /// one that crosses would hold the ego for as long as one that stood is remembered.
     pub(super) fn is_of_one_that_crosses(&self, sight: &Sight, own_front: Position) -> bool {
-        let area = self.coordination.crossing().and_then(|crossing| {
-            Some((self.area_begins()?, self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)))
-        });
+        let area = self.next_area();
         let is_in_area = area.is_some_and(|(begins, ends)| begins <= sight.rear && sight.rear <= ends);
         is_in_area
-            && !self.ranging.goes_on(sight)
+            && !sight.is_on_leg
             && (0..PEERS).any(|index| {
                 self.may_be_in_area(index, sight.at) || self.stop_before_area(index, sight.at, own_front).is_some()
             })
+    }
+
+    /// Whether a view is of a vehicle that was ahead on the ego's leg before the next conflict area, and drives through it. Only such a
+    /// vehicle is seen well before the area.
+    pub(super) fn is_on_leg(&self, sight: &Sight) -> bool {
+        let Some((begins, ends)) = self.next_area() else { return false };
+        sight.rear < begins.ahead(WELL_BEFORE) || sight.rear <= ends && self.ranging.goes_on(sight)
+    }
+
+    /// Where the next conflict area begins and ends on the ego's way.
+    fn next_area(&self) -> Option<(Position, Position)> {
+        let crossing = self.coordination.crossing()?;
+        Some((self.area_begins()?, self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)))
     }
 }

@@ -100,6 +100,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.ranging.note_seen(at);
         let visible = self.visible();
         self.raise_others(visible, &view.sight);
+        view.sight.is_on_leg = self.is_on_leg(&view.sight);
         if self.is_of_one_that_crosses(&view.sight, front) {
             if !self.is_crossing_heard(at) {
                 self.ranging.see_crossing(view.sight);

@@ -68,13 +68,15 @@ pub(in crate::unit) struct Sight {
     pub bound: Bound,
     /// Whose it is, if it went into what is certain of that station.
     pub whose: Option<Whose>,
+    /// Whether it is of a vehicle that was ahead on the ego's leg before the next conflict area.
+    pub is_on_leg: bool,
 }
 
 impl Sight {
     /// A view of nobody's place in particular.
     pub fn new(at: Instant, rear: Position, speed: Speed, uncertainty: &Uncertainty) -> Self {
         let bound = Bound::around(at, rear, speed, uncertainty, &AccelerationRange::WORST);
-        Self { at, rear, speed, bound, whose: None }
+        Self { at, rear, speed, bound, whose: None, is_on_leg: false }
     }
 
     /// Whether the vehicle may have stood or crawled.
@@ -235,12 +237,12 @@ impl Ranging {
         self.newest.set(sight);
     }
 
-    /// Whether a view goes on with the vehicle that drove ahead on the ego's path just now: the view is of a vehicle that drives along that
-    /// path for certain, where that one was to be by now, and about as fast. Another one there would touch it.
+    /// Whether a view goes on with the vehicle that drove ahead on the ego's leg just now: the view is of a vehicle that drives along the
+    /// ego's path for certain, where that one was to be by now, and about as fast. Another one there would touch it.
     pub(in crate::unit) fn goes_on(&self, sight: &Sight) -> bool {
         let Some(last) = self.newest.as_ref() else { return false };
         let age = sight.at.since(last.at);
-        if age < Duration::ZERO || age > RANGE_TIMEOUT || last.stands() || sight.stands() {
+        if age < Duration::ZERO || age > RANGE_TIMEOUT || !last.is_on_leg || last.stands() || sight.stands() {
             return false;
         }
         let off = sight.rear.ahead_of(last.rear.ahead(last.speed.over(age.seconds())));

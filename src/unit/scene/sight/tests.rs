@@ -121,7 +121,10 @@ fn a_view_that_comes_late_does_not_undo_a_newer_one() {
 fn a_view_goes_on_with_the_last_one_only_where_and_as_fast_as_that_one_may_be_by_now() {
     let mut ranging = Ranging::new();
     assert!(!ranging.goes_on(&sight(20, 30, 10_000)), "nobody was seen");
+    let on_leg = |speed| Sight { is_on_leg: true, ..sight(0, 30, speed) };
     ranging.see(sight(0, 30, 10_000));
+    assert!(!ranging.goes_on(&sight(20, 30, 10_000)), "it was not ahead on the leg");
+    ranging.see(on_leg(10_000));
     let goes_on = |ranging: &Ranging, millis, mm: i32, mm_per_s| {
         let (rear, speed) = (Position::from_mm(mm.into()), Speed::from_mm_per_s(mm_per_s));
         ranging.goes_on(&Sight::new(at(millis), rear, speed, &Uncertainty::default()))
@@ -138,7 +141,7 @@ fn a_view_goes_on_with_the_last_one_only_where_and_as_fast_as_that_one_may_be_by
     // One that hardly moves along the path may cross it.
     for (last, now) in [(900, 1_500), (2_000, 900)] {
         let mut ranging = Ranging::new();
-        ranging.see(sight(0, 30, last));
+        ranging.see(on_leg(last));
         assert!(!goes_on(&ranging, 20, 30_020, now), "{last} and {now} mm/s");
     }
 }
