@@ -135,6 +135,12 @@ impl Intersection {
         }
     }
 
+    /// Whether all vehicles that come by a leg go the same way.
+    #[must_use]
+    pub fn has_one_way_from(&self, leg: u8) -> bool {
+        self.approaches.iter().filter(|approach| approach.movement.leg == leg).count() <= 1
+    }
+
     /// Whether a movement conflicts with one that begins on a leg. A leg that is not on the map crosses all others.
     #[must_use]
     pub fn crosses(&self, movement: Movement, leg: u8) -> bool {

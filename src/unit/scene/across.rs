@@ -9,8 +9,8 @@ use crate::model::bound::Bound;
 use crate::time::{Duration, Instant};
 use crate::units::{Distance, Position};
 
-/// So far before the area nobody is seen who crosses or joins in it, though the ego's position may be off.
-const WELL_BEFORE: Distance = Distance::from_mm(-2_000);
+/// So far before the area for certain nobody is seen who crosses or joins in it.
+const WELL_BEFORE: Distance = Distance::from_mm(-1_000);
 
 /// A peer that was heard no longer ago than this says where it is itself.
 const JUST_NOW: Duration = Duration::from_millis(500);
@@ -39,8 +39,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Where the next conflict area begins and ends for a peer, on the ego's axis.
     fn area_of(&self, index: usize) -> Option<[Position; 2]> {
         let shift = self.coordination.approach(index).map_or(Distance::ZERO, |approach| approach.shift);
-        let ends = self.coordination.end_of(self.coordination.next())?;
-        Some([self.area_begins()?.ahead(shift), ends.ahead(shift)])
+        Some(self.next_area()?.map(|place| place.ahead(shift)))
     }
 
     /// Whether a peer that was heard just now is in the next conflict area, and may still be there at `then`.
@@ -100,32 +99,31 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         })
     }
 
-    /// Whether a view is of a vehicle that crosses the ego's way: its place is inside the conflict area, the ego has to be able to stop
-    /// before the area for a vehicle that it has heard, and the view does not go on with those of the vehicle ahead. Such a view says
-    /// nothing new. It does not contradict what is heard of the
-    /// vehicle ahead on the own leg, which the crossing one hides. And it need not be remembered, because the crossing vehicle is minded
-    /// until it has left the area for certain, by what was heard of it. *Alternative:* taken for a vehicle that stands in the way, each
-    /// one that crosses would hold the ego for as long as one that stood is remembered.
+    /// Whether a view may be of a vehicle that crosses the ego's way: its place is inside the conflict area, and the ego has to be able to
+    /// stop before the area for a vehicle that it has heard. Such a view says nothing new, unless it [goes on](Self::is_on_leg) with those
+    /// of the vehicle ahead on the own leg. It does not contradict what is heard of that one, which the crossing one hides. And it need not
+    /// be remembered, because the crossing vehicle is minded until it has left the area for certain, by what was heard of it.
+    /// *Alternative:* taken for a vehicle that stands in the way, each one that crosses would hold the ego for as long as one that stood is
+    /// remembered.
     pub(super) fn is_of_one_that_crosses(&self, sight: &Sight, own_front: Position) -> bool {
-        let area = self.next_area();
-        let is_in_area = area.is_some_and(|(begins, ends)| begins <= sight.rear && sight.rear <= ends);
+        let is_in_area = self.next_area().is_some_and(|[begins, ends]| begins <= sight.rear && sight.rear <= ends);
         is_in_area
-            && !sight.is_on_leg
             && (0..PEERS).any(|index| {
                 self.may_be_in_area(index, sight.at) || self.stop_before_area(index, sight.at, own_front).is_some()
             })
     }
 
-    /// Whether a view is of a vehicle that was ahead on the ego's leg before the next conflict area, and drives through it. Only such a
-    /// vehicle is seen well before the area.
+    /// Whether a view is of a vehicle that was ahead on the ego's leg before the next conflict area: there for certain, or the view goes on
+    /// with one of such a vehicle. Where some turn off, one in the area may have been hiding another that stands beyond it.
     pub(super) fn is_on_leg(&self, sight: &Sight) -> bool {
-        let Some((begins, ends)) = self.next_area() else { return false };
-        sight.rear < begins.ahead(WELL_BEFORE) || sight.rear <= ends && self.ranging.goes_on(sight)
+        let Some(([begins, ends], crossing)) = self.next_area().zip(self.coordination.crossing()) else { return false };
+        let is_before = sight.bound.highest_position() < begins.ahead(WELL_BEFORE);
+        let goes_on = || self.ranging.goes_on(sight) && crossing.intersection.has_one_way_from(crossing.movement.leg);
+        is_before || sight.rear <= ends && goes_on()
     }
 
     /// Where the next conflict area begins and ends on the ego's way.
-    fn next_area(&self) -> Option<(Position, Position)> {
-        let crossing = self.coordination.crossing()?;
-        Some((self.area_begins()?, self.coordination.crossing_point(crossing)?.ahead(crossing.intersection.half)))
+    fn next_area(&self) -> Option<[Position; 2]> {
+        Some([self.area_begins()?, self.coordination.end_of(self.coordination.next())?])
     }
 }

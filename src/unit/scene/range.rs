@@ -101,11 +101,16 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let visible = self.visible();
         self.raise_others(visible, &view.sight);
         view.sight.is_on_leg = self.is_on_leg(&view.sight);
+        let is_on_leg = view.sight.is_on_leg;
         if self.is_of_one_that_crosses(&view.sight, front) {
-            if !self.is_crossing_heard(at) {
+            // The vehicle ahead holds the ego only where it stands. It is in the area, whoever else was heard in there.
+            let holds = if is_on_leg { view.sight.stands() } else { !self.is_crossing_heard(at) };
+            if holds {
                 self.ranging.see_crossing(view.sight);
             }
-            return;
+            if !is_on_leg {
+                return;
+            }
         }
         if let Some(index) = visible.filter(|_| self.ranging.is_of_named(at.minus(ON_BUS))) {
             view.sight.whose = self.compare(received, index, &view, health);
