@@ -154,8 +154,7 @@ fn an_old_estimate_in_the_area_holds_the_ego_only_while_it_does_not_see_that_the
 /// The least speed of an ego at 10 m/s that comes to the area so far behind another vehicle of its leg. A third one, which crosses, was
 /// there before them, and its radio dies there. It drives on.
 fn slows_to(behind: f64) -> f64 {
-    let mut ego = sees(3, 0, CROSSING - 170.0 - behind, 10.0);
-    ego.sees_across = true;
+    let ego = sees(3, 0, CROSSING - 170.0 - behind, 10.0);
     let ahead = sees(4, 0, CROSSING - 170.0, 10.0);
     let mut junction = Junction::new(vec![ego, ahead, sees(2, 1, CROSSING - 140.0, 10.0)]);
     let mut least = f64::MAX;

@@ -124,3 +124,13 @@ fn a_stay_is_covered_once_all_that_are_known_have_been_heard_since_the_claim() {
     }
     assert!(!own.covers(&RULES, time(1_001), &window(1_100, 1_159), [].into_iter()), "it was not claimed");
 }
+
+#[test]
+fn a_longer_vehicle_claims_more_after_its_stay_in_whole_steps() {
+    for (mm, after_ms) in
+        [(0, 800), (2_000, 800), (4_800, 800), (6_000, 890), (12_000, 1_340), (18_750, 1_840), (40_950, 3_510)]
+    {
+        let slack = Slack::of(Distance::from_mm(mm));
+        assert_eq!((slack.before.as_millis(), slack.after.as_millis()), (600, after_ms), "{mm} mm");
+    }
+}
