@@ -33,6 +33,13 @@ const ZONE: Distance = Distance::from_mm(40_000);
 const STANDS: Speed = Speed::from_mm_per_s(500);
 /// An ego that would be early brakes by no more than this.
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
+/// Twice the braking of an easy stop before the area.
+const EASY_TWICE_MM_PER_S2: u32 = 4_000;
+/// From where an easy stop begins, an ego that accelerates as hard instead is in the area after its speed in m/s, divided by this, in
+/// seconds. One that accelerates harder is there by up to a thirtieth of that sooner.
+const FROM_EASY_STOP: u32 = 5;
+/// An ego that would have to stop because it is early drives on to the area at this speed.
+const TO_THE_LINE: Speed = Speed::from_mm_per_s(3_000);
 /// An ego that may leave the area later than so long before the end of its window is late.
 const LATE: Duration = Duration::from_millis(200);
 /// The acceleration with which a car leaves the area.
@@ -185,8 +192,10 @@ pub(super) fn leave_in_time<const PEERS: usize, const SAMPLES: usize, const STEP
     if is_late { demand.max(least) } else { demand }
 }
 
-/// The demand of an ego that comes to the area at `soonest`, before its pass begins: no more than what takes it there in time, as long as it
-/// need not stop for that.
+/// The demand of an ego that may be in the area at `soonest`, before its pass begins. At its speed it is there later. If that is well within
+/// its pass, it gets no faster than what keeps it so. If not, it brakes gently. It then comes in time to where it has to begin an easy stop,
+/// and as long as it is before that place, it is not early however it may accelerate. So the gate opens before it has to brake hard.
+/// A pass that begins in more than 8 s counts as one that begins then.
 pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     area: &Area,
@@ -202,17 +211,31 @@ pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     let Some(until) = opens.map(|opens| opens.as_micros().saturating_sub(now.as_micros()) / 1_000) else {
         return demand;
     };
-    let (until, way) =
-        (i64::try_from(until).unwrap_or(i64::MAX), i64::from(area.begins.ahead_of(ego.foremost).to_mm()));
-    let (until, speed) = (until.min(NEAR.as_millis().saturating_mul(2)), i64::from(ego.fastest.to_mm_per_s()));
-    // On the way in half of the time at its speed it would have to stop.
-    if until <= 0 || quotient(speed.saturating_mul(until), 1_000) > way.saturating_mul(2) {
-        return demand;
+    let until = i64::try_from(until).unwrap_or(i64::MAX).min(NEAR.as_millis().saturating_mul(2));
+    let way = i64::from(area.begins.ahead_of(ego.foremost).to_mm());
+    let speed = ego.fastest.max(Speed::ZERO).to_mm_per_s().unsigned_abs();
+    let (stopping, thence) = (speed.saturating_mul(speed) / EASY_TWICE_MM_PER_S2, speed / FROM_EASY_STOP);
+    let speed = i64::from(speed);
+    // What is left of a way at this speed, in mm ms.
+    let left = |way: i64, time| way.saturating_mul(1_000).saturating_sub(speed.saturating_mul(time));
+    let to_make = |left: i64, time: i64| {
+        let gained = quotient(left.saturating_mul(2_000), time.saturating_mul(time));
+        Acceleration::from_mm_per_s2(crate::fixed::saturate_i32(gained))
+    };
+    let well_within = until.saturating_add(LEAST.before.as_millis());
+    if left(way, well_within) >= 0 {
+        return demand.min(to_make(left(way, well_within), well_within));
     }
-    let lacking = way.saturating_mul(1_000).saturating_sub(speed.saturating_mul(until));
-    let braking = quotient(lacking.saturating_mul(2_000), until.saturating_mul(until));
-    let braking = Acceleration::from_mm_per_s2(crate::fixed::saturate_i32(braking));
-    demand.min(braking.max(GENTLE))
+    let (way, until) = (way.saturating_sub(i64::from(stopping)), until.saturating_sub(i64::from(thence)));
+    let most = if way > 0 && until <= 0 {
+        Acceleration::ZERO
+    } else if way <= 0 || left(way.saturating_mul(2), until) < 0 {
+        // On the way in half of the time at its speed it would have to stop.
+        Acceleration::in_a_second(TO_THE_LINE.minus(ego.fastest))
+    } else {
+        to_make(left(way, until), until).min(Acceleration::ZERO)
+    };
+    demand.min(most.max(GENTLE))
 }
 
 /// Claims the time for which the ego foresees to be in the next area, and gives back what it does not need.

@@ -39,6 +39,7 @@ mod misbehaviour_named;
 mod mode_transitions;
 mod own_messages;
 mod passes_cut;
+mod passes_early;
 mod passes_growth;
 mod passes_kept;
 mod passes_on_air;

@@ -1,0 +1,88 @@
+//! The ego's pass begins a little later than the ego may be at the area. It brakes gently for that before it would have to brake hard.
+
+use crate::rig::junction::{CROSSING, Driver, HALF, Junction, PERIOD};
+use crate::rig::{config, gnss};
+use holdover::Config;
+use holdover::time::{Duration, GnssTime};
+use holdover::wire::pass::{Claimed, Pass, PassTime};
+use holdover::wire::{Message, Movement};
+
+/// What a vehicle without a slot says that arrived before the ego: it may be in the area until this time.
+fn other(now: i64, exit: GnssTime) -> Pass {
+    const LENGTH: u16 = 1_200;
+    let entry = exit.plus(Duration::from_millis(-10 * i64::from(LENGTH)));
+    let claimed = Claimed { at: PassTime::down(gnss(0, 0)), entry: PassTime::down(entry), length: LENGTH };
+    Pass {
+        tag: 1,
+        station_id: 100,
+        intersection: 5,
+        movement: Movement::straight(1),
+        left: None,
+        is_before_zone: false,
+        stamp: PassTime::down(gnss(now - PERIOD, 0)),
+        arrival: 0,
+        claims: [Some(claimed), None],
+    }
+}
+
+/// How hard the ego's unit makes it brake at most, how slow the ego gets, and when it is in the area, in seconds.
+fn comes(speed: f64, start: f64, exit: i64) -> (f64, f64, Option<f64>) {
+    let mut ego = Driver::of(Config { range_sensor: true, ..config() }, 3, 0, start, speed, true);
+    ego.sees_across = true;
+    let (mut hardest, mut slowest, mut entered) = (0.0_f64, f64::MAX, None);
+    Junction::new(vec![ego]).run(50.0, |junction| {
+        let (now, ego) = (junction.now, &mut junction.drivers[0]);
+        if now % 200_000 == 0 && now < exit {
+            let _ = ego.rig.put(now, &Message::PeerPass(other(now, gnss(exit, 0))));
+        }
+        if entered.is_none() {
+            (hardest, slowest) = (hardest.min(ego.body.acceleration), slowest.min(ego.body.speed));
+        }
+        if ego.body.position > CROSSING - HALF && entered.is_none() {
+            entered = Some(now as f64 * 1e-6);
+        }
+    });
+    (hardest, slowest, entered)
+}
+
+#[test]
+fn one_that_would_be_early_brakes_gently_and_goes_in_when_its_pass_begins() {
+    for (speed, start) in [(14.0, -250.0), (10.0, -100.0), (6.0, 0.0)] {
+        let comes_at = (CROSSING - HALF - start) / speed;
+        let slowed = (0..20).map(|tenths| f64::from(tenths) * 0.1).filter(|late| {
+            let exit = comes_at - 0.2 + late;
+            let (hardest, slowest, entered) = comes(speed, start, (exit * 1e6) as i64);
+            let entered = entered.unwrap_or(f64::MAX);
+            let what =
+                format!("{speed} m/s, {exit:.2} s: {hardest:.2} m/s2, {slowest:.2} m/s, in the area at {entered:.2} s");
+            assert!(hardest > -1.5 && slowest > 0.6 * speed, "{what}");
+            // Windows are 0.2 s apart. The ego foresees that it may be there somewhat earlier, and so is somewhat later.
+            assert!((exit + 0.2..exit + 0.6).contains(&entered) || hardest == 0.0, "{what}");
+            hardest < -0.1
+        });
+        assert!(slowed.count() > 15, "{speed} m/s");
+    }
+}
+
+#[test]
+fn one_that_comes_well_within_its_pass_is_not_slowed() {
+    for (speed, start) in [(14.0, -250.0), (10.0, -100.0), (6.0, 0.0)] {
+        let comes_at = (CROSSING - HALF - start) / speed;
+        for early in (3..12).map(|tenths| f64::from(tenths) * 0.1) {
+            let (_, slowest, entered) = comes(speed, start, ((comes_at - 0.2 - early) * 1e6) as i64);
+            assert!(slowest > speed - 0.1 && entered.is_some(), "{speed} m/s, {early} s: {slowest:.2} m/s");
+        }
+    }
+}
+
+#[test]
+fn one_that_is_much_too_early_comes_to_its_line_and_goes_in_when_its_pass_begins() {
+    for (speed, start) in [(14.0, -250.0), (10.0, -100.0), (6.0, 0.0)] {
+        for late in [4.0, 8.0] {
+            let exit = (CROSSING - HALF - start) / speed + late;
+            let (_, _, entered) = comes(speed, start, (exit * 1e6) as i64);
+            let entered = entered.unwrap_or(f64::MAX);
+            assert!((exit + 0.2..exit + 3.0).contains(&entered), "{speed} m/s, {exit} s: in the area at {entered} s");
+        }
+    }
+}
