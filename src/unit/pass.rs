@@ -35,10 +35,10 @@ const STANDS: Speed = Speed::from_mm_per_s(500);
 const GENTLE: Acceleration = Acceleration::from_mm_per_s2(-1_500);
 /// Twice the braking of an easy stop before the area.
 const EASY_TWICE_MM_PER_S2: u32 = 4_000;
-/// From where an easy stop begins, an ego that accelerates as hard instead is in the area after its speed in m/s, divided by this, in
-/// seconds. One that accelerates harder is there by up to a thirtieth of that sooner.
+/// From where an easy stop begins, an ego that accelerates by 2.5 m/s² instead is in the area after its speed in m/s, divided by this, in
+/// seconds.
 const FROM_EASY_STOP: u32 = 5;
-/// An ego that would have to stop because it is early drives on to the area at this speed.
+/// An ego that would have to stop because it is early drives on to its line at this speed.
 const TO_THE_LINE: Speed = Speed::from_mm_per_s(3_000);
 /// An ego that may leave the area later than so long before the end of its window is late.
 const LATE: Duration = Duration::from_millis(200);
@@ -192,10 +192,10 @@ pub(super) fn leave_in_time<const PEERS: usize, const SAMPLES: usize, const STEP
     if is_late { demand.max(least) } else { demand }
 }
 
-/// The demand of an ego that may be in the area at `soonest`, before its pass begins. At its speed it is there later. If that is well within
-/// its pass, it gets no faster than what keeps it so. If not, it brakes gently. It then comes in time to where it has to begin an easy stop,
-/// and as long as it is before that place, it is not early however it may accelerate. So the gate opens before it has to brake hard.
-/// A pass that begins in more than 8 s counts as one that begins then.
+/// The demand of an ego that could be in the area at `soonest`, before its pass begins. If it comes 0.2 s after that or later at its speed, it
+/// may accelerate as far as that stays so. Otherwise it brakes gently: it comes to where an easy stop begins no sooner than it may
+/// accelerate from there, so the gate opens there at the latest. If it would have to stop for that, or is past that place, it slows down to
+/// 3 m/s, and the envelope stops it at its line. A pass that begins in more than 8 s counts as one that begins then.
 pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     area: &Area,
@@ -216,7 +216,7 @@ pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: u
     let speed = ego.fastest.max(Speed::ZERO).to_mm_per_s().unsigned_abs();
     let (stopping, thence) = (speed.saturating_mul(speed) / EASY_TWICE_MM_PER_S2, speed / FROM_EASY_STOP);
     let speed = i64::from(speed);
-    // What is left of a way at this speed, in mm ms.
+    // What is left of a way at this speed after a time, in µm.
     let left = |way: i64, time| way.saturating_mul(1_000).saturating_sub(speed.saturating_mul(time));
     let to_make = |left: i64, time: i64| {
         let gained = quotient(left.saturating_mul(2_000), time.saturating_mul(time));
