@@ -100,7 +100,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// The peers that are out of reach far ahead, and drive on. A peer that stood when it was heard last still stands there.
+/// The peers that are out of reach far ahead, and drive on, or behind. A peer that stood when it was heard last still stands there.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -112,9 +112,24 @@ fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
             let estimate = scene.rear(index, now);
             estimate.is_some_and(|(reading, rear)| rear > front.ahead(FAR_AHEAD) && reading.speed > Speed::ZERO)
         };
-        lost.set(index, !scene.is_in_reach(index, now) && (lost.contains(index) || drives_off()));
+        let is_elsewhere = || lost.contains(index) || drives_off() || is_behind(scene, index, now);
+        lost.set(index, !scene.is_in_reach(index, now) && is_elsewhere());
     }
     lost
+}
+
+/// Whether a peer on the ego's lane was never ahead for certain. It is behind, wherever it is estimated to be: nobody passes there.
+#[cold] // only where a peer has been silent for longer than a holdover
+fn is_behind<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    index: usize,
+    now: Instant,
+) -> bool {
+    let coordination = &scene.coordination;
+    let place = coordination.approach(index).zip(scene.near_rear(index, now));
+    let is_on_lane = place
+        .is_some_and(|(approach, (rear, _))| coordination.is_on_lane(approach, coordination.has_left(approach, rear)));
+    is_on_lane && !coordination.choice().leading.contains(index)
 }
 
 /// The peers that have been silent for longer than a holdover and are estimated to be in the next conflict area, where the ego's sensor sees
