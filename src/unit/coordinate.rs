@@ -100,7 +100,7 @@ fn around<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     (present, nearest.map(|(index, _)| index))
 }
 
-/// The peers that are out of reach far ahead, and drive on, or behind. A peer that stood when it was heard last still stands there.
+/// The peers that are out of reach, and drive on far ahead or are behind. One ahead that stood when it was heard last still stands there.
 fn lost<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
