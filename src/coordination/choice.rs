@@ -29,7 +29,7 @@ pub struct Choice {
     pub leading: Slots,
     /// Those of `leading` that were out of the radio's reach when they were heard last.
     pub beyond: Slots,
-    /// The vehicles that have not been heard for long, and are far ahead by their estimate, or behind for certain. The ego does not follow them.
+    /// The vehicles that were not heard for long, and are far ahead by their estimate, or behind for certain. The ego does not follow them.
     pub lost: Slots,
     /// The vehicles that are estimated to be in the next conflict area, by estimates that are older than a holdover, and which the ego sees
     /// not to be there. It does not go by these estimates.
