@@ -132,25 +132,3 @@ fn who_comes_to_a_crossing_without_the_time_waits_for_it() {
     });
     assert!(junction.drivers[0].body.position > 450.0, "{}", junction.drivers[0].body.position);
 }
-
-#[test]
-fn who_was_behind_is_not_followed_although_it_is_estimated_to_have_passed() {
-    // The ego is deaf, and drives slowly. The other one was faster when it was heard last, 30 m behind, and has stopped since.
-    let (ego, mut other) = (Driver::new(1, 0, 60.0, 10.0, true), Driver::new(2, 0, 30.0, 10.0, true));
-    other.says_plans = false;
-    let mut junction = Junction::new(vec![ego, other]);
-    let mut follows = [0, 0];
-    junction.run(40.0, |junction| {
-        let now = junction.now;
-        let [ego, other] = &mut junction.drivers[..] else { panic!("two") };
-        if now > 8_000_000 {
-            (ego.hears, ego.target_speed) = (false, 3.0);
-            other.by_hand = Some(-4.0);
-        }
-        // A holdover lasts 15 s.
-        let lane = ego.rig.unit.coordination().choice().lane;
-        follows[usize::from(now > 24_000_000)] += u32::from(lane.is_some());
-    });
-    assert_eq!(follows[1], 0, "{follows:?}");
-    assert!(follows[0] > 0, "it was estimated to have passed before");
-}
