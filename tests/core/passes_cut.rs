@@ -10,7 +10,7 @@ use holdover::wire::pass::{Claimed, Pass, PassTime};
 use holdover::wire::{Message, Movement};
 
 /// A vehicle that arrived before the ego is heard for the first time and for the last time, with a claim for these seconds from then on.
-fn other(now: i64, from: f64, to: f64) -> Pass {
+pub fn other(now: i64, from: f64, to: f64) -> Pass {
     let at = |seconds: f64| GnssTime::from_micros(gnss(now, 0).as_micros().wrapping_add_signed((seconds * 1e6) as i64));
     let claimed =
         Claimed { at: PassTime::down(at(-1.0)), entry: PassTime::down(at(from)), length: ((to - from) * 100.0) as u16 };

@@ -1,31 +1,12 @@
 //! The ego's pass begins a little later than the ego may be at the area. It brakes gently for that before it would have to brake hard.
 
-use crate::rig::junction::{CROSSING, Driver, HALF, Junction, PERIOD};
-use crate::rig::{config, gnss};
+use crate::passes_cut::other;
+use crate::rig::config;
+use crate::rig::junction::{CROSSING, Driver, HALF, Junction};
 use holdover::Config;
 use holdover::config::Law;
-use holdover::time::{Duration, GnssTime};
 use holdover::units::Fraction;
-use holdover::wire::pass::{Claimed, Pass, PassTime};
-use holdover::wire::{Message, Movement};
-
-/// What a vehicle without a slot says that arrived before the ego: it may be in the area until this time.
-fn other(now: i64, exit: GnssTime) -> Pass {
-    const LENGTH: u16 = 1_200;
-    let entry = exit.plus(Duration::from_millis(-10 * i64::from(LENGTH)));
-    let claimed = Claimed { at: PassTime::down(gnss(0, 0)), entry: PassTime::down(entry), length: LENGTH };
-    Pass {
-        tag: 1,
-        station_id: 100,
-        intersection: 5,
-        movement: Movement::straight(1),
-        left: None,
-        is_before_zone: false,
-        stamp: PassTime::down(gnss(now - PERIOD, 0)),
-        arrival: 0,
-        claims: [Some(claimed), None],
-    }
-}
+use holdover::wire::Message;
 
 /// How hard the ego's unit makes it brake at most, how slow the ego gets, and when it is in the area, in seconds.
 fn comes(speed: f64, start: f64, exit: i64) -> (f64, f64, Option<f64>) {
@@ -38,7 +19,8 @@ fn comes(speed: f64, start: f64, exit: i64) -> (f64, f64, Option<f64>) {
     Junction::new(vec![ego]).run(50.0, |junction| {
         let (now, ego) = (junction.now, &mut junction.drivers[0]);
         if now % 200_000 == 0 && now < exit {
-            let _ = ego.rig.put(now, &Message::PeerPass(other(now, gnss(exit, 0))));
+            let to = (exit - now) as f64 * 1e-6;
+            let _ = ego.rig.put(now, &Message::PeerPass(other(now, to - 12.0, to)));
         }
         if entered.is_none() {
             (hardest, slowest) = (hardest.min(ego.body.acceleration), slowest.min(ego.body.speed));
