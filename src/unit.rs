@@ -372,12 +372,12 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     #[inline(never)] // apart from the stack of the horizon
     fn plan(&mut self, now: Instant, ego: Option<&State>) {
         if let Some(range) = ego.filter(|_| self.keeps_passes(now)).and_then(|ego| Range::of(&self.scene, now, ego)) {
-            pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
+            pass::plan(&mut self.scene, &range, self.mode, self.gate.is_committed());
         }
     }
 
     fn keeps_passes(&self, now: Instant) -> bool {
-        self.mode != Mode::Standby && self.scene.may_claim() && self.scene.fresh_ego(now).is_some()
+        self.scene.may_claim() && self.scene.fresh_ego(now).is_some()
     }
 
     /// Sends the answer, and the own messages if they are due: then `own` is the ego's motion as far as it is known.
@@ -392,7 +392,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
         let tag = self.outbox.next_tag();
         let says = Outbox::is_route_due(tag) && self.keeps_passes(now);
-        let pass = if says { self.scene.say_passes(now, tag) } else { None };
+        let pass = if says { self.scene.say_passes(now, tag, self.mode == Mode::Standby) } else { None };
         let report = Report { mode: self.mode, gains: self.association.gains(), ego: own, pass };
         self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }

@@ -30,6 +30,8 @@ pub struct Station {
     claims: [Claim; PIECES],
     count: u8,
     place: Place,
+    /// A person drives it, and keeps no pass.
+    is_by_hand: bool,
 }
 
 /// Where a vehicle is, by what it said last.
@@ -53,8 +55,7 @@ impl Station {
         arrival: Arrival,
         claims: [Option<Claim>; PIECES],
     ) -> Self {
-        let mut held =
-            Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, place: Place::InZone };
+        let mut held = Self { place: Place::InZone, ..Self::before_zone(id, movement, heard, arrival) };
         for (place, claim) in held.claims.iter_mut().zip(claims.into_iter().flatten()) {
             *place = claim;
             held.count = held.count.saturating_add(1);
@@ -65,7 +66,14 @@ impl Station {
     /// A vehicle that is not in the zone yet.
     #[must_use]
     pub const fn before_zone(id: u32, movement: Movement, heard: GnssTime, arrival: Arrival) -> Self {
-        Self { id, movement, heard, arrival, claims: [Claim::NONE; PIECES], count: 0, place: Place::BeforeZone }
+        let claims = [Claim::NONE; PIECES];
+        Self { id, movement, heard, arrival, claims, count: 0, place: Place::BeforeZone, is_by_hand: false }
+    }
+
+    /// The same vehicle, driven by a person or not. What it claims is honoured in both cases.
+    #[must_use]
+    pub const fn driven(self, is_by_hand: bool) -> Self {
+        Self { is_by_hand, ..self }
     }
 
     /// Its name in messages that have room for 8 bits only.
@@ -90,17 +98,12 @@ impl Station {
         Known { heard, claims: self.claims() }
     }
 
-    /// Whether it was before the zone.
-    #[must_use]
-    pub fn is_before_zone(&self) -> bool {
-        self.place == Place::BeforeZone
-    }
-
     /// Whether it is certain to keep a pass at this time if it is in the area then. One that was heard before the zone may do anything since
-    /// it could have claimed.
+    /// it could have claimed, and a person may do anything at any time.
     #[must_use]
-    pub fn keeps_pass(&self, rules: &Rules, now: GnssTime) -> bool {
-        !self.is_before_zone() || now <= rules.heard_by_all(self.heard)
+    pub fn keeps_pass(&self, rules: &Rules, now: Option<GnssTime>) -> bool {
+        let cannot_claim_yet = || now.is_some_and(|now| now <= rules.heard_by_all(self.heard));
+        !self.is_by_hand && (self.place != Place::BeforeZone || cannot_claim_yet())
     }
 }
 
@@ -243,7 +246,7 @@ mod tests {
         assert_eq!(heard(&list), [time(120)], "old news");
         list.hear(before(7, 130)).unwrap();
         assert_eq!(heard(&list), [later(130)]);
-        let trusted = |now| list.on_record().all(|known| known.keeps_pass(&RULES, now));
+        let trusted = |now| list.on_record().all(|known| known.keeps_pass(&RULES, Some(now)));
         assert!(trusted(later(130)) && !trusted(later(131)));
         for id in 0..2 * KNOWN as u32 {
             list.hear(before(100 + id, 130)).unwrap();
@@ -251,6 +254,18 @@ mod tests {
         assert!(!list.lacks_one() && list.on_record().count() == KNOWN, "there is no room, and it does not matter");
         list.hear(station(99, 131)).unwrap();
         assert!(list.iter().any(|known| known.id == 99), "it has the place of one before the zone");
+    }
+
+    #[test]
+    fn what_one_that_a_person_drives_has_claimed_is_honoured_and_nobody_trusts_it() {
+        let mut list = List::EMPTY;
+        for (heard, is_by_hand) in [(100, false), (120, true), (110, false)] {
+            list.hear(station(7, heard).driven(is_by_hand)).unwrap();
+        }
+        let trusted = |list: &List| list.on_record().all(|known| known.keeps_pass(&RULES, Some(time(130))));
+        assert!(list.iter().count() == 1 && !trusted(&list), "old news changes nothing");
+        list.hear(station(7, 130)).unwrap();
+        assert!(trusted(&list));
     }
 
     #[test]

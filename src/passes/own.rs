@@ -110,6 +110,16 @@ impl Own {
         *self = Self { is_before_zone: true, ..Self::NOTHING };
     }
 
+    /// A person drives: nothing more is claimed. What was claimed stays until it is over, because the vehicle may be on its way in.
+    pub fn run_out(&mut self, now: GnssTime) {
+        for piece in &mut self.pieces {
+            *piece = piece.get().filter(|claim| claim.window.exit > now).into();
+        }
+        if self.claims().next().is_none() {
+            self.stay_out();
+        }
+    }
+
     /// Whether it says that it is not in the zone.
     #[must_use]
     pub const fn is_before_zone(&self) -> bool {

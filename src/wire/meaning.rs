@@ -65,6 +65,7 @@ macro_rules! meaning {
     (station_id) => { "The whole identity of the station, of which Station is the low 8 bits." };
     (left) => { "Number of the intersection that the vehicle left last; none if it has left none on its way." };
     (zone) => { "Where the vehicle is, by the zone of Intersection. Before the zone it claims nothing, whatever the windows say, and its claims in the zone are those of a newcomer." };
+    (by_hand) => { "Whether a person drives. The vehicle then claims nothing more. What it has claimed is honoured until it is over, but nobody relies on it." };
     (pass_stamp) => { "GNSS time up to which the vehicle says all that it claims: no window that it claims later counts from before that. Modulo 655.36 s." };
     (claimed) => { "GNSS time from which the window counts. Of two windows that conflict, that with the earlier one has priority, then that of the smaller StationId. Modulo 655.36 s." };
     (entry) => { "GNSS time before which the vehicle's front does not enter the conflict area. Modulo 655.36 s." };
@@ -186,6 +187,7 @@ fn field(content: Content, name: &str) -> &'static str {
             "Turn" => meaning!(turn),
             "Left" => meaning!(left),
             "Zone" => meaning!(zone),
+            "ByHand" => meaning!(by_hand),
             "PassStamp" => meaning!(pass_stamp),
             "Claimed1" | "Claimed2" => meaning!(claimed),
             "Entry1" | "Entry2" => meaning!(entry),

@@ -71,6 +71,8 @@ pub struct Pass {
     pub left: Option<u8>,
     #[doc = meaning!(zone)]
     pub is_before_zone: bool,
+    #[doc = meaning!(by_hand)]
+    pub is_by_hand: bool,
     #[doc = meaning!(pass_stamp)]
     pub stamp: PassTime,
     #[doc = meaning!(arrival)]
@@ -89,6 +91,7 @@ const STAMP: Field = time("PassStamp", 16).part(1);
 const ARRIVAL: Field = Field::unsigned("Arrival", 32, 20).steps(100, "s").part(1);
 const LEFT: Field = Field::unsigned("Left", 52, 9).or_none(&[(511, "none")]).limits(0, 255).part(1);
 const ZONE: Field = Field::unsigned("Zone", 61, 1).named(&[(0, "in the zone"), (1, "before the zone")]).part(1);
+const BY_HAND: Field = Field::unsigned("ByHand", 62, 1).named(&[(0, "no"), (1, "yes")]).part(1);
 const CLAIMED: [Field; 2] = [time("Claimed1", 16).part(2), time("Claimed2", 16).part(3)];
 const ENTRY: [Field; 2] = [time("Entry1", 32).part(2), time("Entry2", 32).part(3)];
 const LENGTH: [Field; 2] = [length("Length1").part(2), length("Length2").part(3)];
@@ -119,6 +122,7 @@ pub const FIELDS: &[Field] = &[
     ENTRY[1],
     LENGTH[1],
     ZONE,
+    BY_HAND,
 ];
 
 impl Pass {
@@ -133,6 +137,7 @@ impl Pass {
         let b = ARRIVAL.with_raw(b, i64::from(self.arrival & 0xF_FFFF));
         let b = LEFT.with_steps(b, self.left.map(i64::from));
         let b = ZONE.with_raw(b, i64::from(self.is_before_zone));
+        let b = BY_HAND.with_raw(b, i64::from(self.is_by_hand));
         let [first, second] = self.claims;
         [a, b, Self::window(begin(2), 0, first), Self::window(begin(3), 1, second)]
     }
@@ -154,6 +159,7 @@ impl Pass {
             movement: MOVEMENT.get(*a, *a),
             left: u8::try_from(left).ok(),
             is_before_zone: ZONE.raw(*b) == 1,
+            is_by_hand: BY_HAND.raw(*b) == 1,
             stamp: time_of(*b, &STAMP),
             arrival: ARRIVAL.word(*b),
             claims: [claimed(*c, 0), claimed(*d, 1)],

@@ -38,6 +38,7 @@ mod misbehaviour_drift;
 mod misbehaviour_named;
 mod mode_transitions;
 mod own_messages;
+mod passes_by_hand;
 mod passes_cut;
 mod passes_early;
 mod passes_growth;

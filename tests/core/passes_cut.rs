@@ -21,6 +21,7 @@ pub fn other(now: i64, from: f64, to: f64) -> Pass {
         movement: Movement::straight(1),
         left: None,
         is_before_zone: false,
+        is_by_hand: false,
         stamp: PassTime::down(gnss(now - PERIOD, 0)),
         arrival: 0,
         claims: [Some(claimed), None],

@@ -41,6 +41,7 @@ fn leaves_past(queue: usize, is_before_zone: bool, silent_from: i64) -> Option<i
                     movement: Movement::straight(1),
                     left: None,
                     is_before_zone,
+                    is_by_hand: false,
                     stamp: PassTime::down(gnss(now - PERIOD, 0)),
                     arrival: 0xF_0000 + station,
                     claims: [None; 2],

@@ -239,6 +239,7 @@ fn expected_of(message: &Message) -> Expected {
                 .value("Turn", (8 + p.movement.exit - p.movement.leg) % 8)
                 .either("Left", p.left.map(f64::from), "none")
                 .name("Zone", if p.is_before_zone { "before the zone" } else { "in the zone" })
+                .name("ByHand", if p.is_by_hand { "yes" } else { "no" })
                 .value("PassStamp", f64::from(p.stamp.0) / 100.0)
                 .value("Arrival", f64::from(p.arrival) / 100.0);
             p.claims.iter().enumerate().fold(e, |e, (piece, claimed)| {

@@ -100,7 +100,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
                 let claims = pass.claims.map(|claimed| claimed.map(|claimed| claim(&claimed, id, now)));
                 Station::new(id, movement, stamp, arrival, claims)
             };
-            if self.passes.known.hear(station).is_err() {
+            if self.passes.known.hear(station.driven(pass.is_by_hand)).is_err() {
                 health.count(Cause::PassesFull);
             }
         }
@@ -114,18 +114,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
 
     /// Whether the vehicle in a slot keeps passes at the next intersection. One that is forgotten is not trusted any more: the ego's claims
     /// do not wait for it, nor do its claims for the ego. At a time, one that was heard before the zone is trusted only as long as it cannot
-    /// have come in since.
+    /// have come in since, and one that a person drives is not trusted.
     pub fn has_pass(&self, index: usize, at: Option<Instant>) -> bool {
         let Some((station, approach)) =
             self.peers.get(index).and_then(|track| track.station()).zip(self.coordination.approach(index))
         else {
             return false;
         };
-        self.passes.known.on_record().any(|known| {
-            let is_it = known.station() == station && known.movement == approach.movement;
-            let keeps = |at| self.pass_time(at).is_some_and(|at| known.keeps_pass(&Rules::UNIT, at));
-            is_it && (!known.is_before_zone() || at.is_none_or(keeps))
-        })
+        let is_it = |known: &&Station| known.station() == station && known.movement == approach.movement;
+        let keeps = |known: &Station| at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, self.pass_time(at)));
+        // Of several with the same name, it may be any.
+        let mut alike = self.passes.known.on_record().filter(is_it).map(|known| keeps(known)).peekable();
+        alike.peek().is_some() && alike.all(|keeps| keeps)
     }
 
     /// Whether firm claims cover a stay in the next conflict area, in GNSS time.
@@ -160,7 +160,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// The ego's own message about its passes.
-    pub fn say_passes(&mut self, now: Instant, tag: u8) -> Option<Pass> {
+    pub fn say_passes(&mut self, now: Instant, tag: u8, is_by_hand: bool) -> Option<Pass> {
         let gnss = self.pass_time(now)?;
         let itinerary = self.coordination.itinerary()?;
         let (named, registration) = (self.coordination.named()?, self.coordination.registration()?);
@@ -174,6 +174,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             movement: named.movement,
             left: left.map(|crossing| crossing.intersection.id),
             is_before_zone: self.passes.own.is_before_zone(),
+            is_by_hand,
             stamp: PassTime::down(stamp),
             arrival: registration.arrival.0,
             claims: claims.map(|claim| claim.and_then(|claim| claimed(&claim))),

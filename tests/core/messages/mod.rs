@@ -206,11 +206,11 @@ prop_compose! {
 prop_compose! {
     pub fn pass()(
         tag in 0u8..4, station_id: u32, intersection: u8, leg in 0u8..8, exit in 0u8..8, left in proptest::option::of(any::<u8>()),
-        is_before_zone: bool, stamp: u16, arrival in 0u32..1 << 20, one in proptest::option::of(claimed()), other in proptest::option::of(claimed()),
+        is_before_zone: bool, is_by_hand: bool, stamp: u16, arrival in 0u32..1 << 20, one in proptest::option::of(claimed()), other in proptest::option::of(claimed()),
     ) -> Pass {
         let movement = Movement { leg, exit };
         let stamp = PassTime(stamp);
-        Pass { tag, station_id, intersection, movement, left, is_before_zone, stamp, arrival, claims: [one, other] }
+        Pass { tag, station_id, intersection, movement, left, is_before_zone, is_by_hand, stamp, arrival, claims: [one, other] }
     }
 }
 

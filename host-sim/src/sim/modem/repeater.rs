@@ -132,6 +132,7 @@ mod tests {
             movement,
             left: None,
             is_before_zone: false,
+            is_by_hand: false,
             stamp,
             arrival: 0,
             claims,

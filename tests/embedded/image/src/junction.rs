@@ -114,6 +114,7 @@ impl Place {
             movement: Movement::straight(self.leg),
             left: (self.leg == 0 && intersection == SECOND.id).then_some(FIRST.id),
             is_before_zone: false,
+            is_by_hand: false,
             stamp,
             arrival: arrival.0,
             claims: [Some(claim(0)), Some(claim(400))],
