@@ -60,13 +60,8 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
         time_gap_s: traffic.time_gap_s,
         standstill_m: traffic.standstill_m,
     };
-    let on_road = |other: &Sighting| network.on_road(own.road, other.road, other.way_m, other.length_m);
-    let ahead = all.iter().filter(|other| other.trip != own.trip).filter_map(|other| Some((other, on_road(other)?)));
-    let ahead = ahead.filter(|(_, [_, front_m])| *front_m > own.way_m);
-    let ahead = ahead.min_by(|(_, [_, a]), (_, [_, b])| a.total_cmp(b));
     let mut presses: f64 = 0.0;
-    if let Some((ahead, [rear_m, _])) = ahead {
-        let gap_m = rear_m - own.way_m;
+    if let Some((ahead, gap_m)) = ahead(own, all, network) {
         presses = presses.max(manner.pressed(own.speed_mps, gap_m, ahead.speed_mps));
     }
     if let Some(gap_m) = to_stop_line(own, network).filter(|_| waits) {
@@ -74,6 +69,16 @@ pub fn demand(own: &Sighting, all: &[Sighting], network: &Network, traffic: &Tra
         presses = presses.max(line.pressed(own.speed_mps, gap_m + 1.0, 0.0));
     }
     (ACCELERATION_MPS2 * (manner.free(own.speed_mps) - presses)).max(-EMERGENCY_MPS2)
+}
+
+/// The vehicle just ahead on the own road, and the gap to its rear bumper.
+#[must_use]
+pub fn ahead<'a>(own: &Sighting, all: &'a [Sighting], network: &Network) -> Option<(&'a Sighting, f64)> {
+    let on_road = |other: &Sighting| network.on_road(own.road, other.road, other.way_m, other.length_m);
+    let others = all.iter().filter(|other| other.trip != own.trip).filter_map(|other| Some((other, on_road(other)?)));
+    let ahead = others.filter(|(_, [_, front_m])| *front_m > own.way_m);
+    let ahead = ahead.min_by(|(_, [_, a]), (_, [_, b])| a.total_cmp(b));
+    ahead.map(|(ahead, [rear_m, _])| (ahead, rear_m - own.way_m))
 }
 
 /// The acceleration of a vehicle that drives by sight. If it hears a crossing vehicle that it yields to, it accelerates

@@ -19,9 +19,6 @@ use super::watch::{Sighting, Watch};
 /// For this time after a target's own association has changed, errors are a class of their own.
 pub const CHANGED_S: f64 = 1.0;
 
-/// Settled errors beyond this, in metres, are listed.
-pub const BEYOND_M: f64 = 0.2;
-
 /// Errors of one class.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Class {
@@ -90,8 +87,8 @@ pub struct Beliefs<'a> {
     pub changing: Class,
     /// The part of the settled errors where nothing has been heard from the target since its association changed.
     pub unheard: Class,
-    /// The largest error of each unit and target whose settled error was beyond [`BEYOND_M`].
-    pub beyond: BTreeMap<(usize, usize), Worst>,
+    /// The magnitude of the largest settled error of each unit and target.
+    pub pairs_m: BTreeMap<(usize, usize), f64>,
     /// Number of changes of association, of all units.
     pub changes: u64,
     /// Number of ticks at which the bound did not contain the true motion, in both classes. The second number is of
@@ -112,7 +109,7 @@ impl<'a> Beliefs<'a> {
             settled: Class::default(),
             changing: Class::default(),
             unheard: Class::default(),
-            beyond: BTreeMap::new(),
+            pairs_m: BTreeMap::new(),
             changes: 0,
             violations: [0, 0],
             watched: Vec::new(),
@@ -167,12 +164,8 @@ impl Watch for Beliefs<'_> {
                     self.unheard.add(worst);
                 }
                 self.settled.add(worst);
-                if error_m.abs() > BEYOND_M {
-                    let held = self.beyond.entry((own.trip, target.trip)).or_insert(worst);
-                    if held.error_m.abs() < error_m.abs() {
-                        *held = worst;
-                    }
-                }
+                let largest_m = self.pairs_m.entry((own.trip, target.trip)).or_default();
+                *largest_m = largest_m.max(error_m.abs());
             }
             let truth_m = truth_m + own.odometer_m;
             if belief.bound.is_some_and(|bound| !bound.hold(truth_m, target.speed_mps)) {
@@ -270,7 +263,7 @@ mod tests {
         assert_eq!(beliefs.watched.len(), errors.len());
         Judged {
             counts: [beliefs.settled, beliefs.changing, beliefs.unheard].map(|class| class.count),
-            beyond: beliefs.beyond.iter().map(|(pair, worst)| (*pair, worst.error_m)).collect(),
+            pairs_m: beliefs.pairs_m.into_iter().collect(),
             settled: beliefs.settled,
         }
     }
@@ -278,7 +271,7 @@ mod tests {
     struct Judged {
         /// Counts of settled, changing and unheard errors.
         counts: [u64; 3],
-        beyond: Vec<((usize, usize), f64)>,
+        pairs_m: Vec<((usize, usize), f64)>,
         settled: Class,
     }
 
@@ -296,13 +289,12 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_is_beyond_once_by_its_largest_error_of_the_first_class() {
+    fn a_pair_counts_once_by_its_largest_error_of_the_first_class() {
         let errors = [(10.5, 3.0, 0.05), (11.5, 0.19, 0.05), (12.0, 0.25, 0.05), (12.5, -0.5, 0.05), (13.0, 0.3, 0.05)];
-        let judged = judged(&errors);
-        assert_eq!(judged.beyond.len(), 1);
-        let (pair, error_m) = judged.beyond[0];
-        assert!(pair == (0, 1) && (error_m + 0.5).abs() < 1e-9, "{pair:?} {error_m}");
-        assert_eq!(super::tests::judged(&[(12.0, 0.19, 0.05)]).beyond, []);
+        let pairs_m = judged(&errors).pairs_m;
+        assert_eq!(pairs_m.len(), 1);
+        let (pair, error_m) = pairs_m[0];
+        assert!(pair == (0, 1) && (error_m - 0.5).abs() < 1e-9, "{pair:?} {error_m}");
     }
 
     #[test]

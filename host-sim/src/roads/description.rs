@@ -162,11 +162,13 @@ pub struct Emergencies {
     pub stands_s: f64,
     /// Share of the vehicles that have a fault, 0 to 1.
     pub faults: f64,
+    /// How long a vehicle waits before its driver takes over, 0 to 600 s; 0: no driver does.
+    pub driver_after_s: f64,
 }
 
 impl Emergencies {
-    /// No vehicle makes a stop, and none has a fault.
-    pub const NONE: Self = Self { share: 0.0, stands_s: 0.0, faults: 0.0 };
+    /// No vehicle makes a stop, none has a fault, and no driver takes over.
+    pub const NONE: Self = Self { share: 0.0, stands_s: 0.0, faults: 0.0, driver_after_s: 0.0 };
 }
 
 /// Limits for the verdict. It also asks that no vehicles collide, that every vehicle is served, and that every bound

@@ -1,7 +1,6 @@
 //! The figures of a corridor: the results of the referee and of the estimates enter; the figures of all seeds together
 //! leave, and the reasons of a failed verdict.
 
-use crate::measure::bootstrap::{Interval, interval};
 use serde::Serialize;
 
 use super::beliefs::{Beliefs, Class};
@@ -9,6 +8,11 @@ use super::entries::{EntryFigures, Errors};
 use super::referee::Referee;
 use super::touching::Place;
 use super::traffic::Remains;
+use crate::measure::bootstrap::{Interval, interval};
+use crate::measure::metrics::percentile_abs;
+
+/// Pairs of a unit and its target with a settled error beyond this, in metres, are counted.
+const BEYOND_M: f64 = 0.2;
 
 /// One run under one seed.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,8 +37,8 @@ pub struct Outcome {
     pub ticks: [u64; 2],
     /// Errors: settled; within a second of a change; and those settled ones where nothing was heard since the change.
     pub errors: [Class; 3],
-    /// Pairs of a unit and its target with a settled error beyond 0.2 m.
-    pub beyond: usize,
+    /// The largest settled error of each pair of a unit and its target.
+    pub pairs_m: Vec<f64>,
     /// Errors of the times at which vehicles foresaw to come to a conflict area.
     pub entries: Errors,
     /// Changes of association.
@@ -61,7 +65,7 @@ impl Outcome {
             lowest_speed_mps: referee.lowest_speed_mps,
             ticks: referee.ticks,
             errors: [beliefs.settled, beliefs.changing, beliefs.unheard],
-            beyond: beliefs.beyond.len(),
+            pairs_m: beliefs.pairs_m.values().copied().collect(),
             entries,
             changes: beliefs.changes,
             violations: beliefs.violations,
@@ -104,6 +108,8 @@ pub struct Side {
     pub emergency_stops: u64,
     /// Vehicles with a fault.
     pub faults: u64,
+    /// Number of times that a driver took over.
+    pub takeovers: u64,
     /// Mean travel time, from the arrival on.
     pub mean_travel_time_s: Option<f64>,
     /// Its interval of 95 % confidence over the seeds.
@@ -122,8 +128,12 @@ pub struct Side {
     pub position_error_after_change: ErrorFigures,
     /// Errors later than a second after a change, while nothing has been heard from the target since it.
     pub position_error_unheard: ErrorFigures,
-    /// Pairs of a unit and its target with an error beyond 0.2 m in `position_error`.
+    /// Pairs of a unit and its target that have a `position_error`.
+    pub pairs: usize,
+    /// Of these, pairs with an error beyond 0.2 m.
     pub pairs_beyond: usize,
+    /// What the largest error of 99 % of the pairs does not exceed.
+    pub pairs_p99_m: Option<f64>,
     /// How far off the times are at which vehicles foresee to come to a conflict area.
     pub entry_error: EntryFigures,
     /// Changes of association.
@@ -151,6 +161,7 @@ impl Side {
         let least = |of: fn(&Outcome) -> Option<f64>| all().filter_map(of).reduce(f64::min);
         let class =
             |index: usize| all().map(|outcome| outcome.errors[index]).fold(Class::default(), Class::with).into();
+        let pairs_m: Vec<f64> = all().flat_map(|outcome| outcome.pairs_m.iter().copied()).collect();
         let ticks: [u64; 2] = [0, 1].map(|which| all().map(|outcome| outcome.ticks[which]).sum());
         Self {
             served: times.len(),
@@ -160,6 +171,7 @@ impl Side {
             full_stops: all().map(|outcome| outcome.full_stops).sum(),
             emergency_stops: all().map(|outcome| outcome.remains.emergencies).sum(),
             faults: all().map(|outcome| outcome.remains.faults).sum(),
+            takeovers: all().map(|outcome| outcome.remains.takeovers).sum(),
             mean_travel_time_s: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
             mean_travel_time_interval_s: of_seeds(outcomes),
             longest_travel_time_s: times.iter().copied().reduce(f64::max),
@@ -169,7 +181,9 @@ impl Side {
             position_error: class(0),
             position_error_after_change: class(1),
             position_error_unheard: class(2),
-            pairs_beyond: all().map(|outcome| outcome.beyond).sum(),
+            pairs: pairs_m.len(),
+            pairs_beyond: pairs_m.iter().filter(|error_m| **error_m > BEYOND_M).count(),
+            pairs_p99_m: percentile_abs(&pairs_m, 99.0),
             entry_error: all().map(|outcome| outcome.entries).fold(Errors::default(), Errors::with).into(),
             association_changes: all().map(|outcome| outcome.changes).sum(),
             bound_violations: all().map(|outcome| outcome.violations[0]).sum(),
@@ -250,11 +264,19 @@ mod tests {
             lowest_speed_mps: gap_m,
             ticks: [10, 5],
             errors: [settled, Class::default(), Class::default()],
-            beyond: 3,
+            pairs_m: vec![0.19, 0.21, 0.3],
             entries,
             changes: 4,
             violations: [5, 6],
-            remains: Remains { unserved: 1, refusals: 2, disagreements: 3, turned_away: 4, emergencies: 5, faults: 6 },
+            remains: Remains {
+                unserved: 1,
+                refusals: 2,
+                disagreements: 3,
+                turned_away: 4,
+                emergencies: 5,
+                faults: 6,
+                takeovers: 7,
+            },
         }
     }
 
@@ -276,12 +298,21 @@ mod tests {
             (2, Some(-10.0))
         );
         assert_eq!(side.position_error_unheard, ErrorFigures { ticks: 0, max_m: None, rms_m: None });
-        assert_eq!(
-            (side.full_stops, side.pairs_beyond, side.association_changes, side.bound_violations),
-            (2, 6, 8, 10)
-        );
-        assert_eq!((side.emergency_stops, side.faults, side.bound_violations_by_clock), (10, 12, 12));
+        assert_eq!((side.full_stops, side.association_changes, side.bound_violations), (2, 8, 10));
+        assert_eq!((side.pairs, side.pairs_beyond, side.pairs_p99_m), (6, 4, Some(0.3)));
+        assert_eq!((side.emergency_stops, side.faults, side.takeovers), (10, 12, 14));
+        assert_eq!(side.bound_violations_by_clock, 12);
         assert_eq!((side.limited_share, side.refusals, side.order_disagreements, side.turned_away), (0.5, 4, 6, 8));
+    }
+
+    #[test]
+    fn one_pair_in_a_hundred_may_be_farther_off_than_99_of_them() {
+        let p99_m = |pairs: usize, off: usize| {
+            let pairs_m = (0..pairs).map(|pair| if pair < off { 1.0 } else { 0.1 }).collect();
+            Side::of(&[&Outcome { pairs_m, ..outcome(&[20.0], None, 0.1) }]).pairs_p99_m
+        };
+        assert_eq!([p99_m(0, 0), p99_m(99, 1), p99_m(100, 1)], [None, Some(1.0), Some(0.1)]);
+        assert_eq!([p99_m(4_000, 40), p99_m(4_000, 41)], [Some(0.1), Some(1.0)]);
     }
 
     #[test]

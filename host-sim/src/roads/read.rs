@@ -48,6 +48,7 @@ const LAG: Number = Number { key: "lag_scale", unit: "a factor", limits: 0.2..=4
 const EMERGENCIES: Number = Number { key: "share", unit: "a share", limits: 0.0..=1.0, default: 0.05 };
 const STANDS: Number = Number { key: "stands_s", unit: "seconds", limits: 0.0..=60.0, default: 10.0 };
 const FAULTS: Number = Number { key: "faults", unit: "a share", limits: 0.0..=1.0, default: 0.02 };
+const DRIVER: Number = Number { key: "driver_after_s", unit: "seconds", limits: 0.0..=600.0, default: 30.0 };
 const RIGHT: Number = Number { key: "right_m", unit: "metres", limits: -8.0..=8.0, default: 0.0 };
 const CORNER: Number = Number { key: "corner_m", unit: "metres", limits: 0.0..=50.0, default: 0.0 };
 const PER_MINUTE: Number =
@@ -214,6 +215,7 @@ fn emergencies(mut section: Section) -> Result<Emergencies, Error> {
         share: section.number(&EMERGENCIES)?.value,
         stands_s: section.number(&STANDS)?.value,
         faults: section.number(&FAULTS)?.value,
+        driver_after_s: section.number(&DRIVER)?.value,
     };
     section.finish()?;
     Ok(emergencies)

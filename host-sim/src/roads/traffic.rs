@@ -35,6 +35,7 @@ use crate::sim::world::TargetBelief;
 
 mod arrivals;
 mod departures;
+mod drivers;
 mod emergencies;
 mod events;
 mod faults;
@@ -90,6 +91,8 @@ pub struct Remains {
     pub emergencies: u64,
     /// Vehicles with a fault.
     pub faults: u64,
+    /// Number of times that a driver took over.
+    pub takeovers: u64,
 }
 
 impl Remains {
@@ -317,6 +320,7 @@ impl Stages for Traffic<'_> {
         if self.conditions.when_lost == WhenLost::Alone {
             self.drive_alone(at_s);
         }
+        self.drive_by_hand(at_s);
         self.intervene();
         self.run_out(at_s);
         self.brake_in_emergencies(at_s);

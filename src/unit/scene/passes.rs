@@ -124,7 +124,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         let is_it = |known: &&Station| known.station() == station && known.movement == approach.movement;
         let keeps = |known: &Station| at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, self.pass_time(at)));
         // Of several with the same name, it may be any.
-        let mut alike = self.passes.known.on_record().filter(is_it).map(|known| keeps(known)).peekable();
+        let mut alike = self.passes.known.on_record().filter(is_it).map(keeps).peekable();
         alike.peek().is_some() && alike.all(|keeps| keeps)
     }
 

@@ -183,7 +183,7 @@ pub fn run(options: &CorridorOptions) -> Result<Verdict, Error> {
     progress.finish();
     let motions = if is_drawn { rows::run(first, SILENCES, SensorShare::NONE, || {})? } else { Vec::new() };
 
-    let mut failures = verdict::failures(&options.corridor.limits, &sides);
+    let mut failures = verdict::failures(&options.corridor.limits, options.seeds.len(), &sides);
     failures.extend(verdict::of_shares(&without_passes));
     let driven_s =
         sides.all().iter().map(|side| side.mean_travel_time_s.unwrap_or(0.0) * side.served as f64).sum::<f64>();

@@ -7,6 +7,7 @@ use holdover::ConfigError;
 use holdover::wire::Predecessor;
 use holdover::wire::driver_request::DriverRequest;
 
+use super::drivers::Driver;
 use super::emergencies::Emergency;
 use super::faults::Fault;
 use super::{Traffic, Traveller};
@@ -121,7 +122,7 @@ impl Traffic<'_> {
             Vehicle::new(called, &config, plant, length_m, request, offset_us, sensors)
                 .map_err(|cause| refused(&cause))?,
         );
-        let fault = self.fault_of(at_s, index, lane, sees);
+        let (fault, driver) = (self.fault_of(at_s, index, lane, sees), Driver::default());
         if let Some(Fault::TimeAheadBy(ahead_s)) = fault {
             vehicle.mistake_time(ahead_s);
         }
@@ -149,7 +150,7 @@ impl Traffic<'_> {
         }
         let dark = trip.dark(at_s, &self.conditions.radio);
         let emergency = Emergency::of(&self.conditions.emergencies, self.seed, index, lane);
-        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees, emergency, fault })
+        Ok(Traveller { trip: index, left_s: None, vehicle, ground, dark, log, sees, emergency, fault, driver })
     }
 }
 

@@ -5,6 +5,7 @@
 //! unit goes on telling the others of the drive that it commands: nothing that they hear tells of the stop but the motion itself.
 
 use super::Traffic;
+use crate::input::kind::Kind;
 use crate::roads::description::Emergencies;
 use crate::roads::lane::Lane;
 use crate::streams::{Purpose, stream, unit};
@@ -74,11 +75,15 @@ impl Traffic<'_> {
             let (is_braking, begins) = emergency.at(at_s, way_m, traveller.vehicle.plant.speed_mps);
             self.remains.emergencies += u64::from(begins);
             if is_braking {
-                let hardest = self.trips[traveller.trip].kind.limits().emergency_braking;
-                traveller.vehicle.override_with(-hardest.get().to_num::<f64>());
+                traveller.vehicle.override_with(-hardest_mps2(self.trips[traveller.trip].kind));
             }
         }
     }
+}
+
+/// The hardest braking that vehicles of this kind publish.
+pub(super) fn hardest_mps2(kind: Kind) -> f64 {
+    kind.limits().emergency_braking.get().to_num()
 }
 
 #[cfg(test)]
@@ -94,7 +99,7 @@ mod tests {
         let experiment = Experiment::new(example::corridor());
         let lane = &experiment.network.lanes[0];
         let of = |share: f64| {
-            let emergencies = Emergencies { share, stands_s: 10.0, faults: 0.0 };
+            let emergencies = Emergencies { share, stands_s: 10.0, ..Emergencies::NONE };
             (0..2_000).filter_map(|index| Emergency::of(&emergencies, 1, index, lane)).collect::<Vec<_>>()
         };
         let (few, all) = (of(0.05), of(1.0));
@@ -122,7 +127,7 @@ mod tests {
         let experiment = Experiment::new(example::corridor());
         let Experiment { corridor, network, itineraries } = &experiment;
         let trips = [example::trip(2)];
-        let emergencies = Emergencies { share: 1.0, stands_s: 10.0, faults: 0.0 };
+        let emergencies = Emergencies { share: 1.0, stands_s: 10.0, ..Emergencies::NONE };
         let conditions = Conditions { emergencies, ..Conditions::of(corridor) };
         let mut speeds = Speeds::default();
         let traffic = Traffic::new(corridor, network, itineraries, &trips, conditions, 1);

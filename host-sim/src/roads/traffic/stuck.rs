@@ -5,7 +5,7 @@
 use super::{Traffic, Traveller};
 use crate::measure::metrics::STANDING_BELOW_MPS;
 
-/// A run is given up when nothing has happened for so long, in seconds: four times the longest time that a unit measures, which is that
+/// A run is given up when nothing has happened for so long after the last driver might have taken over, in seconds: four times the longest time that a unit measures, which is that
 /// after which it forgets a station.
 const STUCK_S: f64 = 120.0;
 
@@ -25,7 +25,8 @@ impl Traffic<'_> {
 
     /// Whether nobody will move any more. Where events are to happen that is not told.
     pub(super) fn is_stuck(&self) -> bool {
-        self.happenings.is_empty() && self.at_s() - self.alive_s > STUCK_S
+        let longest_s = STUCK_S + self.conditions.emergencies.driver_after_s;
+        self.happenings.is_empty() && self.at_s() - self.alive_s > longest_s
     }
 }
 

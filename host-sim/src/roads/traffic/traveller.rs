@@ -4,6 +4,7 @@ use std::io;
 
 use holdover::time::Instant;
 
+use super::drivers::Driver;
 use super::emergencies::Emergency;
 use super::faults::Fault;
 use crate::bus::memory::MemoryNode;
@@ -33,6 +34,8 @@ pub struct Traveller {
     pub(super) emergency: Option<Emergency>,
     /// Its fault, if it has one.
     pub(super) fault: Option<Fault>,
+    /// Its driver.
+    pub(super) driver: Driver,
 }
 
 impl Clone for Traveller {
