@@ -76,6 +76,12 @@ impl Station {
         Self { is_by_hand, ..self }
     }
 
+    /// Whether a person drives it.
+    #[must_use]
+    pub const fn is_by_hand(&self) -> bool {
+        self.is_by_hand
+    }
+
     /// Its name in messages that have room for 8 bits only.
     #[must_use]
     pub const fn station(&self) -> StationHash {
@@ -101,8 +107,8 @@ impl Station {
     /// Whether it is certain to keep a pass at this time if it is in the area then. One that was heard before the zone may do anything since
     /// it could have claimed, and a person may do anything at any time.
     #[must_use]
-    pub fn keeps_pass(&self, rules: &Rules, now: Option<GnssTime>) -> bool {
-        let cannot_claim_yet = || now.is_some_and(|now| now <= rules.heard_by_all(self.heard));
+    pub fn keeps_pass(&self, rules: &Rules, now: impl FnOnce() -> Option<GnssTime>) -> bool {
+        let cannot_claim_yet = || now().is_some_and(|now| now <= rules.heard_by_all(self.heard));
         !self.is_by_hand && (self.place != Place::BeforeZone || cannot_claim_yet())
     }
 }
@@ -167,7 +173,7 @@ impl List {
     pub fn leave(&mut self, id: u32, said: GnssTime) {
         for held in self.stations.iter_mut() {
             if let Some(station) = held.get().filter(|station| station.id == id && station.heard <= said) {
-                held.set(Station { heard: said, place: Place::Left, ..station });
+                held.set(Station { heard: said, place: Place::Left, is_by_hand: false, ..station });
             }
         }
     }
@@ -246,7 +252,7 @@ mod tests {
         assert_eq!(heard(&list), [time(120)], "old news");
         list.hear(before(7, 130)).unwrap();
         assert_eq!(heard(&list), [later(130)]);
-        let trusted = |now| list.on_record().all(|known| known.keeps_pass(&RULES, Some(now)));
+        let trusted = |now| list.on_record().all(|known| known.keeps_pass(&RULES, || Some(now)));
         assert!(trusted(later(130)) && !trusted(later(131)));
         for id in 0..2 * KNOWN as u32 {
             list.hear(before(100 + id, 130)).unwrap();
@@ -262,7 +268,7 @@ mod tests {
         for (heard, is_by_hand) in [(100, false), (120, true), (110, false)] {
             list.hear(station(7, heard).driven(is_by_hand)).unwrap();
         }
-        let trusted = |list: &List| list.on_record().all(|known| known.keeps_pass(&RULES, Some(time(130))));
+        let trusted = |list: &List| list.on_record().all(|known| known.keeps_pass(&RULES, || Some(time(130))));
         assert!(list.iter().count() == 1 && !trusted(&list), "old news changes nothing");
         list.hear(station(7, 130)).unwrap();
         assert!(trusted(&list));

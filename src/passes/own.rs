@@ -110,12 +110,14 @@ impl Own {
         *self = Self { is_before_zone: true, ..Self::NOTHING };
     }
 
-    /// A person drives: nothing more is claimed. What was claimed stays until it is over, because the vehicle may be on its way in.
+    /// A person drives: nothing more is claimed. What was claimed and has been said ever since stays until it is over, because the vehicle may
+    /// be on its way in.
+    #[cold] // whoever drives itself does not pay for it
     pub fn run_out(&mut self, now: GnssTime) {
         for piece in &mut self.pieces {
             *piece = piece.get().filter(|claim| claim.window.exit > now).into();
         }
-        if self.claims().next().is_none() {
+        if self.claims().next().is_none() || self.was_silent(now) {
             self.stay_out();
         }
     }
@@ -147,7 +149,7 @@ impl Own {
             return;
         };
         // Others may have come on air since, and have not heard what was claimed.
-        if !outlook.is_committed && self.said.get().is_some_and(|said| now > said.plus(SILENT)) {
+        if !outlook.is_committed && self.was_silent(now) {
             self.begin();
         }
         if !outlook.is_committed {
@@ -239,6 +241,11 @@ impl Own {
     #[must_use]
     pub fn is_claimed(&self, stay: &Window) -> bool {
         is_covered(stay, self.claims().map(|claim| claim.window))
+    }
+
+    /// Whether it has said nothing for so long that it is not on air any more.
+    fn was_silent(&self, now: GnssTime) -> bool {
+        self.said.get().is_some_and(|said| now > said.plus(SILENT))
     }
 
     /// What is missing of the wanted window before or after what is claimed already.

@@ -22,6 +22,8 @@ pub(super) struct Gate {
     is_covered: bool,
     /// Whether it cannot stop before the area any more, and was covered then, or is in the area.
     is_committed: bool,
+    /// Whether the ego could stop before an area at some time since the unit drives: since then the gate keeps it out of areas.
+    keeps: bool,
     /// The index of that area's intersection on the ego's way.
     crossing: usize,
 }
@@ -36,13 +38,14 @@ pub(super) struct Last {
 impl Gate {
     /// Nothing is known of the ego: all zero.
     pub const fn new() -> Self {
-        Self { reckoning: Held::Nothing, is_covered: false, is_committed: false, crossing: 0 }
+        Self { reckoning: Held::Nothing, is_covered: false, is_committed: false, keeps: false, crossing: 0 }
     }
 
     /// Forgets the ego: nothing is known of commands that are not the unit's.
     pub fn forget(&mut self) {
         self.reckoning.clear();
         self.begin();
+        self.keeps = false;
     }
 
     /// Another way begins, for which no pass was used.
@@ -53,6 +56,12 @@ impl Gate {
     /// Whether the ego goes into the next conflict area by a pass, or is in it.
     pub const fn is_committed(&self) -> bool {
         self.is_committed
+    }
+
+    /// Whether the gate keeps the ego out of the next conflict area while no pass covers its stay. It cannot if a person has handed the
+    /// vehicle over too near.
+    pub const fn keeps_out(&self) -> bool {
+        self.keeps
     }
 
     /// The command as it is encoded, with the ego at the less safe end of its accuracies, and whether the command differs from the
@@ -133,6 +142,9 @@ impl Gate {
         let line = Obstacle::standing(area.begins);
         let is_before = range.rearmost <= area.begins;
         let can_stop = is_before && envelope::is_safe(limits, ego, &line, scene.config.period);
+        if can_stop {
+            self.keeps = true;
+        }
         // Also in the first tick in which it cannot stop: its claims may have been cut since the last one. Then it brakes, and stops within
         // the envelope's margin.
         if can_stop || self.is_covered && !self.is_committed {

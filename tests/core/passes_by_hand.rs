@@ -118,7 +118,7 @@ fn however_short_a_person_drives_no_claim_counts_before_a_message_that_was_witho
     for begins in (6_000_000..6_200_000).step_by(10_000) {
         for lasts in [10_000, 30_000, 90_000, 110_000, 250_000, 700_000] {
             let mut junction = Junction::new(vec![driver(2, 0, 20.0)]);
-            let mut last = None::<Pass>;
+            let (mut last, mut by_hand) = (None::<Pass>, 0);
             junction.run(12.0, |junction| {
                 let (now, driver) = (junction.now, &mut junction.drivers[0]);
                 let accelerator = (begins..begins + lasts).contains(&now);
@@ -140,7 +140,50 @@ fn however_short_a_person_drives_no_claim_counts_before_a_message_that_was_witho
                     assert!(claim.at.0 > stamp, "{begins} us, for {lasts} us: {pass:?} after {last:?}");
                 }
                 last = Some(pass);
+                by_hand += u32::from(pass.is_by_hand);
             });
+            assert!(by_hand > 0 || lasts < 250_000, "{begins} us, for {lasts} us");
         }
     }
+}
+
+#[test]
+fn who_was_silent_claims_as_a_newcomer_also_if_a_person_drove_when_it_spoke_again() {
+    let mut junction = Junction::new(vec![driver(2, 0, 20.0)]);
+    let (mut had, mut first, mut claims) = (false, None, 0);
+    junction.run(16.0, |junction| {
+        let (now, driver) = (junction.now, &mut junction.drivers[0]);
+        driver.is_measured = !(6_000_000..10_000_000).contains(&now);
+        driver.engaged = !(9_500_000..10_500_000).contains(&now);
+        driver.by_hand = (6_000_000..11_000_000).contains(&now).then_some(0.0);
+        let Some(pass) = said(driver) else { return };
+        had |= now < 6_000_000 && pass.claims[0].is_some();
+        if now > 9_000_000 {
+            let first = *first.get_or_insert(pass.stamp.0);
+            claims += pass.claims.iter().flatten().count();
+            let is_new = |claim: &Claimed| claim.at.0.wrapping_sub(first) >= 440;
+            assert!(pass.claims.iter().flatten().all(is_new), "at {now}, first at {first}: {pass:?}");
+        }
+    });
+    assert!(had && claims > 0, "{claims}");
+}
+
+#[test]
+fn a_vehicle_that_is_handed_back_too_near_to_stop_keeps_no_pass_before_it_has_left_the_area() {
+    let mut junction = Junction::new(vec![driver(2, 0, 100.0)]);
+    let (mut near, mut beyond) = (0, 0);
+    junction.run(25.0, |junction| {
+        let driver = &mut junction.drivers[0];
+        driver.engaged = driver.body.position > CROSSING - HALF - 3.0;
+        driver.by_hand = (driver.body.position < CROSSING - HALF).then_some(0.0);
+        let Some(pass) = said(driver) else { return };
+        if pass.intersection == 5 {
+            near += u32::from(driver.engaged);
+            assert!(pass.is_by_hand, "at {:.1} m: {pass:?}", driver.body.position);
+        } else if driver.body.position > CROSSING + HALF + 10.0 {
+            beyond += 1;
+            assert!(!pass.is_by_hand, "at {:.1} m: {pass:?}", driver.body.position);
+        }
+    });
+    assert!(near > 0 && beyond > 0, "{near} {beyond}");
 }

@@ -7,8 +7,8 @@ use crate::health::{Cause, Health};
 use crate::held::Held;
 use crate::passes::{Claim, Known, List, Order, Outlook, Own, PIECES, Rules, Station, Window};
 use crate::time::{Duration, GnssTime, Instant};
-use crate::wire::Predecessor;
 use crate::wire::pass::{Claimed, LONGEST, Pass, PassTime, STEP};
+use crate::wire::{Predecessor, StationHash};
 
 /// The passes at the next intersection.
 #[derive(Clone, Debug)]
@@ -17,6 +17,8 @@ pub(in crate::unit) struct Passes {
     pub own: Own,
     /// Those of the vehicles on ways that cross the ego's.
     pub known: List,
+    /// Whether a person drives, or has handed the vehicle over too near to an area for the gate to keep it out.
+    pub is_by_hand: bool,
     /// The index of that intersection on the ego's way, and one more.
     crossing: usize,
     /// The last time at which GNSS time was asked for, and what it was.
@@ -28,7 +30,8 @@ const STEPPED: Duration = Duration::from_millis(5);
 
 impl Passes {
     /// Nothing is known: all zero.
-    pub const NONE: Self = Self { own: Own::NOTHING, known: List::EMPTY, crossing: 0, clock: Held::Nothing };
+    pub const NONE: Self =
+        Self { own: Own::NOTHING, known: List::EMPTY, is_by_hand: false, crossing: 0, clock: Held::Nothing };
 
     /// Forgets what was known and claimed when another intersection comes next.
     pub fn turn_to(&mut self, next: usize) {
@@ -122,10 +125,15 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             return false;
         };
         let is_it = |known: &&Station| known.station() == station && known.movement == approach.movement;
-        let keeps = |known: &Station| at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, self.pass_time(at)));
         // Of several with the same name, it may be any.
-        let mut alike = self.passes.known.on_record().filter(is_it).map(keeps).peekable();
-        alike.peek().is_some() && alike.all(|keeps| keeps)
+        let mut keeps = false;
+        for known in self.passes.known.on_record().filter(is_it) {
+            keeps = at.is_none_or(|at| known.keeps_pass(&Rules::UNIT, || self.pass_time(at)));
+            if !keeps {
+                break;
+            }
+        }
+        keeps
     }
 
     /// Whether firm claims cover a stay in the next conflict area, in GNSS time.
@@ -139,28 +147,18 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         self.passes.own.firmly_reaches(&Rules::UNIT, self.pass_time(now)?, entry, self.known_passes())
     }
 
-    /// Whether a vehicle is ahead of the ego in the order.
-    fn order_of(&self, other: &Station) -> Order {
-        let Some(own) = self.coordination.registration() else { return Order::Unknown };
-        let entry = |station, arrival, leg| Entry { station, arrival: Some(arrival), claim: Predecessor::Unknown, leg };
-        let other = entry(other.station(), other.arrival, other.movement.leg);
-        if other.is_before(&entry(self.config.station, own.arrival, self.coordination.leg())) {
-            Order::Ahead
-        } else {
-            Order::Behind
-        }
-    }
-
     /// Plans the ego's claims, by what it foresees.
     pub fn plan_passes(&mut self, now: GnssTime, outlook: Option<&Outlook>) {
         let mut own = self.passes.own.clone();
-        let known = self.passes.known.iter().map(|station| (station.known(&Rules::UNIT), self.order_of(station)));
+        let (leg, registration) = (self.coordination.leg(), self.coordination.registration());
+        let ego = registration.map(|registration| entry(self.config.station, registration.arrival, leg));
+        let known = self.passes.known.iter().map(|other| (other.known(&Rules::UNIT), order_of(other, ego.as_ref())));
         own.plan(&Rules::UNIT, now, self.config.station_id, outlook, known);
         self.passes.own = own;
     }
 
     /// The ego's own message about its passes.
-    pub fn say_passes(&mut self, now: Instant, tag: u8, is_by_hand: bool) -> Option<Pass> {
+    pub fn say_passes(&mut self, now: Instant, tag: u8) -> Option<Pass> {
         let gnss = self.pass_time(now)?;
         let itinerary = self.coordination.itinerary()?;
         let (named, registration) = (self.coordination.named()?, self.coordination.registration()?);
@@ -174,12 +172,26 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             movement: named.movement,
             left: left.map(|crossing| crossing.intersection.id),
             is_before_zone: self.passes.own.is_before_zone(),
-            is_by_hand,
+            is_by_hand: self.passes.is_by_hand,
             stamp: PassTime::down(stamp),
             arrival: registration.arrival.0,
             claims: claims.map(|claim| claim.and_then(|claim| claimed(&claim))),
         })
     }
+}
+
+/// Whether a vehicle is ahead of the ego in the order. A person gives back nothing of what the unit has claimed, whatever the order is.
+fn order_of(other: &Station, ego: Option<&Entry>) -> Order {
+    if other.is_by_hand() {
+        return Order::Ahead;
+    }
+    let Some(ego) = ego else { return Order::Unknown };
+    let is_before = entry(other.station(), other.arrival, other.movement.leg).is_before(ego);
+    if is_before { Order::Ahead } else { Order::Behind }
+}
+
+fn entry(station: StationHash, arrival: Arrival, leg: u8) -> Entry {
+    Entry { station, arrival: Some(arrival), claim: Predecessor::Unknown, leg }
 }
 
 /// A GNSS time, rounded down to what a message can say.

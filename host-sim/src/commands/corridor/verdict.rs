@@ -41,8 +41,8 @@ pub(super) fn safety(how: &str, side: &Side) -> Vec<String> {
     if side.served == 0 {
         failures.push(format!("nobody got through{how}, so nothing was measured"));
     }
-    // Where a radio is dead, A13 does not hold: a unit may wait for ever for a vehicle that it will not hear (P12).
-    if side.unserved > 0 && side.faults == 0 {
+    // Where a radio is dead, A13 does not hold: a unit may wait for ever for a vehicle that it will not hear (P12), unless its driver does not.
+    if side.unserved > 0 && (side.faults == 0 || side.takeovers > 0) {
         failures.push(format!("{} vehicle(s) did not get through{how}", side.unserved));
     }
     if side.bound_violations > 0 {
@@ -190,6 +190,10 @@ mod tests {
             })
         };
         assert_eq!(faulty(|side| (side.unserved, side.bound_violations_by_clock) = (2, 3)), [""; 0]);
+        assert_eq!(
+            faulty(|side| (side.unserved, side.takeovers) = (2, 1)),
+            ["2 vehicle(s) did not get through with emergencies"]
+        );
         assert_eq!(
             faulty(|side| side.collisions_on_roads = 1),
             ["collisions with emergencies: 1 on roads, 0 in conflict areas"]

@@ -10,7 +10,7 @@ use crate::measure::metrics::STANDING_BELOW_MPS;
 use crate::roads::alone;
 use crate::roads::lane::Stop;
 use crate::roads::watch::Sighting;
-use crate::sim::person::{EMERGENCY_MPS2, Manner};
+use crate::sim::person::Manner;
 
 /// A driver waits for a vehicle that he sees ahead of him, nearer than this, in metres.
 const BEHIND_M: f64 = 20.0;
@@ -29,13 +29,25 @@ const ROOM_M: f64 = 2.0;
 /// A vehicle ahead that is slower than this, in m/s, may come to a stand.
 const SLOW_MPS: f64 = 3.0;
 
+/// So long after he has taken over, in seconds, a driver waits in any case: the others are to hear of it.
+const TOLD_S: f64 = 1.0;
+
 /// What a driver does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Driver {
     /// Since when the vehicle has stood, or had stood when the driver took over.
     waits_since_s: Option<f64>,
-    /// The intersection up to which the driver drives.
-    through: Option<usize>,
+    /// How far the driver drives, if he drives.
+    drives: Option<Until>,
+}
+
+/// How far a driver drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Until {
+    /// Until the vehicle has left the area of this intersection.
+    Behind(usize),
+    /// To the end of the way: there is no area ahead, or the radio is dead.
+    TheEnd,
 }
 
 impl Driver {
@@ -45,13 +57,13 @@ impl Driver {
     }
 
     fn note(&mut self, at_s: f64, stands: bool) {
-        if self.through.is_none() {
+        if self.drives.is_none() {
             self.waits_since_s = stands.then_some(self.waits_since_s.unwrap_or(at_s));
         }
     }
 }
 
-impl Traffic<'_> {
+impl<'a> Traffic<'a> {
     /// Lets the drivers drive who have waited for long enough.
     pub(super) fn drive_by_hand(&mut self, at_s: f64) {
         let after_s = self.conditions.emergencies.driver_after_s;
@@ -68,48 +80,61 @@ impl Traffic<'_> {
             return;
         }
         let sightings: Vec<Sighting> = self.travellers.values().map(|one| self.sight(at_s, one)).collect();
-        for trip in acting {
-            let Some(own) = sightings.iter().find(|own| own.trip == trip) else { continue };
-            let wanted = self.wanted_by_hand(at_s, own, &sightings);
-            let is_first = self.is_first(own, &sightings);
-            let kind = self.trips[trip].kind;
-            let Some(traveller) = self.travellers.get_mut(&trip) else { continue };
-            match wanted {
-                Some(_) if traveller.driver.through.is_some() && traveller.stops_by_itself() => {
-                    traveller.vehicle.take_over(-hardest_mps2(kind))
-                }
-                Some((intersection, wanted_mps2)) if traveller.driver.through.is_some() || is_first => {
-                    self.remains.takeovers += u64::from(traveller.driver.through.is_none());
-                    traveller.driver.through = Some(intersection);
-                    traveller.vehicle.take_over(alone::published(wanted_mps2, kind));
-                }
-                None if traveller.driver.through.is_some() => {
-                    traveller.driver = Driver::default();
-                    traveller.vehicle.let_go();
-                }
-                _ => {}
+        for own in sightings.iter().filter(|own| acting.contains(&own.trip)) {
+            self.drive_one_by_hand(at_s, own, &sightings);
+        }
+    }
+
+    fn drive_one_by_hand(&mut self, at_s: f64, own: &Sighting, all: &[Sighting]) {
+        let kind = self.trips[own.trip].kind;
+        let Some(traveller) = self.travellers.get(&own.trip) else { return };
+        let (drives, stops_by_itself) = (traveller.driver.drives, traveller.stops_by_itself());
+        let begins = drives.is_none() && self.is_first(own, all);
+        let stop = self.next_stop(own);
+        let until = drives.or_else(|| Some(self.until(at_s, own, stop)).filter(|_| begins));
+        let wanted_mps2 = if stops_by_itself { -hardest_mps2(kind) } else { self.wanted_by_hand(at_s, own, stop, all) };
+        let Some(traveller) = self.travellers.get_mut(&own.trip) else { return };
+        match until {
+            None => {}
+            Some(Until::Behind(intersection)) if stop.is_none_or(|stop| stop.intersection != intersection) => {
+                traveller.driver = Driver::default();
+                traveller.vehicle.let_go();
+            }
+            Some(until) => {
+                traveller.driver.drives = Some(until);
+                traveller.vehicle.take_over(alone::published(wanted_mps2, kind));
+                self.remains.takeovers += u64::from(begins);
             }
         }
     }
 
-    /// The intersection up to which the driver drives, and the acceleration that he asks for by what he sees; `None` behind its area.
-    fn wanted_by_hand(&self, at_s: f64, own: &Sighting, all: &[Sighting]) -> Option<(usize, f64)> {
-        let is_left = |stop: &Stop| own.way_m - own.length_m > self.area_m(stop)[1];
-        let mut stops = self.network.lanes[own.road].stops.iter();
-        let stop = match self.travellers.get(&own.trip)?.driver.through {
-            Some(through) => stops.find(|stop| stop.intersection == through).filter(|stop| !is_left(stop)),
-            None => stops.find(|stop| !is_left(stop)),
-        }?;
+    /// How far a driver drives who takes over now, with this intersection ahead.
+    fn until(&self, at_s: f64, own: &Sighting, stop: Option<&Stop>) -> Until {
+        let is_dead = self.travellers.get(&own.trip).is_some_and(|one| one.is_deaf(at_s) || one.is_mute(at_s));
+        stop.filter(|_| !is_dead).map_or(Until::TheEnd, |stop| Until::Behind(stop.intersection))
+    }
+
+    /// The first intersection whose area the vehicle has not left.
+    fn next_stop(&self, own: &Sighting) -> Option<&'a Stop> {
+        let network = self.network;
+        network.lanes[own.road].stops.iter().find(|stop| own.way_m - own.length_m <= self.area_m(stop)[1])
+    }
+
+    /// The acceleration that the driver asks for by what he sees.
+    fn wanted_by_hand(&self, at_s: f64, own: &Sighting, stop: Option<&Stop>, all: &[Sighting]) -> f64 {
         let traffic = &self.corridor.traffic;
         let goes_mps2 = alone::demand(own, all, self.network, traffic, false);
+        let Some(stop) = stop else { return goes_mps2 };
         let to_area_m = self.area_m(stop)[0] - own.way_m;
-        let has_gone = own.speed_mps * own.speed_mps > 2.0 * EMERGENCY_MPS2 * to_area_m;
-        let stands = own.speed_mps < STANDING_BELOW_MPS;
-        if has_gone && !stands || self.is_clear(at_s, own, stop, all) {
-            return Some((stop.intersection, goes_mps2));
+        let brakes_mps2: f64 = self.trips[own.trip].kind.limits().braking.get().to_num();
+        let has_gone = own.speed_mps * own.speed_mps > 2.0 * brakes_mps2 * to_area_m;
+        let waited_s = self.travellers.get(&own.trip).map_or(0.0, |one| one.driver.has_waited_s(at_s));
+        let is_told = waited_s >= self.conditions.emergencies.driver_after_s + TOLD_S;
+        if has_gone && own.speed_mps >= STANDING_BELOW_MPS || is_told && self.is_clear(at_s, own, stop, all) {
+            return goes_mps2;
         }
         let manner = Manner { wanted_mps: traffic.target_speed_mps, time_gap_s: 1.0, standstill_m: LINE_M };
-        Some((stop.intersection, goes_mps2.min(manner.behind(own.speed_mps, to_area_m, 0.0))))
+        goes_mps2.min(manner.behind(own.speed_mps, to_area_m, 0.0))
     }
 
     /// Whether the driver may go into the area: there is room behind it, and nobody whose way crosses his own is there before he has left.
@@ -156,7 +181,7 @@ impl Traffic<'_> {
         let (others, owns) = (driver(other), driver(own));
         let has_waited_longer = (others.has_waited_s(at_s), own.trip) > (owns.has_waited_s(at_s), other.trip);
         let can_go = || self.is_first(other, all) && self.leaves_room(other, there, all);
-        others.through.is_some() && has_waited_longer && can_go()
+        others.drives.is_some() && has_waited_longer && can_go()
     }
 
     /// Whether a driver sees nobody near ahead of him.

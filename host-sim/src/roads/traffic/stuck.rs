@@ -5,8 +5,8 @@
 use super::{Traffic, Traveller};
 use crate::measure::metrics::STANDING_BELOW_MPS;
 
-/// A run is given up when nothing has happened for so long after the last driver might have taken over, in seconds: four times the longest time that a unit measures, which is that
-/// after which it forgets a station.
+/// A run is given up when nothing has happened for so long, in seconds, after the last driver could have taken over. It is four times the
+/// longest time that a unit measures, which is that after which it forgets a station.
 const STUCK_S: f64 = 120.0;
 
 impl Traffic<'_> {
