@@ -12,6 +12,7 @@ ROWS = {
     "collisions": lambda side: side["collisions_on_roads"] + side["collisions_at_intersections"],
     "not served": lambda side: side["unserved"],
     "full stops": lambda side: side["full_stops"],
+    "drivers who took over": lambda side: side["takeovers"],
     "of these emergencies": lambda side: side["emergency_stops"],
     "mean travel time": lambda side: side["mean_travel_time_s"],
     "smallest gap on a road": lambda side: side["smallest_gap_m"],
