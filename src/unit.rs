@@ -371,9 +371,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// Plans the passes that are claimed at the next intersection.
     #[inline(never)] // apart from the stack of the horizon
     fn plan(&mut self, now: Instant, ego: Option<&State>) {
-        self.scene.passes.is_by_hand = !self.gate.keeps_out();
+        self.scene.passes.keeps = self.gate.keeps_out();
         if let Some(range) = ego.filter(|_| self.keeps_passes(now)).and_then(|ego| Range::of(&self.scene, now, ego)) {
-            pass::plan(&mut self.scene, &range, self.mode, self.gate.is_committed());
+            pass::plan(&mut self.scene, &range, self.mode.is_by_law(), self.gate.is_committed());
         }
     }
 
@@ -393,7 +393,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     fn send_own(&mut self, now: Instant, own: Option<&Sample>, frames: &mut Vec<Frame, MAX_FRAMES>) {
         let tag = self.outbox.next_tag();
         let says = Outbox::is_route_due(tag) && self.keeps_passes(now);
-        let pass = if says { self.scene.say_passes(now, tag) } else { None };
+        let pass = if says { self.scene.say_passes(now, tag, self.gate.is_committed()) } else { None };
         let report = Report { mode: self.mode, gains: self.association.gains(), ego: own, pass };
         self.outbox.send_own(&self.scene, now, &report, &mut self.health, frames);
     }

@@ -110,8 +110,8 @@ impl Own {
         *self = Self { is_before_zone: true, ..Self::NOTHING };
     }
 
-    /// A person drives: nothing more is claimed. What was claimed and has been said ever since stays until it is over, because the vehicle may
-    /// be on its way in.
+    /// A person drives: nothing more is claimed. What was claimed stays until it is over, because the vehicle may be on its way in, unless the
+    /// last message was long ago.
     #[cold] // whoever drives itself does not pay for it
     pub fn run_out(&mut self, now: GnssTime) {
         for piece in &mut self.pieces {
@@ -205,10 +205,14 @@ impl Own {
     }
 
     /// The claims as they are said in a message with this stamp. One that is not in the zone is not on air by what it says. Those that were
-    /// made before the first message of all count from when that has been heard.
-    pub fn say(&mut self, rules: &Rules, stamp: GnssTime) -> [Option<Claim>; PIECES] {
+    /// made before the first message of all count from when that has been heard. What is claimed is given up if the last message was long ago,
+    /// unless it is in use: others may have come on air since.
+    pub fn say(&mut self, rules: &Rules, stamp: GnssTime, is_committed: bool) -> [Option<Claim>; PIECES] {
         if self.is_before_zone {
             return [None; PIECES];
+        }
+        if !is_committed && self.was_silent(stamp) {
+            self.begin();
         }
         if self.on_air.as_ref().is_none() {
             self.on_air.set(stamp);

@@ -22,7 +22,7 @@ pub(super) struct Gate {
     is_covered: bool,
     /// Whether it cannot stop before the area any more, and was covered then, or is in the area.
     is_committed: bool,
-    /// Whether the ego could stop before an area at some time since the unit drives: since then the gate keeps it out of areas.
+    /// Whether the ego could stop before an area at some time since the unit began to drive: since then the gate keeps it out of areas.
     keeps: bool,
     /// The index of that area's intersection on the ego's way.
     crossing: usize,
@@ -45,12 +45,11 @@ impl Gate {
     pub fn forget(&mut self) {
         self.reckoning.clear();
         self.begin();
-        self.keeps = false;
     }
 
     /// Another way begins, for which no pass was used.
     pub fn begin(&mut self) {
-        (self.is_covered, self.is_committed) = (false, false);
+        (self.is_covered, self.is_committed, self.keeps) = (false, false, false);
     }
 
     /// Whether the ego goes into the next conflict area by a pass, or is in it.

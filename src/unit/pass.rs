@@ -6,7 +6,6 @@ use core::num::NonZeroU32;
 use super::scene::Scene;
 use super::scene::passes::whole_steps;
 use crate::config::{Config, Envelope};
-use crate::controller::Mode;
 use crate::fixed::quotient;
 use crate::model::{State, catch_up};
 use crate::parameters::{POSITION_ROUNDING, SPEED_ROUNDING};
@@ -243,7 +242,7 @@ pub(super) fn not_early<const PEERS: usize, const SAMPLES: usize, const STEPS: u
 pub(super) fn plan<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     ego: &Range,
-    mode: Mode,
+    is_by_law: bool,
     is_committed: bool,
 ) {
     let gnss = scene.pass_time(ego.now);
@@ -251,11 +250,11 @@ pub(super) fn plan<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>
     scene.passes.note_time(ego.now, gnss);
     let Some(now) = gnss else { return };
     scene.passes.known.forget(&Rules::UNIT, now);
-    if mode == Mode::Standby {
+    if !scene.passes.keeps && !is_committed {
         return scene.passes.own.run_out(now);
     }
     let area = Area::next(scene);
-    let outlook = area.and_then(|area| outlook(scene, &area, ego, now, mode.is_by_law(), is_committed));
+    let outlook = area.and_then(|area| outlook(scene, &area, ego, now, is_by_law, is_committed));
     // What is in use is kept, whatever is foreseen.
     if outlook.is_none() && is_committed {
         return;

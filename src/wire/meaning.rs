@@ -65,7 +65,7 @@ macro_rules! meaning {
     (station_id) => { "The whole identity of the station, of which Station is the low 8 bits." };
     (left) => { "Number of the intersection that the vehicle left last; none if it has left none on its way." };
     (zone) => { "Where the vehicle is, by the zone of Intersection. Before the zone it claims nothing, whatever the windows say, and its claims in the zone are those of a newcomer." };
-    (by_hand) => { "Whether a person drives. The vehicle then claims nothing more. What it has claimed is honoured until it is over, but nobody relies on it." };
+    (by_hand) => { "Whether a person drives, or has handed the vehicle back too near to an area to stop before it. It then claims nothing more. What it has claimed is honoured until it is over, but nobody who can still stop relies on it." };
     (pass_stamp) => { "GNSS time up to which the vehicle says all that it claims: no window that it claims later counts from before that. Modulo 655.36 s." };
     (claimed) => { "GNSS time from which the window counts. Of two windows that conflict, that with the earlier one has priority, then that of the smaller StationId. Modulo 655.36 s." };
     (entry) => { "GNSS time before which the vehicle's front does not enter the conflict area. Modulo 655.36 s." };

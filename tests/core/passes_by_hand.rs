@@ -147,14 +147,14 @@ fn however_short_a_person_drives_no_claim_counts_before_a_message_that_was_witho
     }
 }
 
-#[test]
-fn who_was_silent_claims_as_a_newcomer_also_if_a_person_drove_when_it_spoke_again() {
+/// A unit speaks again at this time, 4 s after its own motion was measured last. A person drives when it does, or not.
+fn speaks_again(at: i64, by_hand: bool) {
     let mut junction = Junction::new(vec![driver(2, 0, 20.0)]);
     let (mut had, mut first, mut claims) = (false, None, 0);
     junction.run(16.0, |junction| {
         let (now, driver) = (junction.now, &mut junction.drivers[0]);
-        driver.is_measured = !(6_000_000..10_000_000).contains(&now);
-        driver.engaged = !(9_500_000..10_500_000).contains(&now);
+        driver.is_measured = !(at - 4_000_000..at).contains(&now);
+        driver.engaged = !(by_hand && (at - 500_000..at + 500_000).contains(&now));
         driver.by_hand = (6_000_000..11_000_000).contains(&now).then_some(0.0);
         let Some(pass) = said(driver) else { return };
         had |= now < 6_000_000 && pass.claims[0].is_some();
@@ -162,10 +162,18 @@ fn who_was_silent_claims_as_a_newcomer_also_if_a_person_drove_when_it_spoke_agai
             let first = *first.get_or_insert(pass.stamp.0);
             claims += pass.claims.iter().flatten().count();
             let is_new = |claim: &Claimed| claim.at.0.wrapping_sub(first) >= 440;
-            assert!(pass.claims.iter().flatten().all(is_new), "at {now}, first at {first}: {pass:?}");
+            let all_new = pass.claims.iter().flatten().all(is_new);
+            assert!(all_new, "again at {at}, now {now}, by hand {by_hand}, first at {first}: {pass:?}");
         }
     });
     assert!(had && claims > 0, "{claims}");
+}
+
+#[test]
+fn who_was_silent_claims_as_a_newcomer_also_if_a_person_drives_when_it_speaks_again() {
+    for at in (9_900_000..10_100_000).step_by(10_000) {
+        [false, true].into_iter().for_each(|by_hand| speaks_again(at, by_hand));
+    }
 }
 
 #[test]

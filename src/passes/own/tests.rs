@@ -71,7 +71,7 @@ fn who_stays_out_of_the_zone_says_no_claim_and_claims_as_a_newcomer_after_that()
     let mut own = own();
     plan(&mut own, &outlook(window(1_100, 1_150)), &[]);
     own.stay_out();
-    assert!(own.is_before_zone() && own.say(&RULES, time(999)) == [None; PIECES]);
+    assert!(own.is_before_zone() && own.say(&RULES, time(999), false) == [None; PIECES]);
     plan(&mut own, &outlook(window(1_200, 1_250)), &[]);
     assert!(!own.is_before_zone());
     let at = own.claims().map(|claim| claim.at).max();

@@ -17,8 +17,9 @@ pub(in crate::unit) struct Passes {
     pub own: Own,
     /// Those of the vehicles on ways that cross the ego's.
     pub known: List,
-    /// Whether a person drives, or has handed the vehicle over too near to an area for the gate to keep it out.
-    pub is_by_hand: bool,
+    /// Whether the gate keeps the ego out of areas, as of the last plan: a person does not drive, nor has one handed the vehicle back too near
+    /// to an area.
+    pub keeps: bool,
     /// The index of that intersection on the ego's way, and one more.
     crossing: usize,
     /// The last time at which GNSS time was asked for, and what it was.
@@ -31,7 +32,7 @@ const STEPPED: Duration = Duration::from_millis(5);
 impl Passes {
     /// Nothing is known: all zero.
     pub const NONE: Self =
-        Self { own: Own::NOTHING, known: List::EMPTY, is_by_hand: false, crossing: 0, clock: Held::Nothing };
+        Self { own: Own::NOTHING, known: List::EMPTY, keeps: false, crossing: 0, clock: Held::Nothing };
 
     /// Forgets what was known and claimed when another intersection comes next.
     pub fn turn_to(&mut self, next: usize) {
@@ -158,13 +159,13 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     }
 
     /// The ego's own message about its passes.
-    pub fn say_passes(&mut self, now: Instant, tag: u8) -> Option<Pass> {
+    pub fn say_passes(&mut self, now: Instant, tag: u8, is_committed: bool) -> Option<Pass> {
         let gnss = self.pass_time(now)?;
         let itinerary = self.coordination.itinerary()?;
         let (named, registration) = (self.coordination.named()?, self.coordination.registration()?);
         let left = self.coordination.next().checked_sub(1).and_then(|last| itinerary.crossings.get(last));
         let stamp = whole_steps(gnss);
-        let claims = self.passes.own.say(&Rules::UNIT, stamp);
+        let claims = self.passes.own.say(&Rules::UNIT, stamp, is_committed);
         Some(Pass {
             tag,
             station_id: self.config.station_id,
@@ -172,7 +173,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
             movement: named.movement,
             left: left.map(|crossing| crossing.intersection.id),
             is_before_zone: self.passes.own.is_before_zone(),
-            is_by_hand: self.passes.is_by_hand,
+            is_by_hand: !self.passes.keeps,
             stamp: PassTime::down(stamp),
             arrival: registration.arrival.0,
             claims: claims.map(|claim| claim.and_then(|claim| claimed(&claim))),

@@ -37,8 +37,8 @@ const TOLD_S: f64 = 1.0;
 pub(super) struct Driver {
     /// Since when the vehicle has stood, or had stood when the driver took over.
     waits_since_s: Option<f64>,
-    /// How far the driver drives, if he drives.
-    drives: Option<Until>,
+    /// How far the driver drives, and since when, if he drives.
+    drives: Option<(Until, f64)>,
 }
 
 /// How far a driver drives.
@@ -91,17 +91,19 @@ impl<'a> Traffic<'a> {
         let (drives, stops_by_itself) = (traveller.driver.drives, traveller.stops_by_itself());
         let begins = drives.is_none() && self.is_first(own, all);
         let stop = self.next_stop(own);
-        let until = drives.or_else(|| Some(self.until(at_s, own, stop)).filter(|_| begins));
-        let wanted_mps2 = if stops_by_itself { -hardest_mps2(kind) } else { self.wanted_by_hand(at_s, own, stop, all) };
+        let drives = drives.or_else(|| begins.then(|| (self.until(at_s, own, stop), at_s)));
+        let is_told = drives.is_some_and(|(_, since_s)| at_s >= since_s + TOLD_S);
+        let wanted_mps2 =
+            if stops_by_itself { -hardest_mps2(kind) } else { self.wanted_by_hand(at_s, is_told, own, stop, all) };
         let Some(traveller) = self.travellers.get_mut(&own.trip) else { return };
-        match until {
+        match drives {
             None => {}
-            Some(Until::Behind(intersection)) if stop.is_none_or(|stop| stop.intersection != intersection) => {
+            Some((Until::Behind(intersection), _)) if stop.is_none_or(|stop| stop.intersection != intersection) => {
                 traveller.driver = Driver::default();
                 traveller.vehicle.let_go();
             }
-            Some(until) => {
-                traveller.driver.drives = Some(until);
+            Some(drives) => {
+                traveller.driver.drives = Some(drives);
                 traveller.vehicle.take_over(alone::published(wanted_mps2, kind));
                 self.remains.takeovers += u64::from(begins);
             }
@@ -120,16 +122,14 @@ impl<'a> Traffic<'a> {
         network.lanes[own.road].stops.iter().find(|stop| own.way_m - own.length_m <= self.area_m(stop)[1])
     }
 
-    /// The acceleration that the driver asks for by what he sees.
-    fn wanted_by_hand(&self, at_s: f64, own: &Sighting, stop: Option<&Stop>, all: &[Sighting]) -> f64 {
+    /// The acceleration that the driver asks for by what he sees. `is_told`: whether the others have had time to hear that he drives.
+    fn wanted_by_hand(&self, at_s: f64, is_told: bool, own: &Sighting, stop: Option<&Stop>, all: &[Sighting]) -> f64 {
         let traffic = &self.corridor.traffic;
         let goes_mps2 = alone::demand(own, all, self.network, traffic, false);
         let Some(stop) = stop else { return goes_mps2 };
         let to_area_m = self.area_m(stop)[0] - own.way_m;
         let brakes_mps2: f64 = self.trips[own.trip].kind.limits().braking.get().to_num();
         let has_gone = own.speed_mps * own.speed_mps > 2.0 * brakes_mps2 * to_area_m;
-        let waited_s = self.travellers.get(&own.trip).map_or(0.0, |one| one.driver.has_waited_s(at_s));
-        let is_told = waited_s >= self.conditions.emergencies.driver_after_s + TOLD_S;
         if has_gone && own.speed_mps >= STANDING_BELOW_MPS || is_told && self.is_clear(at_s, own, stop, all) {
             return goes_mps2;
         }
