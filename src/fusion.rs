@@ -82,6 +82,12 @@ impl Fusion {
         self.base.as_ref().is_some() && now.since(self.seen) <= LASTS
     }
 
+    /// The motion by all that was taken in, if a vehicle is tracked at an instant.
+    #[must_use]
+    pub fn motion(&self, now: Instant) -> Option<&Motion> {
+        self.newest.as_ref().filter(|_| self.is_tracking(now)).map(Filter::motion)
+    }
+
     /// Ends the track.
     pub fn clear(&mut self) {
         self.base.clear();

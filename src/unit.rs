@@ -8,7 +8,7 @@
 //!         review   whom the ego follows, by the order at the intersections        coordinate
 //!         update   every horizon, brought up to now                               estimator
 //!         decide   the mode, and the gains of a new association                   course, mode, association
-//!         drive    the demand, by the course of the mode                          course, room, controller
+//!         drive    the demand, by the course of the mode                          course, stopping, room, controller
 //!         limit    the command: the demand, or what the limits leave of it        gate, lane, envelope
 //!         actuate  the force or torque that brings the command about              dynamics
 //!         foresee  the own horizon                                                ego_horizon
@@ -54,6 +54,7 @@ mod pass;
 mod room;
 mod scene;
 mod schedule;
+mod stopping;
 mod vantage;
 mod view;
 

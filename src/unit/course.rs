@@ -1,8 +1,8 @@
 //! The basis of the mode and of the controller. The scene enters; the facts that decide the mode, and the course to be driven in it,
 //! leave.
 
-use super::room;
 use super::scene::Scene;
+use super::stopping;
 use crate::controller::{Course, Facts, FallbackCause, FaultCause, Gains, Mode, Target, TargetFact, slowing};
 use crate::model::bound::AccelerationRange;
 use crate::model::{Reading, State};
@@ -73,7 +73,7 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     }
 }
 
-/// The law, with no more acceleration than the cap, and than room leaves.
+/// The law, with no more acceleration than the cap, and than leaves the ego able to stop.
 fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -91,7 +91,7 @@ fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         }
         Some(Target { reading, gained: reading.speed.minus(before.speed), length: scene.peers.length_of(index) })
     });
-    let cap = ego.map_or(cap, |ego| room::careful(scene, now, ego).min(cap));
+    let cap = ego.map_or(cap, |ego| stopping::careful(scene, now, ego).min(cap));
     Course::Law { vehicle: scene.ego_model_now(gains), target, cap }
 }
 

@@ -1,5 +1,5 @@
-//! Where the ego has to be able to stop by what is estimated. The ego's state and the vehicle ahead on its leg enter; whether the ego is
-//! held before the next conflict area, and how much it may accelerate, leave.
+//! Where the ego has to be able to stop at intersections, by what is estimated. The ego's state and the vehicle ahead on its leg enter;
+//! whether the ego is held before the next conflict area, and where it has to be able to stop, leave.
 //!
 //! A vehicle that stands in a conflict area blocks those that cross. So a vehicle does not enter the area if it could not leave it again,
 //! because the vehicle ahead has come to a stand beyond the area, or is about to. While it waits for room, it yields to every other
@@ -7,24 +7,22 @@
 
 use super::scene::Scene;
 use super::vantage::Vantage;
-use crate::config::Envelope;
-use crate::envelope::{self, Obstacle};
 use crate::fixed::{quotient, saturate_i32};
 use crate::model::{State, catch_up};
 use crate::time::{Duration, Instant};
-use crate::units::{Acceleration, Distance, Fraction, Position, Speed};
+use crate::units::{Distance, Position, Speed};
 
 /// About the time from when the ego enters a conflict area until it has left it; as far as every unit looks ahead.
 const LEAVES: Duration = Duration::from_millis(3_900);
 
 /// Slower than this a vehicle waits.
-const WAITING: Speed = Speed::from_mm_per_s(500);
+pub(super) const WAITING: Speed = Speed::from_mm_per_s(500);
 
 /// Slower than this a vehicle is in a queue.
 const SLOW: Speed = Speed::from_mm_per_s(3_000);
 
 /// How far before the conflict area the ego stops, and at least behind the vehicle ahead.
-const LINE: Distance = Distance::from_mm(1_000);
+pub(super) const LINE: Distance = Distance::from_mm(1_000);
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
     /// Whether the ego cannot stop before the next conflict area any more, braking as in normal driving. It does not yield to any vehicle
@@ -123,44 +121,20 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     }
 }
 
-/// The largest acceleration with which the ego can still come to a stand, braking as in normal driving. It comes to a stand behind the
-/// vehicle ahead on its leg, which is estimated to brake in the same way now, and before the next conflict area if the ego is held. The
-/// law asks for gaps, and when the ego closes in fast the law may ask for too much too late.
-pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+/// Where the ego has to be able to stop, if anywhere: behind the vehicle ahead on its leg, which is estimated to brake in the same way now,
+/// and before the next conflict area if the ego is held. The law asks for gaps, and when the ego closes in fast the law may ask for too
+/// much too late.
+pub(super) fn stop<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     ego: &State,
-) -> Acceleration {
-    if scene.coordination.itinerary().is_none() {
-        return Acceleration::MAX;
-    }
+) -> Option<Position> {
     let view = scene.vantage(now, scene.front(ego), ego.speed);
-    let (choice, config) = (scene.coordination.choice(), &scene.config);
+    let choice = scene.coordination.choice();
     let behind = choice.lane.and_then(|index| view.stops_at(index.into()));
     let line = scene.area_begins().filter(|_| choice.is_held).map(|begins| begins.ahead(LINE.negated()));
     let unknown = scene.unknown_ahead(now).map(|rear| rear.ahead(LINE.negated()));
-    let Some(stop) = [behind, line, view.passes_first(), unknown].into_iter().flatten().min() else {
-        return Acceleration::MAX;
-    };
-    let limits = &config.limits;
-    let normal = Envelope {
-        acceleration: limits.acceleration,
-        braking: limits.braking,
-        jerk: limits.jerk,
-        speed: config.law.max_speed,
-        margin: Distance::ZERO,
-        delay: Duration::ZERO,
-        lag_tolerance: Fraction::ZERO,
-    };
-    let ego = envelope::Ego {
-        position: view.front,
-        speed: ego.speed,
-        acceleration: ego.acceleration,
-        last: ego.demand,
-        lag: config.lag,
-    };
-    let spare = envelope::spare(&normal, &ego, &Obstacle::standing(stop));
-    envelope::distance_cap(&normal, spare, config.period).max(limits.braking.negated())
+    [behind, line, view.passes_first(), unknown].into_iter().flatten().min()
 }
 
 /// The way of braking to a stand, rounded.

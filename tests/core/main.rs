@@ -63,6 +63,7 @@ mod set_speed;
 mod set_speed_lowered;
 mod silent_time_gap;
 mod slot_before_motion;
+mod stopping;
 mod timeouts;
 mod unit_config;
 mod unit_fallback;

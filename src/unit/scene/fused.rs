@@ -8,7 +8,7 @@ use crate::held::Held;
 use crate::model::bound::Uncertainty;
 use crate::peers::Sample;
 use crate::time::Instant;
-use crate::units::{Distance, Position, Speed};
+use crate::units::{Acceleration, Distance, Position, Speed};
 
 /// The track, and whose it is.
 #[derive(Clone, Debug)]
@@ -62,6 +62,12 @@ impl Fused {
     /// The horizon of the station is to start from the track.
     pub fn want(&mut self) {
         self.is_wanted = true;
+    }
+
+    /// The acceleration of the vehicle in a slot, by all that was seen and heard, if it is tracked.
+    pub fn acceleration(&self, index: usize, now: Instant) -> Option<Acceleration> {
+        self.whose.as_ref().filter(|(slot, _)| usize::from(slot.0) == index)?;
+        self.track.motion(now).map(|motion| motion.acceleration)
     }
 
     /// Moves the track of a slot, because the axis of its station moved.

@@ -74,8 +74,9 @@ Figures:
   collisions  pairs that met; without the envelope they are reported, with it
               they fail the verdict
   avoidable   of these, pairs in which the vehicle behind could have come to rest
-              by the limits of its law, had it begun to brake when the one ahead
-              did
+              by the limits of its law, had it begun to brake 0.1 s after the one
+              ahead had lost 0.1 m/s, by which a view may err; without pairs
+              whose vehicle ahead had met another before
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

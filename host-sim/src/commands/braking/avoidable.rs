@@ -1,7 +1,7 @@
 //! Whether a vehicle that ran into the one ahead could have come to rest before. The drives of both enter; yes or no leaves.
 //!
-//! It brakes as hard as its law may, from the instant at which the vehicle ahead begins to brake: no follower can know of it earlier, and
-//! what the law demands is limited in strength and in its change.
+//! A follower can know of a braking once the vehicle ahead is slower by as much as its range sensor may err, and is to answer 0.1 s after
+//! that. Then it brakes as hard as its law may: what the law demands is limited in strength and in its change.
 
 use crate::sim::world::Tick;
 
@@ -16,11 +16,14 @@ pub struct Limits {
     pub lag_s: f64,
 }
 
-/// A vehicle that slows down by more than this brakes.
-const BRAKES_MPS2: f64 = 0.1;
+/// A view may err by so much in the simulation (`range_speed_accuracy_mps`). A vehicle that has lost more has braked.
+const SLOWER_MPS: f64 = 0.1;
 
-/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it known of the braking at once. `from`
-/// is the tick from which on the leader brakes. A vehicle ahead that never brakes is one to keep off from.
+/// The time in which the follower answers.
+const ANSWER_S: f64 = 0.1;
+
+/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front. `from` is the tick from which on the leader
+/// brakes; until then all keep their speed. A vehicle ahead that never brakes is one to keep off from.
 #[must_use]
 pub fn is_avoidable(
     ahead: &[Tick],
@@ -30,14 +33,18 @@ pub fn is_avoidable(
     limits: &Limits,
     period_s: f64,
 ) -> bool {
-    let brakes = |tick: &Tick| tick.acceleration_mps2 < -BRAKES_MPS2;
-    let Some(begins) = (from..ahead.len()).find(|tick| brakes(&ahead[*tick])) else { return true };
-    let Some(start) = behind.get(begins) else { return true };
+    let Some(before) = ahead.get(from) else { return true };
+    let has_braked = |tick: &Tick| tick.speed_mps < before.speed_mps - SLOWER_MPS;
+    let Some(seen) = (from..ahead.len()).find(|tick| has_braked(&ahead[*tick])) else { return true };
+    let answers = seen + (ANSWER_S / period_s).round() as usize;
+    let Some(start) = behind.get(from) else { return true };
     let kept = (-period_s / limits.lag_s).exp();
     let (mut position_m, mut speed_mps) = (start.position_m, start.speed_mps);
     let (mut acceleration_mps2, mut demand_mps2) = (start.acceleration_mps2, start.command_mps2);
-    ahead[begins..].iter().skip(1).all(|ahead| {
-        demand_mps2 = (demand_mps2 - limits.jerk_mps3 * period_s).max(-limits.braking_mps2);
+    ahead.iter().enumerate().skip(from + 1).all(|(tick, ahead)| {
+        if tick > answers {
+            demand_mps2 = (demand_mps2 - limits.jerk_mps3 * period_s).max(-limits.braking_mps2);
+        }
         acceleration_mps2 = demand_mps2 + (acceleration_mps2 - demand_mps2) * kept;
         let before_mps = speed_mps;
         speed_mps = (speed_mps + acceleration_mps2 * period_s).max(0.0);
@@ -74,8 +81,9 @@ mod tests {
 
     /// The gap that is needed behind a vehicle of 5 m that stops with 6 m/s².
     fn needed_m() -> f64 {
-        // The demand grows over 0.8 s to 4 m/s²: 15 · 0.8 - 5 · 0.8³/6 m, down to 13.4 m/s; then 13.4²/8 m.
-        let own_m = 15.0 * 0.8 - 5.0 * 0.512 / 6.0 + 13.4 * 13.4 / 8.0;
+        // 0.1 m/s are lost after 1/60 s, and 0.1 s later the demand grows over 0.8 s to 4 m/s²: 15 · 0.8 - 5 · 0.8³/6 m, down to
+        // 13.4 m/s; then 13.4²/8 m.
+        let own_m = 15.0 * (1.0 / 60.0 + 0.1) + 15.0 * 0.8 - 5.0 * 0.512 / 6.0 + 13.4 * 13.4 / 8.0;
         own_m - 15.0 * 15.0 / 12.0
     }
 

@@ -54,8 +54,8 @@ pub struct Comfort {
 pub struct Side {
     /// Pairs that met, in all runs together.
     pub collisions: usize,
-    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it known of the braking ahead at
-    /// once.
+    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it answered 0.1 s after the braking
+    /// ahead could be seen. A pair is left out if its vehicle ahead had met another before: a simulated vehicle drives on then.
     pub avoidable: usize,
     /// Smallest bumper gap; `None`: vehicles met.
     pub min_gap_m: Option<f64>,
@@ -126,19 +126,27 @@ fn outcome(options: &BrakingOptions, place: (f64, f64), number: u64, is_engaged:
 /// In how many pairs that met the vehicle behind could have come to rest.
 fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>]) -> usize {
     let from = (BRAKES_AT_S / scenario.period_s) as usize;
-    let could_stop = |pair: &[Vec<Tick>], index: usize| {
-        let [ahead, behind] = pair else { return false };
-        let (length_m, described) = (scenario.vehicles[index].length_m, &scenario.vehicles[index + 1]);
-        let met = ahead.iter().zip(behind).any(|(ahead, behind)| ahead.position_m - length_m <= behind.position_m);
+    let meets_at = |index: usize| {
+        let (length_m, pair) = (scenario.vehicles[index].length_m, (&vehicles[index], &vehicles[index + 1]));
+        pair.0.iter().zip(pair.1).position(|(ahead, behind)| ahead.position_m - length_m <= behind.position_m)
+    };
+    let could_stop = |index: usize| {
+        let described = &scenario.vehicles[index + 1];
         let law = described.kind.limits();
         let limits = Limits {
             braking_mps2: law.braking.get().to_num(),
             jerk_mps3: law.jerk.get().to_num(),
             lag_s: described.plant_lag_s,
         };
-        met && is_avoidable(ahead, behind, length_m, from, &limits, scenario.period_s)
+        let (ahead, behind) = (&vehicles[index], &vehicles[index + 1]);
+        is_avoidable(ahead, behind, scenario.vehicles[index].length_m, from, &limits, scenario.period_s)
     };
-    vehicles.windows(2).enumerate().filter(|(index, pair)| could_stop(pair, *index)).count()
+    let meetings: Vec<Option<usize>> = (0..vehicles.len().saturating_sub(1)).map(meets_at).collect();
+    let is_first = |index: usize| {
+        let ahead = index.checked_sub(1).and_then(|ahead| meetings[ahead]);
+        meetings[index].is_some_and(|met| ahead.is_none_or(|ahead| met < ahead))
+    };
+    (0..meetings.len()).filter(|index| is_first(*index) && could_stop(*index)).count()
 }
 
 /// The scenario of one run: every vehicle starts at its time gap and speed. The braking begins in the middle of one of as many equal parts
