@@ -73,7 +73,7 @@ pub(super) fn course<const PEERS: usize, const SAMPLES: usize, const STEPS: usiz
     }
 }
 
-/// The law, with no more acceleration than the cap, and than leaves the ego able to stop.
+/// The law, with no more acceleration than the cap allows, or than leaves the ego able to stop.
 fn by_law<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,

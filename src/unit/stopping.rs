@@ -2,8 +2,8 @@
 //! enters; a cap on the law's demand leaves.
 //!
 //! The law answers gap and speed, so it asks for less than it may until both have changed. That is too late behind a vehicle that brakes
-//! as hard as the ego can, or harder. The cap is the law's own, and is there without the envelope too: with normal limits, and by what is
-//! estimated, not by what is certain.
+//! as hard as the ego can, or harder. The cap goes by what is estimated, with the limits of normal driving. On a way through intersections
+//! it is always there. Elsewhere it is there where the envelope is not, which keeps the ego able to stop by what is certain.
 
 use super::room::{self, LINE, WAITING};
 use super::scene::Scene;
@@ -13,10 +13,7 @@ use crate::model::State;
 use crate::time::{Duration, Instant};
 use crate::units::{Acceleration, Distance, Fraction, Position};
 
-/// A vehicle that brakes harder than this may be about to stop. In everyday traffic most vehicles brake less.
-const HARD: Acceleration = Acceleration::from_mm_per_s2(1_000);
-
-/// The cap. On a way through intersections the ego stops where [`room`] says, elsewhere behind a vehicle that brakes hard or stands.
+/// The cap. On a way through intersections the ego stops where [`room`] says, elsewhere behind a vehicle that brakes or stands.
 pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
@@ -24,25 +21,28 @@ pub(super) fn careful<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
 ) -> Acceleration {
     let obstacle = match scene.coordination.itinerary() {
         Some(_) => room::stop(scene, now, ego).map(Obstacle::standing),
-        None => stopping_ahead(scene, now),
+        None if scene.config.envelope.is_none() => stopping_ahead(scene, now),
+        None => None,
     };
     obstacle.map_or(Acceleration::MAX, |obstacle| cap(&scene.config, scene.front(ego), ego, &obstacle))
 }
 
-/// The target, while the range sensor sees it brake hard or stand. It is taken to go on as hard as it is seen to brake, and at least as
-/// hard as it has published that its law may, or as the ego's law may: braking is still growing while it is seen.
+/// The target, while the range sensor tracks it and it is estimated to brake or to stand. Braking is seen late, and grows meanwhile. So it
+/// is taken to brake four times as hard from now on, but no harder than the law of either of the two may, unless it does so already.
 fn stopping_ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
 ) -> Option<Obstacle> {
-    let index = scene.target()?;
-    let seen = scene.fused.acceleration(index, now)?.negated();
+    let index = scene.target().filter(|index| !scene.is_seen_past(*index, now))?;
+    let braking = scene.fused.acceleration(scene.whose(index)?, now)?.negated();
     let (reading, rear) = scene.rear(index, now)?;
-    if seen <= HARD && reading.speed > WAITING {
+    if braking <= Acceleration::ZERO && reading.speed > WAITING {
         return None;
     }
     let published = scene.peers.get(index)?.parameters().map(|parameters| parameters.limits.braking);
-    let braking = seen.max(scene.config.limits.braking).max(published.unwrap_or(Acceleration::ZERO));
+    let normal = scene.config.limits.braking.max(published.unwrap_or(Acceleration::ZERO));
+    let twice = braking.plus(braking);
+    let braking = twice.plus(twice).min(normal).max(braking);
     Some(Obstacle { position: rear.ahead(LINE.negated()), speed: reading.speed, braking })
 }
 

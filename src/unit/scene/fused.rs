@@ -64,10 +64,10 @@ impl Fused {
         self.is_wanted = true;
     }
 
-    /// The acceleration of the vehicle in a slot, by all that was seen and heard, if it is tracked.
-    pub fn acceleration(&self, index: usize, now: Instant) -> Option<Acceleration> {
-        self.whose.as_ref().filter(|(slot, _)| usize::from(slot.0) == index)?;
-        self.track.motion(now).map(|motion| motion.acceleration)
+    /// The acceleration of a station by all that was seen and heard, if it is tracked.
+    pub fn acceleration(&self, whose: Whose, now: Instant) -> Option<Acceleration> {
+        let track = (self.whose == Held::Value(whose)).then_some(&self.track)?;
+        track.motion(now).map(|motion| motion.acceleration)
     }
 
     /// Moves the track of a slot, because the axis of its station moved.

@@ -22,8 +22,12 @@ const SLOWER_MPS: f64 = 0.1;
 /// The time in which the follower answers.
 const ANSWER_S: f64 = 0.1;
 
-/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front. `from` is the tick from which on the leader
-/// brakes; until then all keep their speed. A vehicle ahead that never brakes is one to keep off from.
+/// A vehicle that only wavers slows down by no more than this.
+const WAVERS_MPS2: f64 = 0.1;
+
+/// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it braked as hard as it may from its
+/// answer on. Until then it drives as it really did. `from` is the tick from which on the leader brakes. A vehicle ahead that never brakes
+/// is one to keep off from.
 #[must_use]
 pub fn is_avoidable(
     ahead: &[Tick],
@@ -34,17 +38,16 @@ pub fn is_avoidable(
     period_s: f64,
 ) -> bool {
     let Some(before) = ahead.get(from) else { return true };
-    let has_braked = |tick: &Tick| tick.speed_mps < before.speed_mps - SLOWER_MPS;
+    let has_braked =
+        |tick: &Tick| tick.speed_mps < before.speed_mps - SLOWER_MPS && tick.acceleration_mps2 < -WAVERS_MPS2;
     let Some(seen) = (from..ahead.len()).find(|tick| has_braked(&ahead[*tick])) else { return true };
     let answers = seen + (ANSWER_S / period_s).round() as usize;
-    let Some(start) = behind.get(from) else { return true };
+    let Some(start) = behind.get(answers) else { return true };
     let kept = (-period_s / limits.lag_s).exp();
     let (mut position_m, mut speed_mps) = (start.position_m, start.speed_mps);
     let (mut acceleration_mps2, mut demand_mps2) = (start.acceleration_mps2, start.command_mps2);
-    ahead.iter().enumerate().skip(from + 1).all(|(tick, ahead)| {
-        if tick > answers {
-            demand_mps2 = (demand_mps2 - limits.jerk_mps3 * period_s).max(-limits.braking_mps2);
-        }
+    ahead.iter().skip(answers + 1).all(|ahead| {
+        demand_mps2 = (demand_mps2 - limits.jerk_mps3 * period_s).max(-limits.braking_mps2);
         acceleration_mps2 = demand_mps2 + (acceleration_mps2 - demand_mps2) * kept;
         let before_mps = speed_mps;
         speed_mps = (speed_mps + acceleration_mps2 * period_s).max(0.0);
@@ -70,7 +73,7 @@ mod tests {
                 position_m: from_m + driven_m - 0.5 * braking_mps2 * braked_s * braked_s,
                 speed_mps: 15.0 - braking_mps2 * braked_s,
                 acceleration_mps2: if braked_s > 0.0 && braked_s * braking_mps2 < 15.0 { -braking_mps2 } else { 0.0 },
-                command_mps2: 0.0,
+                command_mps2: if braked_s > 0.0 && braked_s * braking_mps2 < 15.0 { -braking_mps2 } else { 0.0 },
                 limited: false,
                 mode: ModeCode::Cooperative,
                 target: None,
@@ -94,6 +97,20 @@ mod tests {
             let ahead = drive(5.0 + needed_m() + more_m, 6.0);
             assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, &LIMITS, PERIOD_S), avoidable, "{more_m}");
         }
+    }
+
+    #[test]
+    fn until_its_answer_it_drives_as_it_did_and_wavering_is_no_braking() {
+        let ahead = drive(5.0 + needed_m() - 1.0, 6.0);
+        assert!(!is_avoidable(&ahead, &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
+        assert!(
+            is_avoidable(&ahead, &drive(0.0, 4.0), 5.0, 0, &LIMITS, PERIOD_S),
+            "it brakes as soon as the one ahead"
+        );
+        // By the speed alone it would have answered at 0.9 s, and been metres better.
+        let mut wavered = drive(5.0 + needed_m() - 1.0, 6.0);
+        wavered[..900].iter_mut().for_each(|tick| tick.speed_mps = 15.2);
+        assert!(!is_avoidable(&wavered, &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
     }
 
     #[test]

@@ -142,11 +142,16 @@ fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>]) -> usize {
         is_avoidable(ahead, behind, scenario.vehicles[index].length_m, from, &limits, scenario.period_s)
     };
     let meetings: Vec<Option<usize>> = (0..vehicles.len().saturating_sub(1)).map(meets_at).collect();
+    first_meetings(&meetings).filter(|index| could_stop(*index)).count()
+}
+
+/// The pairs that met before the vehicle ahead had run into another, of those with these ticks of meeting.
+fn first_meetings(meetings: &[Option<usize>]) -> impl Iterator<Item = usize> {
     let is_first = |index: usize| {
         let ahead = index.checked_sub(1).and_then(|ahead| meetings[ahead]);
         meetings[index].is_some_and(|met| ahead.is_none_or(|ahead| met < ahead))
     };
-    (0..meetings.len()).filter(|index| is_first(*index) && could_stop(*index)).count()
+    (0..meetings.len()).filter(move |index| is_first(*index))
 }
 
 /// The scenario of one run: every vehicle starts at its time gap and speed. The braking begins in the middle of one of as many equal parts
@@ -245,6 +250,15 @@ mod tests {
     use super::*;
     use crate::sim::world::Tick;
     use holdover::wire::command::ModeCode;
+
+    #[test]
+    fn a_pair_counts_that_met_before_its_vehicle_ahead_had_run_into_another() {
+        let first = |meetings: &[Option<usize>]| first_meetings(meetings).collect::<Vec<_>>();
+        assert_eq!(first(&[Some(5), Some(9), Some(7)]), [0, 2]);
+        assert_eq!(first(&[None, Some(3), None]), [1]);
+        assert_eq!(first(&[Some(5), Some(5)]), [0]);
+        assert_eq!(first(&[]), [0usize; 0]);
+    }
 
     fn tick(speed_mps: f64, acceleration_mps2: f64) -> Tick {
         Tick {
