@@ -42,7 +42,7 @@ fn stopping_ahead<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let published = scene.peers.get(index)?.parameters().map(|parameters| parameters.limits.braking);
     let normal = scene.config.limits.braking.max(published.unwrap_or(Acceleration::ZERO));
     let twice = braking.plus(braking);
-    let braking = twice.plus(twice).min(normal).max(braking);
+    let braking = twice.plus(twice).min(normal);
     Some(Obstacle { position: rear.ahead(LINE.negated()), speed: reading.speed, braking })
 }
 
