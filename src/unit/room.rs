@@ -121,9 +121,9 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
     }
 }
 
-/// Where the ego has to be able to stop, if anywhere: behind the vehicle ahead on its leg, which is estimated to brake in the same way now,
-/// and before the next conflict area if the ego is held. The law asks for gaps, and when the ego closes in fast the law may ask for too
-/// much too late.
+/// The nearest place where the ego has to be able to stop, if any: behind the vehicle ahead on its leg, which is estimated to brake now as
+/// the ego may; before the next conflict area, if the ego is held or a crossing vehicle passes first; and behind a vehicle that is seen and
+/// not known. The law alone keeps gaps: when the ego closes in fast, it brakes too late.
 pub(super) fn stop<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,

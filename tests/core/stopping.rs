@@ -1,4 +1,4 @@
-//! Behind a vehicle that is seen to brake hard in a silence the ego stays able to stop, without the envelope too.
+//! Without the envelope too, the ego stays able to stop behind a vehicle that it sees brake, though nothing is heard.
 
 use crate::rig;
 use crate::rig::road::Road;
@@ -32,8 +32,8 @@ fn smallest_gap(road: &mut Road, braking: f64) -> f64 {
 
 #[test]
 fn it_comes_to_rest_where_gap_and_speed_alone_would_tell_too_late() {
-    // Lag and half of the ramp to 4 m/s² take 0.7 s, which is 10.5 m at 15 m/s; it has to know of the braking within 0.2 s. By the law alone
-    // it would need 12, 12.5 and 14 m.
+    // Lag and half of the ramp to 4 m/s² take 0.7 s, 10.5 m at 15 m/s. So behind 4 m/s² it has to know of the braking within 0.2 s. The law
+    // alone needs gaps of 12, 12.5 and 14 m.
     for (gap, braking) in [(11.0, 3.0), (11.0, 3.5), (13.5, 4.0)] {
         let mut road = silent(gap);
         let smallest = smallest_gap(&mut road, braking);

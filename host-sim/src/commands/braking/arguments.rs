@@ -74,9 +74,10 @@ Figures:
   collisions  pairs that met; without the envelope they are reported, with it
               they fail the verdict
   avoidable   of these, pairs in which the vehicle behind could have come to rest
-              by the limits of its law, had it begun to brake 0.1 s after the one
-              ahead had lost 0.1 m/s, by which a view may err; without pairs
-              whose vehicle ahead had met another before
+              by the limits of its law and with its lag, had it begun to brake
+              0.1 s after the one ahead had lost 0.1 m/s, the largest error of
+              the sensor's speed; without pairs whose vehicle ahead had run into
+              another before: a collision stops nobody in the simulation
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

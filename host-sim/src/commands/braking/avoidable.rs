@@ -1,7 +1,7 @@
 //! Whether a vehicle that ran into the one ahead could have come to rest before. The drives of both enter; yes or no leaves.
 //!
-//! A follower can know of a braking once the vehicle ahead is slower by as much as its range sensor may err, and is to answer 0.1 s after
-//! that. Then it brakes as hard as its law may: what the law demands is limited in strength and in its change.
+//! A follower can know of a braking once the vehicle ahead is slower by as much as its range sensor may err, and is given 0.1 s more to
+//! begin braking. Then it brakes as hard as its law may: what the law demands is limited in strength and in its change.
 
 use crate::sim::world::Tick;
 
@@ -16,18 +16,18 @@ pub struct Limits {
     pub lag_s: f64,
 }
 
-/// A view may err by so much in the simulation (`range_speed_accuracy_mps`). A vehicle that has lost more has braked.
+/// A view errs by so much by default (`range_speed_accuracy_mps`). A vehicle that has lost more has braked.
 const SLOWER_MPS: f64 = 0.1;
 
-/// The time in which the follower answers.
+/// The time that the follower is given to begin braking.
 const ANSWER_S: f64 = 0.1;
 
-/// A vehicle that only wavers slows down by no more than this.
+/// Speed changes by no more than this without braking.
 const WAVERS_MPS2: f64 = 0.1;
 
 /// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it braked as hard as it may from its
-/// answer on. Until then it drives as it really did. `from` is the tick from which on the leader brakes. A vehicle ahead that never brakes
-/// is one to keep off from.
+/// answer on. Until then it drives as it really did. `from` is the tick at which the leader of the string begins to brake. Also true if the
+/// vehicle ahead never brakes.
 #[must_use]
 pub fn is_avoidable(
     ahead: &[Tick],

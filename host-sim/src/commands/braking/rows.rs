@@ -54,8 +54,8 @@ pub struct Comfort {
 pub struct Side {
     /// Pairs that met, in all runs together.
     pub collisions: usize,
-    /// Of these, in how many the vehicle behind could have come to rest by the limits of its law, had it answered 0.1 s after the braking
-    /// ahead could be seen. A pair is left out if its vehicle ahead had met another before: a simulated vehicle drives on then.
+    /// Of these, in how many the vehicle behind could have come to rest ([`is_avoidable`]). A pair is left out if its vehicle ahead had run
+    /// into another before: a collision stops nobody in the simulation.
     pub avoidable: usize,
     /// Smallest bumper gap; `None`: vehicles met.
     pub min_gap_m: Option<f64>,

@@ -23,7 +23,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
         line(&mut text, &Default::default(), "off", &cells(&row.off));
         line(&mut text, &Default::default(), "on", &cells(&row.on));
     }
-    text.push_str("avoidable: pairs in which the vehicle behind could have come to rest by its law's limits, had it answered 0.1 s after the braking could be seen\n");
+    text.push_str("avoidable: pairs in which the vehicle behind could have come to rest, had it begun to brake in time (--help)\n");
     let _ = writeln!(text, "{}", Verdict::of(failures).line(failures));
     text
 }
