@@ -61,7 +61,6 @@ mod view;
 pub use answer::{Answer, Estimate, MAX_FRAMES, Reception};
 
 /// The onboard unit for up to `PEERS` peers with a history of `SAMPLES` samples each and horizons of up to `STEPS` steps.
-///
 /// It is `Clone`, holds no pointer, and may live in a `static`.
 #[derive(Clone, Debug)]
 pub struct OnboardUnit<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> {

@@ -54,7 +54,7 @@ pub struct Comfort {
 pub struct Side {
     /// Pairs that met, in all runs together.
     pub collisions: usize,
-    /// Of these, in how many the vehicle behind could have come to rest ([`is_avoidable`]). A pair is left out if its vehicle ahead had run
+    /// Of these, in how many the vehicle behind could have come to rest (`avoidable.rs`). A pair is left out if its vehicle ahead had run
     /// into another before: a collision stops nobody in the simulation.
     pub avoidable: usize,
     /// Smallest bumper gap; `None`: vehicles met.
