@@ -66,11 +66,7 @@ fn a_braking_that_is_not_what_was_said_is_answered_soon_though_nothing_is_heard(
     // A speed in a view errs by up to 0.6 m/s, and the ego's own by a little: usually by a third, which is 0.25 m/s. After that it takes
     // three views, one every 50 ms.
     for (braking, within) in [(1.0, 0.40), (2.0, 0.30), (5.0, 0.20)] {
-        let mut road = Road::new(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
-        road.wants = 20.0;
-        road.senses.range = true;
-        road.power_up();
-        road.run(5.0);
+        let mut road = Road::steady(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
         road.senses.v2x = false;
         road.run(1.0);
         road.acceleration = -braking;
@@ -89,11 +85,7 @@ fn views_that_are_slower_show_something_where_three_are_in_a_row() {
     for (views, brakes) in
         [(&[50, 50][..], false), (&[50, 50, 50], true), (&[50, 50, 600], false), (&[50, 600, 50], false)]
     {
-        let mut road = Road::new(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
-        road.wants = 20.0;
-        road.senses.range = true;
-        road.power_up();
-        road.run(5.0);
+        let mut road = Road::steady(&Config { envelope: None, ..rig::config() }, 20.0, 22.0);
         (road.senses.v2x, road.senses.range) = (false, false);
         for pause in views {
             road.run(f64::from(*pause) / 1_000.0);

@@ -8,11 +8,7 @@ use holdover::Config;
 fn silent(gap: f64) -> Road {
     let mut config = Config { envelope: None, ..rig::config() };
     config.law.time_gap = holdover::units::Seconds::from_millis(((gap - 2.0) / 15.0 * 1_000.0).round() as i32);
-    let mut road = Road::new(&config, 15.0, gap);
-    road.wants = 15.0;
-    road.senses.range = true;
-    road.power_up();
-    road.run(3.0);
+    let mut road = Road::steady(&config, 15.0, gap);
     road.senses.v2x = false;
     road.run(1.0);
     road

@@ -75,6 +75,16 @@ impl Road {
         }
     }
 
+    /// Behind a target that keeps its speed and says so, heard and seen for 5 s.
+    pub fn steady(config: &Config, speed: f64, gap: f64) -> Self {
+        let mut road = Self::new(config, speed, gap);
+        road.wants = speed;
+        road.senses.range = true;
+        road.power_up();
+        road.run(5.0);
+        road
+    }
+
     pub fn gap(&self) -> f64 {
         self.target.position - LENGTH - self.ego.position
     }
