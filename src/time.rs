@@ -74,6 +74,12 @@ impl Duration {
         Self(self.0.saturating_mul(factor))
     }
 
+    /// Half of it, rounded down to a microsecond.
+    #[must_use]
+    pub const fn halved(self) -> Self {
+        Self(self.0 >> 1)
+    }
+
     /// As a factor for speeds, saturating at ±4 s.
     #[must_use]
     #[cfg_attr(not(target_pointer_width = "64"), inline(never))]

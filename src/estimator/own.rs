@@ -29,14 +29,12 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
         Manner { target, vehicle, length_ahead, stride: vehicle.over(self.grid.step, length_ahead, &self.model) }
     }
 
-    /// The same where the time gap is larger by this.
+    /// Gives this manner another time gap, if the ego follows.
     #[cold]
     #[inline(never)]
-    #[must_use]
-    pub fn opened(&self, manner: &Manner, by: Seconds) -> Manner {
-        let vehicle = manner.vehicle.opened(by);
-        let stride = manner.stride.with_aim_of(&vehicle, self.grid.step, manner.length_ahead, &self.model);
-        Manner { vehicle, stride, ..*manner }
+    pub fn keep_time_gap(&self, manner: &mut Manner, time_gap: Seconds) {
+        manner.vehicle.keep_time_gap(time_gap);
+        manner.stride.take_aim_of(&manner.vehicle, self.grid.step, manner.length_ahead, &self.model);
     }
 
     /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.

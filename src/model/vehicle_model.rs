@@ -109,14 +109,11 @@ impl VehicleModel {
         }
     }
 
-    /// The same vehicle with a time gap that is larger by this, if it follows.
-    #[must_use]
-    pub fn opened(&self, by: Seconds) -> Self {
-        let mut opened = *self;
-        if let Aim::Follow { law, .. } = &mut opened.aim {
-            law.time_gap = law.time_gap.plus(by);
+    /// Gives the vehicle this time gap, if it follows.
+    pub fn keep_time_gap(&mut self, time_gap: Seconds) {
+        if let Aim::Follow { law, .. } = &mut self.aim {
+            law.time_gap = time_gap;
         }
-        opened
     }
 }
 
@@ -143,10 +140,9 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// The same of a vehicle that is after something else.
-    #[must_use]
-    pub fn with_aim_of(&self, vehicle: &VehicleModel, step: Duration, length_ahead: Distance, model: &Model) -> Self {
-        Self { course: vehicle.course(step, length_ahead, model), ..*self }
+    /// Takes the aim of this vehicle, which is the same one in everything else.
+    pub fn take_aim_of(&mut self, vehicle: &VehicleModel, step: Duration, length_ahead: Distance, model: &Model) {
+        self.course = vehicle.course(step, length_ahead, model);
     }
 
     /// The demand of this step: the desired acceleration, but no more than the cap, and within the vehicle's limits. The acceleration of

@@ -8,7 +8,7 @@
 
 use heapless::Vec;
 
-use super::opening::PIECE;
+use super::opening::Opening;
 use super::scene::Scene;
 use super::vantage::{Candidate, Vantage};
 use crate::controller::Gains;
@@ -28,6 +28,8 @@ const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
 const REVIEWS_FAR: i64 = 16;
 const FINEST_FAR: i64 = 4;
+/// Off a map the own horizon takes an opened time gap as the same for so long; on a map, from one review to the next.
+const PIECE: Duration = Duration::from_millis(1_000);
 /// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and
 /// three more reviews.
 const CHANGES: u8 = 8;
@@ -42,12 +44,12 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
 ) {
     let mut manner = scene.estimator.manner(scene.ego_model_now(gains), target, &scene.peers);
     let review = scene.coordination.next_review().filter(|_| scene.is_decided_by_order());
-    if scene.opening.is_opened() {
+    let mut opening = scene.opening.clone();
+    if opening.is_opened() {
         if review.is_none() {
-            return foresee_opened(scene, now, sample, &manner);
+            return foresee_opened(scene, now, sample, manner, &opening);
         }
-        // Until the target changes it is taken as opened by what it is now.
-        manner = scene.estimator.opened(&manner, scene.opening.within_piece(Duration::ZERO));
+        widen(scene, &mut manner, &opening, now);
     }
     scene.estimator.foresee_own(now, review, sample, &manner);
     let Some(mut review) = review.map(|review| review.max(now)) else { return };
@@ -84,6 +86,9 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
                 changes = changes.saturating_sub(1);
                 comfort = may;
                 if is_new {
+                    if opening.is_opened() {
+                        opening.turn(review, scene.opens_behind(now, target));
+                    }
                     gains = ahead.map(|peer| gains_behind(scene, &peer.reading, &own));
                 }
                 let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
@@ -94,6 +99,9 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
             left = if changes_now { 0 } else { left.saturating_sub(passed).max(0) };
             passed = if left > 0 { (left / 2).max(finest) } else { widest };
             review = review.plus(REVIEW.times(passed));
+        }
+        if opening.is_opened() {
+            widen(scene, &mut manner, &opening, review.minus(REVIEW.times(passed).halved()));
         }
         scene.estimator.carry_own_on(review, last, &manner);
     }
@@ -106,17 +114,30 @@ fn foresee_opened<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     scene: &mut Scene<PEERS, SAMPLES, STEPS>,
     now: Instant,
     sample: &Sample,
-    manner: &Manner,
+    mut manner: Manner,
+    opening: &Opening,
 ) {
-    let mut ends = PIECE;
-    let first = scene.estimator.opened(manner, scene.opening.within_piece(Duration::ZERO));
-    scene.estimator.foresee_own(now, Some(now.plus(ends)), sample, &first);
+    let mut ends = now.plus(PIECE);
+    widen(scene, &mut manner, opening, ends.minus(PIECE.halved()));
+    scene.estimator.foresee_own(now, Some(ends), sample, &manner);
     let last = scene.estimator.own_end_of(now);
     while scene.estimator.is_own_short(last) {
-        let next = scene.estimator.opened(manner, scene.opening.within_piece(ends));
         ends = ends.plus(PIECE);
-        scene.estimator.carry_own_on(now.plus(ends), last, &next);
+        widen(scene, &mut manner, opening, ends.minus(PIECE.halved()));
+        scene.estimator.carry_own_on(ends, last, &manner);
     }
+}
+
+/// Gives the manner the time gap as it will be opened at an instant, the middle of the piece that comes.
+#[cold]
+#[inline(never)]
+fn widen<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
+    scene: &Scene<PEERS, SAMPLES, STEPS>,
+    manner: &mut Manner,
+    opening: &Opening,
+    at: Instant,
+) {
+    scene.estimator.keep_time_gap(manner, scene.time_gap().plus(opening.later(at)));
 }
 
 /// The gains of an association that begins there.

@@ -18,8 +18,6 @@ use crate::parameters::OPENS_BY;
 use crate::time::{Duration, Instant};
 use crate::units::Seconds;
 
-/// The own horizon takes the time gap as the same for so long.
-pub(super) const PIECE: Duration = Duration::from_millis(1_000);
 /// The time gap is told in such steps: driving parameters are sent at once when they change.
 const TOLD: Duration = Duration::from_millis(100);
 /// After a longer pause in the own motions the time gap goes on as if the pause had been this long.
@@ -75,9 +73,15 @@ impl Opening {
         self.opens || self.by > Duration::ZERO
     }
 
-    /// By how much it will be opened in the middle of the piece of the own horizon that begins after this time.
-    pub fn within_piece(&self, after: Duration) -> Seconds {
-        self.after(after.plus(Duration::from_micros(PIECE.as_micros() / 2))).seconds()
+    /// By how much it will be opened at an instant after the last own motion, if it goes on like that.
+    pub fn later(&self, at: Instant) -> Seconds {
+        self.after(self.at.get().map_or(Duration::ZERO, |last| at.since(last))).seconds()
+    }
+
+    /// It goes on like that up to an instant, and opens or closes from then on.
+    pub fn turn(&mut self, at: Instant, opens: bool) {
+        self.by = self.after(self.at.get().map_or(Duration::ZERO, |last| at.since(last)));
+        (self.at, self.opens) = (Held::Value(at), opens && self.most > Duration::ZERO);
     }
 
     /// By how much it is opened as it is told.
@@ -162,7 +166,7 @@ mod tests {
             drive(&mut opening, 0..5_100, true);
             opening.give_way(Seconds::from_millis(wider), MOST.minus(Seconds::from_millis(wider)));
             assert_eq!(now(&opening), left, "{wider}");
-            let end = opening.within_piece(Duration::from_millis(60_000));
+            let end = opening.later(at(65_000));
             assert_eq!(end, Seconds::from_millis(most), "{wider}");
         }
     }
@@ -171,13 +175,24 @@ mod tests {
     fn what_it_will_be_is_what_it_becomes() {
         let mut opening = Opening::NONE;
         drive(&mut opening, 0..1_100, true);
-        let (soon, late) = (opening.within_piece(Duration::ZERO), opening.within_piece(Duration::from_millis(3_000)));
-        let end = opening.within_piece(Duration::from_millis(9_000));
+        let (soon, late, end) = (opening.later(at(1_500)), opening.later(at(4_500)), opening.later(at(10_500)));
         drive(&mut opening, 1_100..1_600, true);
         assert_eq!(now(&opening), soon.to_millis());
         drive(&mut opening, 1_600..4_600, true);
         assert_eq!(now(&opening), late.to_millis());
         assert_eq!(end, MOST);
+    }
+
+    #[test]
+    fn it_turns_ahead_of_time() {
+        // Opened by 400 ms, it opens, closes or stays open from 1 s later on.
+        for (opens, most, then) in [(true, MOST, 700), (false, MOST, 300), (true, Seconds::ZERO, 0)] {
+            let mut opening = Opening::NONE;
+            drive(&mut opening, 0..4_100, true);
+            opening.limit(most);
+            opening.turn(at(5_000), opens);
+            assert_eq!(opening.later(at(7_000)), Seconds::from_millis(then), "{opens} {most:?}");
+        }
     }
 
     #[test]

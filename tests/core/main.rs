@@ -15,6 +15,7 @@ mod coordination_certain;
 mod coordination_cycle;
 mod coordination_foresight;
 mod coordination_heed;
+mod coordination_opening;
 mod coordination_range;
 mod coordination_room;
 mod coordination_seat;
