@@ -37,8 +37,16 @@ impl ComfortBraking {
 
     /// The limit on braking: `braking` is the limit that is configured.
     pub(crate) fn limit(self, braking: Acceleration) -> Acceleration {
-        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE_MM_PER_S2.get(place));
-        gentle.map_or(braking, |gentle| braking.min(Acceleration::from_mm_per_s2(*gentle)))
+        const GENTLE: [Acceleration; 3] = {
+            let [hard, middle, gentle] = GENTLE_MM_PER_S2;
+            [
+                Acceleration::from_mm_per_s2(hard),
+                Acceleration::from_mm_per_s2(middle),
+                Acceleration::from_mm_per_s2(gentle),
+            ]
+        };
+        let gentle = usize::from(self.0).checked_sub(1).and_then(|place| GENTLE.get(place));
+        gentle.map_or(braking, |gentle| braking.min(*gentle))
     }
 }
 

@@ -11,7 +11,7 @@ use heapless::Vec;
 
 use super::lane;
 use super::scene::Scene;
-use super::vantage::{Candidate, Vantage};
+use super::vantage::Vantage;
 use crate::coordination::{Arrival, Present, Side, Slots};
 use crate::health::{Cause, Health};
 use crate::time::Instant;
@@ -160,14 +160,12 @@ fn choose<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) {
     let view = scene.vantage(now, front, speed);
     let before = scene.coordination.choice();
-    let heeded = |index| Candidate::at(scene, index, now).filter(|peer| view.is_heeded(peer));
-    let first = (0..PEERS).filter(|index| before.first.contains(*index));
-    let first = first.filter_map(|index| Candidate::at(scene, index, now));
-    let order = first.fold(None, |best, peer| view.nearest(best, peer)).map(|(peer, _)| peer);
-    let lane = nearest.and_then(heeded);
+    let first = (0..PEERS).filter(|index| before.first.contains(*index)).filter_map(|index| view.candidate(index));
+    let order = first.fold(None, |best, peer| view.nearest(best, peer));
+    let lane = nearest.and_then(|index| view.candidate(index)).filter(|peer| view.is_heeded(peer));
     let followed = before.target.map(usize::from);
-    let target = view.more_careful(order, lane).filter(|target| view.is_in_the_way(target, followed));
-    let [target, order, lane] = [target, order, lane].map(|peer| peer.map(|peer| peer.index));
+    let target = view.choose(order, lane, followed);
+    let [target, order, lane] = [target, order.map(|(peer, _)| peer), lane].map(|peer| peer.map(|peer| peer.index));
     let may = view.comfort(target);
     // For the same target the ego does not brake more gently than it already had to.
     let comfort = if followed == target { may.min(before.comfort) } else { may };

@@ -12,7 +12,7 @@ use super::opening::Opening;
 use super::scene::Scene;
 use super::vantage::{Candidate, Vantage};
 use crate::controller::Gains;
-use crate::coordination::{Entry, REVIEW};
+use crate::coordination::{Entry, REVIEW, standstill_on_way};
 use crate::estimator::{End, Manner};
 use crate::model::Reading;
 use crate::peers::Sample;
@@ -163,8 +163,9 @@ struct Minded {
     /// at the next crossing.
     conflicts: bool,
     is_ahead: bool,
-    /// The way from its front to its rear.
+    /// The way from its front to its rear, and the standstill distance behind it where it is at the ego's next crossing.
     to_rear: Distance,
+    standstill: Distance,
 }
 
 /// The vehicles that the ego may follow at some time, with `next` as its next crossing: a vehicle that is ahead on its leg now, because
@@ -194,7 +195,8 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
         if is_minded {
             let (crossing, to_rear) = (approach.crossing, scene.peers.length_of(index).negated());
             let left_at = scene.coordination.end_of(crossing).map(|end| end.ahead(approach.shift));
-            let one = Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear };
+            let standstill = scene.standstill_at(crossing, index);
+            let one = Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear, standstill };
             let _ = minded.push(one); // no more than slots
         }
     }
@@ -212,15 +214,17 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
 ) -> Option<Candidate> {
     let (scene, coordination) = (view.scene, &view.scene.coordination);
     let is_later = view.next != coordination.next();
+    let elsewhere = standstill_on_way(scene.config.law.standstill, None, scene.config.range_sensor);
     let (mut order, mut lane) = (None::<(Candidate, Position)>, None::<(Candidate, usize)>);
-    for Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear } in minded {
+    for Minded { index, crossing, is_on_lane, left_at, conflicts, is_ahead, to_rear, standstill } in minded {
         // This is asked for first, because it needs no horizon.
         let goes_first = *conflicts && (is_later || *is_ahead) && *crossing == view.next;
         if *is_on_lane == [false; 2] && !goes_first {
             continue;
         }
         let Some(reading) = scene.estimator.read_step(*index, step) else { continue };
-        let peer = Candidate { index: *index, reading, rear: reading.position.ahead(*to_rear) };
+        let standstill = if *crossing == view.next { *standstill } else { elsewhere };
+        let peer = Candidate { index: *index, reading, rear: reading.position.ahead(*to_rear), standstill };
         let has_left = left_at.is_some_and(|end| peer.rear >= end);
         let [before, after] = *is_on_lane;
         let is_on_lane = if has_left { after } else { before };
@@ -240,8 +244,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     // there now.
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(_, crossing)| crossing != view.next)));
     let lane = lane.map(|(peer, _)| peer).filter(|peer| view.is_heeded(peer));
-    let target = view.more_careful(order.map(|(peer, _)| peer), lane)?;
-    view.is_in_the_way(&target, followed).then_some(target)
+    view.choose(order, lane, followed)
 }
 
 /// Whether a station was ahead at the last review, and still is by what it has said since then.

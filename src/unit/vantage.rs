@@ -38,21 +38,17 @@ pub(super) struct Candidate {
     /// Its front bumper and its speed.
     pub reading: Reading,
     pub rear: Position,
-}
-
-impl Candidate {
-    /// A peer inside what is certain of it; `None` where it is not known.
-    pub fn at<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
-        scene: &Scene<PEERS, SAMPLES, STEPS>,
-        index: usize,
-        at: Instant,
-    ) -> Option<Self> {
-        let (reading, rear) = scene.rear(index, at)?;
-        Some(Self { index, reading, rear })
-    }
+    /// The standstill distance behind it.
+    pub standstill: Distance,
 }
 
 impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, PEERS, SAMPLES, STEPS> {
+    /// A peer inside what is certain of it; `None` where it is not known.
+    pub fn candidate(&self, index: usize) -> Option<Candidate> {
+        let (reading, rear) = self.scene.rear(index, self.at)?;
+        Some(Candidate { index, reading, rear, standstill: self.scene.standstill_at(self.next, index) })
+    }
+
     /// Whether the ego may follow a peer. The gate minds the peer all the same. A vehicle that was far ahead when it was heard last has
     /// got out of reach, and no vehicle is ahead then as far as it matters. This also holds if that vehicle is estimated to have stopped
     /// since, behind a vehicle that is not heard any more. A vehicle that is estimated in an area which the ego sees to be empty is not
@@ -68,48 +64,62 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         peer.rear > self.front.ahead(HEEDED).ahead(way).ahead(way)
     }
 
-    /// Of the vehicles that the ego lets pass first and may follow, the one behind which the law asks for the smallest acceleration. They
-    /// may drive at once where their ways do not conflict, so the last of them in the order is not always behind.
+    /// Of the vehicles that the ego lets pass first and may follow, the one behind which the law asks for the smallest acceleration, with
+    /// its `q_j`. They may drive at once where their ways do not conflict, so the last of them in the order is not always behind.
     pub fn nearest(&self, best: Option<(Candidate, Position)>, other: Candidate) -> Option<(Candidate, Position)> {
         let asks = self.asks(&other);
         let is_no_nearer = best.is_some_and(|(_, least)| least <= asks);
         if is_no_nearer || !self.is_heeded(&other) { best } else { Some((other, asks)) }
     }
 
-    /// Of a vehicle that the ego lets pass first and the vehicle just ahead on the leg, the one that asks for more caution.
+    /// Of a vehicle that the ego lets pass first and the vehicle just ahead on the leg, the one that asks for more caution, if it is so near
+    /// that the ego follows it. `followed` is the one that it follows.
+    pub fn choose(
+        &self,
+        order: Option<(Candidate, Position)>,
+        lane: Option<Candidate>,
+        followed: Option<usize>,
+    ) -> Option<Candidate> {
+        let lane = lane.map(|ahead| (ahead, self.asks(&ahead)));
+        let (target, asks) = match (order, lane) {
+            (Some(first), Some(ahead)) if self.is_more_careful(first, ahead.1) => first,
+            (order, lane) => lane.or(order)?,
+        };
+        self.is_in_the_way(asks, followed == Some(target.index)).then_some(target)
+    }
+
+    /// Whether a vehicle that the ego lets pass first asks for more caution than the one just ahead on the leg.
     ///
     /// The vehicle with the smaller `q_j = r_j - l_j - s_0 + γ v_j` asks for the smaller acceleration in eq. 5,
     /// `k (q_j - r - (t_g + γ) v)`, because everything else in the law is the ego's own. If the ego brakes gently for the vehicle ahead in
     /// the order, it brakes with no more than `b`. So that vehicle asks for no less than `r + (t_g + γ) v - b/k`.
-    pub fn more_careful(&self, order: Option<Candidate>, lane: Option<Candidate>) -> Option<Candidate> {
-        let (Some(first), Some(ahead)) = (order, lane) else { return order.or(lane) };
+    fn is_more_careful(&self, (first, asks): (Candidate, Position), asks_ahead: Position) -> bool {
+        if asks > asks_ahead {
+            return false;
+        }
         let law = &self.scene.config.law;
-        let gentle = self.comfort(Some(first.index)).limit(Acceleration::MAX);
-        let least = || {
-            self.front
-                .ahead(self.speed.over(self.scene.time_gap()))
-                .ahead(self.speed.over(law.damping))
-                .ahead(braked_over(gentle, law.gain))
-        };
-        let (asks_first, asks_ahead) = (self.asks(&first), self.asks(&ahead));
-        let is_first = asks_first <= asks_ahead && (gentle == Acceleration::MAX || least() <= asks_ahead);
-        Some(if is_first { first } else { ahead })
+        let coasts = self.front.ahead(self.speed.over(self.scene.time_gap())).ahead(self.speed.over(law.damping));
+        // For a lane vehicle behind which the ego need not brake it does not matter how gently it may: that takes two divisions.
+        coasts <= asks_ahead || {
+            let gentle = self.comfort(Some(first.index)).limit(Acceleration::MAX);
+            gentle == Acceleration::MAX || coasts.ahead(braked_over(gentle, law.gain)) <= asks_ahead
+        }
     }
 
-    /// Whether a vehicle ahead is so near that the ego follows it. At the speed `v_∞` that the ego wants on a free road, eq. 5 asks for
-    /// braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead, the ego drives as on a free road; to follow
-    /// would only make it hurry. A vehicle that the ego already follows may get farther ahead by [`APART`].
-    pub fn is_in_the_way(&self, peer: &Candidate, followed: Option<usize>) -> bool {
+    /// Whether a vehicle ahead with this `q_j` is so near that the ego follows it. At the speed `v_∞` that the ego wants on a free road, eq.
+    /// 5 asks for braking from `q_j - r = (t_g + γ) v_∞` on. Behind a vehicle that is farther ahead, the ego drives as on a free road; to
+    /// follow would only make it hurry. A vehicle that the ego already follows may get farther ahead by [`APART`].
+    fn is_in_the_way(&self, asks: Position, is_followed: bool) -> bool {
         let (wanted, law) = (self.scene.target_speed(), &self.scene.config.law);
-        let apart = if followed == Some(peer.index) { APART } else { Distance::ZERO };
+        let apart = if is_followed { APART } else { Distance::ZERO };
         let free = wanted.over(self.scene.time_gap()).plus(wanted.over(law.damping)).plus(apart);
-        self.asks(peer) < self.front.ahead(free)
+        asks < self.front.ahead(free)
     }
 
     /// `q_j` of a vehicle ahead.
     fn asks(&self, peer: &Candidate) -> Position {
         let damped = peer.reading.speed.over(self.scene.config.law.damping);
-        peer.rear.ahead(damped).ahead(self.scene.standstill_at(self.next, peer.index).negated())
+        peer.rear.ahead(damped).ahead(peer.standstill.negated())
     }
 
     /// How gently the ego may brake for a peer that it follows.

@@ -4,6 +4,8 @@
 use holdover::OnboardUnit;
 use holdover::controller::Mode;
 use holdover::time::{Duration, Instant};
+use holdover::units::Seconds;
+use holdover::wire::{Identifiers, Message, Received, Receiver, Role, Said};
 
 use crate::counter::Counter;
 use crate::road::Road;
@@ -33,6 +35,8 @@ pub struct Traffic {
     pub horizons: bool,
     /// So many stations without a slot tell their passes.
     pub passers_by: u8,
+    /// The range sensor says nothing.
+    pub is_blind: bool,
 }
 
 impl Traffic {
@@ -45,6 +49,7 @@ impl Traffic {
         changed: false,
         horizons: false,
         passers_by: 0,
+        is_blind: false,
     };
     /// The last peer talks by itself.
     pub const ONE: Self = Self { due: 7, last_alone: true, ..Self::USUAL };
@@ -56,6 +61,8 @@ impl Traffic {
     pub const PASSES: Self = Self { passers_by: 20, ..Self::USUAL };
     /// No peer talks.
     pub const SILENCE: Self = Self { due: 10, ..Self::USUAL };
+    /// As before, and the range sensor says nothing.
+    pub const NOTHING: Self = Self { is_blind: true, ..Self::SILENCE };
     /// Everything at once.
     pub const TOGETHER: Self = Self { passers_by: 20, ..Self::HORIZONS };
 
@@ -131,12 +138,16 @@ pub struct Bench<'a, const PEERS: usize> {
     pub frames: Frames,
     /// Where the stack was when a tick began.
     pub top: usize,
+    /// The time gap that the unit told last.
+    pub time_gap: Seconds,
+    listener: Receiver<0>,
 }
 
 impl<'a, const PEERS: usize> Bench<'a, PEERS> {
     /// At its beginning.
     pub fn new(unit: &'a mut OnboardUnit<PEERS, 8, CAPACITY>, counter: &'a Counter, road: Road) -> Self {
-        Self { unit, counter, road, frames: Frames::NONE, top: 0 }
+        let listener = Receiver::new(Identifiers::DEFAULT, Role::Modem);
+        Self { unit, counter, road, frames: Frames::NONE, top: 0, time_gap: Seconds::ZERO, listener }
     }
 
     /// A second of ticks, from `number` seconds on. Fails if the unit does not follow anybody that it hears, from the third second on.
@@ -153,6 +164,12 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             let answer = unit.tick(now);
             let count = counter.since(begun);
             most.any = most.any.max(count);
+            for frame in &answer.frames {
+                let heard = self.listener.receive(now, frame);
+                if let Ok(Received::Whole(Message::Own(Said::DrivingParameters(parameters)))) = heard {
+                    self.time_gap = parameters.time_gap;
+                }
+            }
             let place = match tick % 10 {
                 0 => &mut most.send,
                 1 => &mut most.review,
@@ -183,7 +200,9 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             road.synchronise(at, &mut hear);
         }
         road.ego(at, &mut hear);
-        road.view(at, &mut hear);
+        if !traffic.is_blind {
+            road.view(at, &mut hear);
+        }
         for peer in 0..PEERS as u8 {
             let is_alone = traffic.last_alone && usize::from(peer) == PEERS - 1;
             let due = if is_alone { 5 } else { traffic.due };

@@ -101,7 +101,28 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
         }
         let [usual, all, horizons, passes] = cycle;
         let (frames, deep) = (bench.frames, stack::depth(bench.top) as u32);
-        // The first tick with horizons, and samples that come after a silence that was as long as they are old.
+        // The first seconds with horizons, wherever the intersection is.
+        let mut first = |road: Road, silence: u64| {
+            begin(bench.unit);
+            let mut bench = Bench::new(bench.unit, counter, road);
+            for number in 0..3 {
+                bench.second(number, Traffic::USUAL);
+            }
+            for number in 3..3 + silence {
+                bench.second(number, Traffic::NOTHING);
+            }
+            let is_opened = bench.time_gap > config.law.time_gap;
+            assert!(is_opened == (silence > 5), "{}", bench.time_gap.to_millis());
+            (3..6).map(|number| bench.second(number + silence, Traffic::HORIZONS).any).max().unwrap_or(0)
+        };
+        let mut away = [0, 0];
+        for by in (0..if has_map { 90_000 } else { 1 }).step_by(3_000) {
+            let lanes = if has_map { road().with_last_on_lane() } else { road() };
+            let here = [first(road().further_away(by), 0), first(lanes.further_away(by), 6)];
+            away = [0, 1].map(|kind| here[kind].max(away[kind]));
+        }
+        let [first, opened] = away;
+        // Samples that come after a silence that was as long as they are old.
         let mut after = |silence: u64, has_ticks: bool, traffic: Traffic| {
             begin(bench.unit);
             let mut bench = Bench::new(bench.unit, counter, road());
@@ -122,7 +143,8 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("all", all.any),
             ("horizons", horizons.any),
             ("passes", passes.any),
-            ("first", after(0, true, Traffic::HORIZONS)),
+            ("first", first),
+            ("opened", opened),
             ("late-0.3", after(0, true, Traffic::ALL.aged(300))),
             ("late-3", after(4, true, Traffic::ALL.aged(3_000))),
             ("late-twice", after(4, true, Traffic::ALL.aged(3_000).twice())),
