@@ -78,6 +78,9 @@ Figures:
               0.1 s after the one ahead had lost 0.1 m/s, the largest error of
               the sensor's speed; without pairs whose vehicle ahead had run into
               another before: a collision stops nobody in the simulation
+  known at once
+              the same, had it begun to brake in the moment in which the one ahead
+              did, of which nobody can know
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

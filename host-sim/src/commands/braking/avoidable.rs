@@ -1,7 +1,8 @@
 //! Whether a vehicle that ran into the one ahead could have come to rest before. The drives of both enter; yes or no leaves.
 //!
 //! A follower can know of a braking once the vehicle ahead is slower by as much as its range sensor may err, and is given 0.1 s more to
-//! begin braking. Then it brakes as hard as its law may: what the law demands is limited in strength and in its change.
+//! begin braking; or it is taken to know of it at once. Then it brakes as hard as its law may: what the law demands is limited in strength
+//! and in its change.
 
 use crate::sim::world::Tick;
 
@@ -25,6 +26,29 @@ const ANSWER_S: f64 = 0.1;
 /// Speed changes by no more than this without braking.
 const WAVERS_MPS2: f64 = 0.1;
 
+/// When the follower knows of the braking ahead, and begins to brake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// In the moment in which it begins, as nobody can.
+    AtOnce,
+    /// 0.1 s after one could see it.
+    Seen,
+}
+
+impl Known {
+    /// The tick in which the follower begins to brake; `None` if the vehicle ahead does not brake from the tick `from` on.
+    fn answers_at(self, ahead: &[Tick], from: usize, period_s: f64) -> Option<usize> {
+        let before = ahead.get(from)?;
+        let brakes = |tick: &usize| ahead[*tick].acceleration_mps2 < -WAVERS_MPS2;
+        let is_slower = |tick: &usize| ahead[*tick].speed_mps < before.speed_mps - SLOWER_MPS;
+        let mut braking = (from..ahead.len()).filter(brakes);
+        match self {
+            Self::AtOnce => braking.next(),
+            Self::Seen => Some(braking.find(is_slower)? + (ANSWER_S / period_s).round() as usize),
+        }
+    }
+}
+
 /// Whether the vehicle behind could have kept off the rear ahead, `length_m` behind the front, had it braked as hard as it may from its
 /// answer on. Until then it drives as it really did. `from` is the tick at which the leader of the string begins to brake. Also true if the
 /// vehicle ahead never brakes.
@@ -34,14 +58,11 @@ pub fn is_avoidable(
     behind: &[Tick],
     length_m: f64,
     from: usize,
+    known: Known,
     limits: &Limits,
     period_s: f64,
 ) -> bool {
-    let Some(before) = ahead.get(from) else { return true };
-    let has_braked =
-        |tick: &Tick| tick.speed_mps < before.speed_mps - SLOWER_MPS && tick.acceleration_mps2 < -WAVERS_MPS2;
-    let Some(seen) = (from..ahead.len()).find(|tick| has_braked(&ahead[*tick])) else { return true };
-    let answers = seen + (ANSWER_S / period_s).round() as usize;
+    let Some(answers) = known.answers_at(ahead, from, period_s) else { return true };
     let Some(start) = behind.get(answers) else { return true };
     let kept = (-period_s / limits.lag_s).exp();
     let (mut position_m, mut speed_mps) = (start.position_m, start.speed_mps);
@@ -95,22 +116,32 @@ mod tests {
         let behind = drive(0.0, 0.0);
         for (more_m, avoidable) in [(0.1, true), (-0.1, false)] {
             let ahead = drive(5.0 + needed_m() + more_m, 6.0);
-            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, &LIMITS, PERIOD_S), avoidable, "{more_m}");
+            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, Known::Seen, &LIMITS, PERIOD_S), avoidable, "{more_m}");
+        }
+    }
+
+    #[test]
+    fn whoever_knows_at_once_needs_less_by_the_way_until_its_answer() {
+        let behind = drive(0.0, 0.0);
+        let needed_m = needed_m() - 15.0 * (1.0 / 60.0 + 0.1);
+        for (more_m, avoidable) in [(0.1, true), (-0.1, false)] {
+            let ahead = drive(5.0 + needed_m + more_m, 6.0);
+            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, Known::AtOnce, &LIMITS, PERIOD_S), avoidable, "{more_m}");
         }
     }
 
     #[test]
     fn until_its_answer_it_drives_as_it_did_and_wavering_is_no_braking() {
         let ahead = drive(5.0 + needed_m() - 1.0, 6.0);
-        assert!(!is_avoidable(&ahead, &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
+        assert!(!is_avoidable(&ahead, &drive(0.0, 0.0), 5.0, 0, Known::Seen, &LIMITS, PERIOD_S));
         assert!(
-            is_avoidable(&ahead, &drive(0.0, 4.0), 5.0, 0, &LIMITS, PERIOD_S),
+            is_avoidable(&ahead, &drive(0.0, 4.0), 5.0, 0, Known::Seen, &LIMITS, PERIOD_S),
             "it brakes as soon as the one ahead"
         );
         // By the speed alone it would have answered at 0.9 s, and been metres better.
         let mut wavered = drive(5.0 + needed_m() - 1.0, 6.0);
         wavered[..900].iter_mut().for_each(|tick| tick.speed_mps = 15.2);
-        assert!(!is_avoidable(&wavered, &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
+        assert!(!is_avoidable(&wavered, &drive(0.0, 0.0), 5.0, 0, Known::Seen, &LIMITS, PERIOD_S));
     }
 
     #[test]
@@ -119,12 +150,12 @@ mod tests {
         let limits = Limits { lag_s: 0.3, ..LIMITS };
         for (more_m, avoidable) in [(15.0 * 0.3 + 0.2, true), (15.0 * 0.3 - 0.6, false)] {
             let ahead = drive(5.0 + needed_m() + more_m, 6.0);
-            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, &limits, PERIOD_S), avoidable, "{more_m}");
+            assert_eq!(is_avoidable(&ahead, &behind, 5.0, 0, Known::Seen, &limits, PERIOD_S), avoidable, "{more_m}");
         }
     }
 
     #[test]
     fn whoever_runs_into_a_vehicle_that_does_not_brake_could_have_braked() {
-        assert!(is_avoidable(&drive(20.0, 0.0), &drive(0.0, 0.0), 5.0, 0, &LIMITS, PERIOD_S));
+        assert!(is_avoidable(&drive(20.0, 0.0), &drive(0.0, 0.0), 5.0, 0, Known::Seen, &LIMITS, PERIOD_S));
     }
 }

@@ -27,10 +27,19 @@ pub fn render(options: &BrakingOptions, rows: &[Row], failures: &[String]) -> Pa
 }
 
 fn table(page: &mut Page, rows: &[Row]) {
-    let header =
-        ["Time gap", "Leader, m/s²", "Envelope", "Gap, m", "Braking, m/s²", "Jerk, m/s³", "Collisions", "Avoidable"];
+    let header = [
+        "Time gap",
+        "Leader, m/s²",
+        "Envelope",
+        "Gap, m",
+        "Braking, m/s²",
+        "Jerk, m/s³",
+        "Collisions",
+        "Avoidable",
+        "Known at once",
+    ];
     let names = |row: &Row, who: &str| [format!("{} s", row.time_gap_s), row.braking_mps2.to_string(), who.into()];
-    let felt = |names: [String; 3], gap: String, comfort: &Comfort, collisions: [Cell; 2]| {
+    let felt = |names: [String; 3], gap: String, comfort: &Comfort, collisions: [Cell; 3]| {
         let mut cells = names.map(Cell::text).to_vec();
         cells.extend([
             Cell::number(gap),
@@ -43,16 +52,17 @@ fn table(page: &mut Page, rows: &[Row]) {
     let side = |row: &Row, envelope: &str, side: &Side| {
         let gap = side.min_gap_m.map_or("–".into(), |gap| significant(gap, 3));
         let collisions = Cell::judged(count(side.collisions as u64), side.collisions == 0);
-        felt(names(row, envelope), gap, &side.comfort, [collisions, Cell::number(count(side.avoidable as u64))])
+        let [seen, at_once] = [side.avoidable, side.avoidable_at_once].map(|pairs| Cell::number(count(pairs as u64)));
+        felt(names(row, envelope), gap, &side.comfort, [collisions, seen, at_once])
     };
     let group = |row: &Row| {
-        let leader = felt(names(row, "(leader)"), "–".into(), &row.leader, ["", ""].map(Cell::text));
+        let leader = felt(names(row, "(leader)"), "–".into(), &row.leader, ["", "", ""].map(Cell::text));
         [leader, side(row, "off", &row.off), side(row, "on", &row.on)]
     };
     let caption = "The worst of all runs. Jerk is the largest change of acceleration within 0.1 s, while a vehicle moves. There is \
                    no smallest gap where vehicles met. A collision was avoidable if the vehicle behind could have come to rest by the \
                    limits of its law and with its lag, had it begun to brake 0.1 s after the one ahead had lost 0.1 m/s, the largest \
-                   error of the sensor's speed. Pairs whose vehicle ahead had run into another before are never counted as avoidable.";
+                   error of the sensor's speed; known at once: had it begun in the moment in which the one ahead did. Pairs whose vehicle ahead had run into another before are never counted as avoidable.";
     page.table(caption, &header, &rows.iter().flat_map(group).collect::<Vec<_>>());
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use holdover::parameters::FEED_FORWARD;
 use serde::Serialize;
 
-use super::avoidable::{Limits, is_avoidable};
+use super::avoidable::{Known, Limits, is_avoidable};
 use super::leader::{self, BRAKES_AT_S};
 use super::options::BrakingOptions;
 use crate::error::Error;
@@ -57,6 +57,8 @@ pub struct Side {
     /// Of these, in how many the vehicle behind could have come to rest (`avoidable.rs`). A pair is left out if its vehicle ahead had run
     /// into another before: a collision stops nobody in the simulation.
     pub avoidable: usize,
+    /// In how many it could have, had it known of the braking in the moment in which that began.
+    pub avoidable_at_once: usize,
     /// Smallest bumper gap; `None`: vehicles met.
     pub min_gap_m: Option<f64>,
     /// The comfort of the followers, the worst of all.
@@ -115,7 +117,8 @@ fn outcome(options: &BrakingOptions, place: (f64, f64), number: u64, is_engaged:
         leader: trace.vehicles.first().map(comfort).unwrap_or_default(),
         side: Side {
             collisions: summary.collisions,
-            avoidable: avoidable(&scenario, &trace.vehicles),
+            avoidable: avoidable(&scenario, &trace.vehicles, Known::Seen),
+            avoidable_at_once: avoidable(&scenario, &trace.vehicles, Known::AtOnce),
             min_gap_m: summary.min_gap_m,
             comfort: followers,
             bound_violations: summary.bound.violations,
@@ -124,7 +127,7 @@ fn outcome(options: &BrakingOptions, place: (f64, f64), number: u64, is_engaged:
 }
 
 /// In how many pairs that met the vehicle behind could have come to rest.
-fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>]) -> usize {
+fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>], known: Known) -> usize {
     let from = (BRAKES_AT_S / scenario.period_s) as usize;
     let meets_at = |index: usize| {
         let (length_m, pair) = (scenario.vehicles[index].length_m, (&vehicles[index], &vehicles[index + 1]));
@@ -139,7 +142,7 @@ fn avoidable(scenario: &Scenario, vehicles: &[Vec<Tick>]) -> usize {
             lag_s: described.plant_lag_s,
         };
         let (ahead, behind) = (&vehicles[index], &vehicles[index + 1]);
-        is_avoidable(ahead, behind, scenario.vehicles[index].length_m, from, &limits, scenario.period_s)
+        is_avoidable(ahead, behind, scenario.vehicles[index].length_m, from, known, &limits, scenario.period_s)
     };
     let meetings: Vec<Option<usize>> = (0..vehicles.len().saturating_sub(1)).map(meets_at).collect();
     first_meetings(&meetings).filter(|index| could_stop(*index)).count()
@@ -221,6 +224,7 @@ impl Side {
         Self {
             collisions,
             avoidable: sides().map(|side| side.avoidable).sum(),
+            avoidable_at_once: sides().map(|side| side.avoidable_at_once).sum(),
             min_gap_m: sides().filter_map(|side| side.min_gap_m).reduce(f64::min).filter(|_| collisions == 0),
             comfort: sides().map(|side| side.comfort).fold(Comfort::default(), Comfort::worst),
             bound_violations: sides().map(|side| side.bound_violations).sum(),
@@ -286,6 +290,7 @@ mod tests {
         let side = |collisions, min_gap_m| Side {
             collisions,
             avoidable: 0,
+            avoidable_at_once: 0,
             min_gap_m,
             comfort: Comfort::default(),
             bound_violations: 0,

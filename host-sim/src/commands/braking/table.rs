@@ -13,13 +13,13 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     // Writing to a string cannot fail.
     let _ =
         writeln!(text, "ten vehicles behind a leader that brakes to a stop in a silence; seeds each: {}", first.seeds);
-    let heads = ["gap, m", "braking, m/s²", "jerk, m/s³", "collisions", "avoidable"];
+    let heads = ["gap, m", "braking, m/s²", "jerk, m/s³", "collisions", "avoidable", "known at once"];
     let _ = write!(text, "{:<13}{:<15}{:<11}", "time gap, s", "leader, m/s²", "envelope");
     text.extend(heads.map(|head| format!("{head:>15}")));
     text.push('\n');
     for row in rows {
         let names = [row.time_gap_s.to_string(), row.braking_mps2.to_string()];
-        line(&mut text, &names, "(leader)", &felt(&row.leader, Default::default()));
+        line(&mut text, &names, "(leader)", &felt(&row.leader, String::new(), Default::default()));
         line(&mut text, &Default::default(), "off", &cells(&row.off));
         line(&mut text, &Default::default(), "on", &cells(&row.on));
     }
@@ -28,14 +28,15 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
     text
 }
 
-fn cells(side: &Side) -> [String; 5] {
+fn cells(side: &Side) -> [String; 6] {
     let gap = side.min_gap_m.map_or("-".into(), |gap| format!("{gap:.2}"));
-    felt(&side.comfort, [gap, side.collisions.to_string(), side.avoidable.to_string()])
+    let counts = [side.collisions, side.avoidable, side.avoidable_at_once].map(|count| count.to_string());
+    felt(&side.comfort, gap, counts)
 }
 
-fn felt(comfort: &Comfort, [gap, collisions, avoidable]: [String; 3]) -> [String; 5] {
+fn felt(comfort: &Comfort, gap: String, [collisions, avoidable, at_once]: [String; 3]) -> [String; 6] {
     let Comfort { hardest_braking_mps2, largest_jerk_mps3 } = comfort;
-    [gap, format!("{hardest_braking_mps2:.2}"), format!("{largest_jerk_mps3:.1}"), collisions, avoidable]
+    [gap, format!("{hardest_braking_mps2:.2}"), format!("{largest_jerk_mps3:.1}"), collisions, avoidable, at_once]
 }
 
 fn line(text: &mut String, [time_gap, braking]: &[String; 2], envelope: &str, cells: &[String]) {
