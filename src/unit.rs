@@ -213,10 +213,6 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
             let own = speaks.then(|| self.foresee(now, last, target));
             if plans {
                 self.plan(now, ego.as_ref());
-                match self.mode {
-                    Mode::Standby => self.scene.opening.forget(),
-                    _ => self.scene.note_silence(now, target),
-                }
             }
             self.send(now, own.as_ref().map(Option::as_ref), answer);
         }
@@ -357,6 +353,10 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> OnboardUnit<P
     /// The ego's motion as it is to be told, with its own horizon computed from it; `None` if the motion is too old. Its demand is
     /// the one in force up to its stamp: from that one a receiver's model repeats the demand that came into force then.
     fn foresee(&mut self, now: Instant, last: Last, target: Option<usize>) -> Option<Sample> {
+        match self.mode {
+            Mode::Standby => self.scene.opening.forget(),
+            _ => self.scene.note_silence(now, target),
+        }
         let ego = self.scene.fresh_ego(now)?;
         // The last demand came into force at the last tick, as well as the two clocks can tell.
         let in_force = now.minus(last.age).plus(self.scene.config.link.clock_error);

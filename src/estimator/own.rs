@@ -34,7 +34,7 @@ impl<const PEERS: usize, const STEPS: usize> Estimator<PEERS, STEPS> {
     #[inline(never)]
     pub fn keep_time_gap(&self, manner: &mut Manner, time_gap: Seconds) {
         manner.vehicle.keep_time_gap(time_gap);
-        manner.stride.take_aim_of(&manner.vehicle, self.grid.step, manner.length_ahead, &self.model);
+        manner.stride.keep_time_gap(&manner.vehicle, self.grid.step, time_gap, &self.model);
     }
 
     /// Computes the ego's own horizon from the ego's state: all of it, or up to an instant.

@@ -77,10 +77,7 @@ impl Follower {
     #[must_use]
     pub fn over(step: Duration, law: &Consensus, spacing: Distance, catch_up: Option<Speed>) -> Self {
         let Consensus { gain, damping, time_gap, feed_forward } = *law;
-        let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
-        let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
-        let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
-        let saturation_offset = half.plus(half).negated().minus(Distance::MIN);
+        let (half_gap, saturation_offset) = half_gap(step, time_gap, catch_up);
         Self {
             gain: semi_implicit(gain, damping, time_gap, step).negated(),
             half_gap,
@@ -89,6 +86,14 @@ impl Follower {
             spacing: spacing.minus(saturation_offset),
             feed: feed(feed_forward, step),
         }
+    }
+
+    /// The same follower, over the same steps and with the same speed for catching up, at another time gap. `K` stays: the controller too
+    /// takes an opened time gap as a predecessor that is nearer by so much.
+    pub fn keep_time_gap(&mut self, step: Duration, time_gap: Seconds, catch_up: Option<Speed>) {
+        let spacing = self.spacing.plus(self.saturation_offset);
+        (self.half_gap, self.saturation_offset) = half_gap(step, time_gap, catch_up);
+        self.spacing = spacing.minus(self.saturation_offset);
     }
 
     /// Eq. 13 as an acceleration, before the limits.
@@ -104,6 +109,15 @@ impl Follower {
         let by_gap = (error.to_bits(), self.gain.to_bits());
         Acceleration::from_bits(mul_sum_shl::<8>(by_gap, (gained.to_bits(), self.feed)))
     }
+}
+
+/// Half of `t_g + δt`, and the offset that limits the sum at `-(t_g + δt) v_c`.
+#[inline(always)]
+fn half_gap(step: Duration, time_gap: Seconds, catch_up: Option<Speed>) -> (Seconds, Distance) {
+    let gap = i64::from(time_gap.to_bits()).saturating_add(i64::from(step.seconds().to_bits()));
+    let half_gap = Seconds::from_bits(saturate_i32(gap >> 1));
+    let half = catch_up.map_or(Distance::MAX, |speed| speed.over(half_gap));
+    (half_gap, half.plus(half).negated().minus(Distance::MIN))
 }
 
 /// The shortest step that passes on half of the predecessor's acceleration: `0.5/64` s, rounded up to a microsecond.

@@ -140,9 +140,11 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// Takes the aim of this vehicle, which is the same one in everything else.
-    pub fn take_aim_of(&mut self, vehicle: &VehicleModel, step: Duration, length_ahead: Distance, model: &Model) {
-        self.course = vehicle.course(step, length_ahead, model);
+    /// Gives the follower another time gap, if it is one; its other constants stay. `vehicle` is what the stride was made of.
+    pub fn keep_time_gap(&mut self, vehicle: &VehicleModel, step: Duration, time_gap: Seconds, model: &Model) {
+        if let (Course::Follow(follower), Aim::Follow { catch_up, .. }) = (&mut self.course, vehicle.aim) {
+            follower.keep_time_gap(step, time_gap, model.limits.then_some(catch_up));
+        }
     }
 
     /// The demand of this step: the desired acceleration, but no more than the cap, and within the vehicle's limits. The acceleration of

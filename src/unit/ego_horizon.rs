@@ -65,7 +65,7 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
         let next = scene.coordination.next_of(crossing, own.position, scene.config.length);
         let view = Vantage { scene, at: review, next, front: own.position, speed: own.speed };
         let ahead = outlook(&view, step, &minded, manner.target);
-        let target = ahead.map(|peer| peer.index);
+        let target = ahead.map(|(peer, _)| peer.index);
         let is_new = target != manner.target;
         let may = view.comfort(target);
         let changes_now = (is_new || may < comfort) && changes > 0;
@@ -87,9 +87,10 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
                 comfort = may;
                 if is_new {
                     if opening.is_opened() {
-                        opening.turn(review, scene.opens_behind(now, target));
+                        let on_lane = ahead.filter(|(_, is_on_lane)| *is_on_lane).map(|(peer, _)| peer.index);
+                        opening.turn(review, scene.opens_behind(now, on_lane));
                     }
-                    gains = ahead.map(|peer| gains_behind(scene, &peer.reading, &own));
+                    gains = ahead.map(|(peer, _)| gains_behind(scene, &peer.reading, &own));
                 }
                 let behind = gains.zip(target).map(|(gains, index)| (gains, scene.standstill_at(next, index)));
                 manner = scene.estimator.manner(scene.ego_model(behind, comfort), target, &scene.peers);
@@ -128,7 +129,7 @@ fn foresee_opened<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     }
 }
 
-/// Gives the manner the time gap as it will be opened at an instant, the middle of the piece that comes.
+/// Gives the manner the time gap as it will be opened at an instant: the middle of the piece that comes, or now for the first one.
 #[cold]
 #[inline(never)]
 fn widen<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
@@ -163,7 +164,7 @@ struct Minded {
     /// at the next crossing.
     conflicts: bool,
     is_ahead: bool,
-    /// The way from its front to its rear, and the standstill distance behind it where it is at the ego's next crossing.
+    /// The way from its front to its rear, and the standstill distance behind it if its crossing is the ego's next one.
     to_rear: Distance,
     standstill: Distance,
 }
@@ -203,7 +204,7 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     minded
 }
 
-/// The vehicle that the ego will follow, by the order and the horizons as they are known now, at a step of the grid. A vehicle that
+/// The vehicle that the ego will follow, and whether that is the one ahead on the ego's lane: by the order and the horizons as they are known now, at a step of the grid. A vehicle that
 /// registers in between is not known. The horizons are read at the step itself, where they take no interpolation; and beyond what is
 /// certain of a vehicle its horizon does not go, because the horizon keeps to the limits that this rests on.
 fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
@@ -211,7 +212,7 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     step: i64,
     minded: &[Minded],
     followed: Option<usize>,
-) -> Option<Candidate> {
+) -> Option<(Candidate, bool)> {
     let (scene, coordination) = (view.scene, &view.scene.coordination);
     let is_later = view.next != coordination.next();
     let elsewhere = standstill_on_way(scene.config.law.standstill, None, scene.config.range_sensor);
@@ -244,7 +245,8 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     // there now.
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(_, crossing)| crossing != view.next)));
     let lane = lane.map(|(peer, _)| peer).filter(|peer| view.is_heeded(peer));
-    view.choose(order, lane, followed)
+    let target = view.choose(order, lane, followed)?;
+    Some((target, lane.is_some_and(|lane| lane.index == target.index)))
 }
 
 /// Whether a station was ahead at the last review, and still is by what it has said since then.

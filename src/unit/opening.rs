@@ -30,7 +30,7 @@ pub(super) struct Opening {
     /// The most that it may be.
     most: Duration,
     opens: bool,
-    /// The last own motion.
+    /// Since when it opens or closes by what it is opened now: the last own motion, or a turn that is foreseen.
     at: Held<Instant>,
 }
 
@@ -81,7 +81,7 @@ impl Opening {
     /// It goes on like that up to an instant, and opens or closes from then on.
     pub fn turn(&mut self, at: Instant, opens: bool) {
         self.by = self.after(self.at.get().map_or(Duration::ZERO, |last| at.since(last)));
-        (self.at, self.opens) = (Held::Value(at), opens && self.most > Duration::ZERO);
+        (self.at, self.opens) = (Held::Value(at), opens);
     }
 
     /// By how much it is opened as it is told.
@@ -185,13 +185,12 @@ mod tests {
 
     #[test]
     fn it_turns_ahead_of_time() {
-        // Opened by 400 ms, it opens, closes or stays open from 1 s later on.
-        for (opens, most, then) in [(true, MOST, 700), (false, MOST, 300), (true, Seconds::ZERO, 0)] {
+        // Opened by 400 ms at 4 s, it opens up to 5 s, and from then on it opens or closes.
+        for (opens, then) in [(true, 700), (false, 300)] {
             let mut opening = Opening::NONE;
             drive(&mut opening, 0..4_100, true);
-            opening.limit(most);
             opening.turn(at(5_000), opens);
-            assert_eq!(opening.later(at(7_000)), Seconds::from_millis(then), "{opens} {most:?}");
+            assert_eq!(opening.later(at(7_000)), Seconds::from_millis(then), "{opens}");
         }
     }
 

@@ -193,20 +193,19 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
     /// Opens or closes the time gap from now on; without a target, it closes.
     #[inline(never)]
     pub fn note_silence(&mut self, now: Instant, target: Option<usize>) {
-        let opens = self.opens_behind(now, target);
+        let is_on_lane = self.coordination.itinerary().is_none() || self.visible() == target;
+        let opens = self.opens_behind(now, target.filter(|_| is_on_lane));
         if opens || self.opening.is_opened() {
             self.opening.go_on(now, opens, self.most_opened());
         }
     }
 
-    /// Whether the time gap opens behind this target, of which there has been no news for too long.
+    /// Whether the time gap opens behind this target on the ego's lane, because there has been no news of it for too long. A vehicle that comes
+    /// by another leg is none that the ego keeps a time gap to yet.
     pub fn opens_behind(&self, now: Instant, target: Option<usize>) -> bool {
         let unheard = target.and_then(|index| self.peers.get(index)?.link().silence(now));
-        let is_unheard = unheard.is_some_and(|unheard| unheard > OPENS_AFTER);
         let is_unseen = || self.ranging.unseen(now).is_none_or(|unseen| unseen > OPENS_AFTER);
-        // A vehicle that comes by another leg is none that the ego keeps a time gap to yet.
-        let is_on_lane = || self.coordination.itinerary().is_none() || self.visible() == target;
-        is_unheard && is_unseen() && is_on_lane()
+        unheard.is_some_and(|unheard| unheard > OPENS_AFTER) && is_unseen()
     }
 
     /// By how much the time gap that is wanted may be opened.

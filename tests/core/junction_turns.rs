@@ -4,9 +4,11 @@
 use crate::rig::LENGTH;
 use crate::rig::config;
 use crate::rig::junction::{CROSSING, Driver, EASTWARD, HALF, Junction, NORTHWARD};
+use crate::rig::{instant, m_of};
 use holdover::Config;
 use holdover::coordination::{Approach, Crossing, Intersection, Itinerary, Movement, Movements, Path, Segment};
-use holdover::units::{Distance, Position};
+use holdover::time::Duration;
+use holdover::units::{Distance, Position, Seconds};
 
 const POINT: Position = Position::from_mm(200_000);
 
@@ -141,5 +143,55 @@ fn one_that_turns_off_is_followed_to_the_area_and_slows_nobody_beyond_it() {
         assert!(second.body.position > first.body.position + 20.0, "{envelope}: {}", second.body.position);
         // It comes to the area before it can know that there will be room beyond: this unit foresees 0.6 s.
         assert!(slowest > 5.0, "{envelope}: {slowest} m/s");
+    }
+}
+
+/// How far off the ego was foreseen 4 s before, at most, in 3.5 s in which it follows the one that goes on. Before that it followed the one
+/// that turns off, and had heard nothing of that one for 12 s.
+fn farthest_off(hears_the_other: bool) -> f64 {
+    let mut junction = Junction::new(Vec::new());
+    for (itinerary, station, at, target_speed) in
+        [(&GOES_ON, 2, 104.0, 9.5), (&TURNS_OFF, 3, 84.0, 10.5), (&GOES_ON, 1, 64.0, 20.0)]
+    {
+        let mut driver = on(itinerary, station, at, false, false);
+        let mut config = *driver.rig.unit.config();
+        config.law.silent_time_gap = Seconds::from_millis(1_800);
+        config.prediction.step = Duration::from_millis(100);
+        config.prediction.horizon = Duration::from_millis(6_000);
+        driver.rig.unit.start(&config).expect("the configuration is sound");
+        driver.rig.unit.set_out(itinerary).expect("so is the map");
+        driver.rig.power_up(true, 0);
+        driver.target_speed = target_speed;
+        junction.drivers.push(driver);
+    }
+    junction.run(2.0, |_| {});
+    junction.drivers[2].hears = hears_the_other;
+    junction.drivers[2].deaf_to = Some(1);
+    let (mut told, mut farthest, mut followed) = (Vec::new(), 0.0f64, Vec::new());
+    for _ in 0..155 {
+        junction.run(0.1, |_| {});
+        let ego = &junction.drivers[2];
+        if let Some((_, place)) = told.iter().find(|(due, _)| *due == junction.now) {
+            let off: f64 = place - ego.body.position;
+            farthest = if ego.follows() == Some(2) { farthest.max(off.abs()) } else { 0.0 };
+        }
+        followed.push(ego.follows());
+        let then = junction.now + 4_000_000;
+        let reading = ego.rig.unit.estimator().read_own(instant(then)).expect("it has a horizon");
+        told.push((then, m_of(reading.position) - ego.axis));
+    }
+    let before = followed.iter().position(|followed| *followed == Some(2)).expect("it is followed");
+    let (turns_off, goes_on) = followed.split_at(before);
+    assert!(turns_off.len() > 110 && turns_off.iter().all(|followed| *followed == Some(3)), "{turns_off:?}");
+    assert!(goes_on.len() >= 35 && goes_on.iter().all(|followed| *followed == Some(2)), "{goes_on:?}");
+    farthest
+}
+
+#[test]
+fn the_own_horizon_knows_whether_the_time_gap_opens_behind_the_next_one_on_the_street() {
+    // Behind one that is silent too it goes on, behind one that is heard it closes.
+    for hears_the_other in [false, true] {
+        let off = farthest_off(hears_the_other);
+        assert!(off < 0.4, "{hears_the_other}: {off} m");
     }
 }

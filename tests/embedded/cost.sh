@@ -127,7 +127,7 @@ tables() {
             row("send tick, no news", "send")
             row("send tick, all peers new", "all")
             row("the same, with their horizons", "horizons")
-            row("the first seconds of these, from 30 places", "first")
+            row("the first seconds of these, from 90 places", "first")
             row("the same with an opened time gap", "opened")
             row("passes of 20 stations", "passes")
             row("samples of 0.3 s ago", "late-0.3")

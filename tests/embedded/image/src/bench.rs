@@ -37,6 +37,8 @@ pub struct Traffic {
     pub passers_by: u8,
     /// The range sensor says nothing.
     pub is_blind: bool,
+    /// Only the peers on the ego's street talk, where there are intersections.
+    pub on_lane: bool,
 }
 
 impl Traffic {
@@ -50,6 +52,7 @@ impl Traffic {
         horizons: false,
         passers_by: 0,
         is_blind: false,
+        on_lane: false,
     };
     /// The last peer talks by itself.
     pub const ONE: Self = Self { due: 7, last_alone: true, ..Self::USUAL };
@@ -61,7 +64,9 @@ impl Traffic {
     pub const PASSES: Self = Self { passers_by: 20, ..Self::USUAL };
     /// No peer talks.
     pub const SILENCE: Self = Self { due: 10, ..Self::USUAL };
-    /// As before, and the range sensor says nothing.
+    /// As the usual, from the ego's street alone.
+    pub const LANE: Self = Self { on_lane: true, ..Self::USUAL };
+    /// As the silence, and the range sensor says nothing.
     pub const NOTHING: Self = Self { is_blind: true, ..Self::SILENCE };
     /// Everything at once.
     pub const TOGETHER: Self = Self { passers_by: 20, ..Self::HORIZONS };
@@ -204,6 +209,9 @@ impl<'a, const PEERS: usize> Bench<'a, PEERS> {
             road.view(at, &mut hear);
         }
         for peer in 0..PEERS as u8 {
+            if traffic.on_lane && !road.is_on_lane(peer) {
+                continue;
+            }
             let is_alone = traffic.last_alone && usize::from(peer) == PEERS - 1;
             let due = if is_alone { 5 } else { traffic.due };
             if tick % 10 != due && !(traffic.twice && tick % 10 == due + 1) {

@@ -13,17 +13,17 @@ use holdover::wire::{Predecessor, StationHash};
 const CM: i32 = 687_194_767; // 0.01 · 2³⁶
 
 static NORTH: [Segment; 1] = [Segment {
-    latitude: -10_000,
+    latitude: -20_000,
     longitude: 0,
-    begins: Position::from_mm(-100_000),
-    length: Distance::from_mm(600_000),
+    begins: Position::from_mm(-200_000),
+    length: Distance::from_mm(700_000),
     along: Scale { north: CM, east: 0 },
     across: Scale { north: 0, east: CM },
     heading: 0,
 }];
 static EAST: [Segment; 1] = [Segment {
     latitude: 20_000,
-    longitude: -30_000,
+    longitude: -40_000,
     along: Scale { north: 0, east: CM },
     across: Scale { north: -CM, east: 0 },
     heading: 7_200,

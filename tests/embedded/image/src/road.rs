@@ -30,7 +30,7 @@ const SPACING: i64 = 18_000;
 const LENGTH: Distance = Distance::from_mm(4_800);
 /// Where the ego is along its street at the beginning, and where the streets have their zero on its axis.
 const BEGINS: i64 = 60_000;
-const AXIS: i64 = 140_000;
+const AXIS: i64 = 240_000;
 /// Stations of which only the passes are heard are named from here on.
 const PASSERS_BY: u32 = 200;
 
@@ -40,7 +40,6 @@ pub struct Road {
     has_junctions: bool,
     has_sensor: bool,
     is_terse: bool,
-    has_last_on_lane: bool,
     begins: i64,
     sender: Sender<8>,
     tag: u8,
@@ -53,7 +52,16 @@ impl Road {
         let sender = Sender::new(Identifiers::DEFAULT);
         #[cfg(feature = "fd")]
         let sender = sender.over(Transport::Fd);
-        Self { peers, has_junctions: false, has_sensor: false, is_terse: false, has_last_on_lane: false, begins: BEGINS, sender, tag: 0, sequence: 0 }
+        Self {
+            peers,
+            has_junctions: false,
+            has_sensor: false,
+            is_terse: false,
+            begins: BEGINS,
+            sender,
+            tag: 0,
+            sequence: 0,
+        }
     }
 
     /// The same with intersections on it.
@@ -71,14 +79,14 @@ impl Road {
         Self { is_terse: true, ..self }
     }
 
-    /// The same where the last vehicle is on the ego's street, and the one ahead of it on the crossing street.
-    pub fn with_last_on_lane(self) -> Self {
-        Self { has_last_on_lane: true, ..self }
-    }
-
     /// The same where all are so many millimetres further away from the intersections at the beginning.
     pub fn further_away(self, by: i64) -> Self {
         Self { begins: self.begins - by, ..self }
+    }
+
+    /// Whether a peer is on the ego's street.
+    pub fn is_on_lane(&self, peer: u8) -> bool {
+        !self.has_junctions || peer.is_multiple_of(2)
     }
 
     fn is_silent_about_itself(&self, peer: u8) -> bool {
@@ -124,8 +132,8 @@ impl Road {
         if !self.has_sensor || !at.as_micros().is_multiple_of(20_000) {
             return;
         }
-        // On the ego's street every other peer is, where there are intersections.
-        let ahead = if self.has_junctions && !self.has_last_on_lane { 2 } else { 1 };
+        // On the ego's street every other peer is, where there are intersections, and the last one is on the other.
+        let ahead = if self.has_junctions { 2 } else { 1 };
         let seen = RangeSample {
             distance: Distance::from_mm((SPACING * ahead) as i32).minus(LENGTH),
             speed_difference: Speed::ZERO,
@@ -170,7 +178,7 @@ impl Road {
         let ahead = SPACING * (i64::from(self.peers) - i64::from(place));
         let along = self.begins + ahead + i64::from(SPEED) * at.as_micros() as i64 / 1_000_000;
         let is_ego = place == self.peers;
-        Place { leg: if is_ego { 0 } else { (place + u8::from(self.has_last_on_lane)) % 2 }, along }
+        Place { leg: if is_ego || self.is_on_lane(place) { 0 } else { 1 }, along }
     }
 
     /// When a vehicle arrived: one after the other, and before the ego.
