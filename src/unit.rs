@@ -16,8 +16,8 @@
 //!         send     frames                                                         outbox
 //! ```
 //!
-//! Not every tick reviews, foresees and plans (`schedule`). From `decide` on the scene is only looked at, but `foresee` writes the own
-//! horizon into it, and `plan` the passes. ARCHITECTURE.md explains the order.
+//! Not every tick reviews, foresees and plans (`schedule`). From `decide` on the scene is only looked at, but `foresee` writes the opening
+//! of the time gap and the own horizon into it, and `plan` the passes. ARCHITECTURE.md explains the order.
 
 use embedded_can::Frame as CanFrame;
 use heapless::Vec;

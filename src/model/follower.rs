@@ -88,8 +88,8 @@ impl Follower {
         }
     }
 
-    /// The same follower, over the same steps and with the same speed for catching up, at another time gap. `K` stays: the controller too
-    /// takes an opened time gap as a predecessor that is nearer by so much.
+    /// Keeps another time gap from now on, over the same steps and with the same speed for catching up. `K` stays, as in the controller,
+    /// which takes an opened time gap as a predecessor that is nearer by so much.
     pub fn keep_time_gap(&mut self, step: Duration, time_gap: Seconds, catch_up: Option<Speed>) {
         let spacing = self.spacing.plus(self.saturation_offset);
         (self.half_gap, self.saturation_offset) = half_gap(step, time_gap, catch_up);

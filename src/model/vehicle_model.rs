@@ -140,7 +140,7 @@ pub struct Stride {
 }
 
 impl Stride {
-    /// Gives the follower another time gap, if it is one; its other constants stay. `vehicle` is what the stride was made of.
+    /// Gives the follower another time gap, if it is one; its other constants stay. Of the vehicle its speed for catching up is used.
     pub fn keep_time_gap(&mut self, vehicle: &VehicleModel, step: Duration, time_gap: Seconds, model: &Model) {
         if let (Course::Follow(follower), Aim::Follow { catch_up, .. }) = (&mut self.course, vehicle.aim) {
             follower.keep_time_gap(step, time_gap, model.limits.then_some(catch_up));

@@ -28,7 +28,8 @@ const FAR: Duration = Duration::from_millis(4_000);
 const REVIEWS: i64 = 8;
 const REVIEWS_FAR: i64 = 16;
 const FINEST_FAR: i64 = 4;
-/// Off a map the own horizon takes an opened time gap as the same for so long; on a map, from one review to the next.
+/// Off a map the own horizon takes an opened time gap as the same for so long. On a map it does from one review of its own to the next,
+/// which is up to 1.6 s.
 const PIECE: Duration = Duration::from_millis(1_000);
 /// So many changes of target, or of how gently to brake for it, are foreseen. Each takes the constants of another prediction step, and
 /// three more reviews.
@@ -87,6 +88,7 @@ pub(super) fn foresee<const PEERS: usize, const SAMPLES: usize, const STEPS: usi
                 comfort = may;
                 if is_new {
                     if opening.is_opened() {
+                        // By what is known of its silence now.
                         let on_lane = ahead.filter(|(_, is_on_lane)| *is_on_lane).map(|(peer, _)| peer.index);
                         opening.turn(review, scene.opens_behind(now, on_lane));
                     }
@@ -204,9 +206,10 @@ fn minded<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     minded
 }
 
-/// The vehicle that the ego will follow, and whether that is the one ahead on the ego's lane: by the order and the horizons as they are known now, at a step of the grid. A vehicle that
-/// registers in between is not known. The horizons are read at the step itself, where they take no interpolation; and beyond what is
-/// certain of a vehicle its horizon does not go, because the horizon keeps to the limits that this rests on.
+/// The vehicle that the ego will follow, at a step of the grid, and whether that is the one ahead on the ego's lane. Order and horizons are
+/// taken as they are known now; a vehicle that registers in between is not known. The horizons are read at the step itself, where they take
+/// no interpolation; and beyond what is certain of a vehicle its horizon does not go, because the horizon keeps to the limits that this
+/// rests on.
 fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     view: &Vantage<'_, PEERS, SAMPLES, STEPS>,
     step: i64,
@@ -246,7 +249,8 @@ fn outlook<const PEERS: usize, const SAMPLES: usize, const STEPS: usize>(
     let order = order.filter(|_| !(is_later && lane.is_some_and(|(_, crossing)| crossing != view.next)));
     let lane = lane.map(|(peer, _)| peer).filter(|peer| view.is_heeded(peer));
     let target = view.choose(order, lane, followed)?;
-    Some((target, lane.is_some_and(|lane| lane.index == target.index)))
+    let is_on_lane = |lane: Candidate| lane.index == target.index && coordination.choice().leading.contains(lane.index);
+    Some((target, lane.is_some_and(is_on_lane)))
 }
 
 /// Whether a station was ahead at the last review, and still is by what it has said since then.

@@ -9,8 +9,8 @@
 //! * a larger time gap that is wanted takes the place of as much that was opened.
 //!
 //! It goes on between own motions, so that no demand jumps. With the tables of gains the string is as stable at every larger gap. The own
-//! horizon is computed with the gap as it will be if it goes on like that: others know of the opening by it. Those that lost the horizon
-//! know the time gap that is told.
+//! horizon is computed with the gap as it will be if it goes on like that, and turns where the target is foreseen to change: others know of
+//! the opening by it. Those that lost the horizon know the time gap that is told.
 
 use crate::fixed::quotient;
 use crate::held::Held;
@@ -30,7 +30,7 @@ pub(super) struct Opening {
     /// The most that it may be.
     most: Duration,
     opens: bool,
-    /// Since when it opens or closes by what it is opened now: the last own motion, or a turn that is foreseen.
+    /// When it was opened by `by`: at the last own motion, or at a foreseen turn.
     at: Held<Instant>,
 }
 
@@ -73,7 +73,7 @@ impl Opening {
         self.opens || self.by > Duration::ZERO
     }
 
-    /// By how much it will be opened at an instant after the last own motion, if it goes on like that.
+    /// By how much it will be opened at a later instant, if it goes on like that.
     pub fn later(&self, at: Instant) -> Seconds {
         self.after(self.at.get().map_or(Duration::ZERO, |last| at.since(last))).seconds()
     }

@@ -200,8 +200,8 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Scene<PEERS, 
         }
     }
 
-    /// Whether the time gap opens behind this target on the ego's lane, because there has been no news of it for too long. A vehicle that comes
-    /// by another leg is none that the ego keeps a time gap to yet.
+    /// Whether the time gap opens behind this target, because there has been no news of it for too long. Ask it only of a target on the ego's
+    /// lane: one that comes by another leg is none that the ego keeps a time gap to yet.
     pub fn opens_behind(&self, now: Instant, target: Option<usize>) -> bool {
         let unheard = target.and_then(|index| self.peers.get(index)?.link().silence(now));
         let is_unseen = || self.ranging.unseen(now).is_none_or(|unseen| unseen > OPENS_AFTER);

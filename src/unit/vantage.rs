@@ -99,7 +99,7 @@ impl<const PEERS: usize, const SAMPLES: usize, const STEPS: usize> Vantage<'_, P
         }
         let law = &self.scene.config.law;
         let coasts = self.front.ahead(self.speed.over(self.scene.time_gap())).ahead(self.speed.over(law.damping));
-        // For a lane vehicle behind which the ego need not brake it does not matter how gently it may: that takes two divisions.
+        // Where the ego need not brake for the vehicle on the lane, no limit matters. To compute it takes two divisions.
         coasts <= asks_ahead || {
             let gentle = self.comfort(Some(first.index)).limit(Acceleration::MAX);
             gentle == Acceleration::MAX || coasts.ahead(braked_over(gentle, law.gain)) <= asks_ahead

@@ -146,8 +146,8 @@ fn one_that_turns_off_is_followed_to_the_area_and_slows_nobody_beyond_it() {
     }
 }
 
-/// How far off the ego was foreseen 4 s before, at most, in 3.5 s in which it follows the one that goes on. Before that it followed the one
-/// that turns off, and had heard nothing of that one for 12 s.
+/// The largest error with which the ego was foreseen 4 s before, while it follows the one that goes on. Before that it follows the one that
+/// turns off, and hears nothing of that one for 11 s.
 fn farthest_off(hears_the_other: bool) -> f64 {
     let mut junction = Junction::new(Vec::new());
     for (itinerary, station, at, target_speed) in
@@ -168,9 +168,12 @@ fn farthest_off(hears_the_other: bool) -> f64 {
     junction.drivers[2].hears = hears_the_other;
     junction.drivers[2].deaf_to = Some(1);
     let (mut told, mut farthest, mut followed) = (Vec::new(), 0.0f64, Vec::new());
-    for _ in 0..155 {
+    // Up to the end of the holdover, 15 s after the last message.
+    for _ in 0..148 {
         junction.run(0.1, |_| {});
         let ego = &junction.drivers[2];
+        let mode = ego.rig.unit.mode();
+        assert!(mode.is_by_law(), "{mode:?}");
         if let Some((_, place)) = told.iter().find(|(due, _)| *due == junction.now) {
             let off: f64 = place - ego.body.position;
             farthest = if ego.follows() == Some(2) { farthest.max(off.abs()) } else { 0.0 };
@@ -183,7 +186,7 @@ fn farthest_off(hears_the_other: bool) -> f64 {
     let before = followed.iter().position(|followed| *followed == Some(2)).expect("it is followed");
     let (turns_off, goes_on) = followed.split_at(before);
     assert!(turns_off.len() > 110 && turns_off.iter().all(|followed| *followed == Some(3)), "{turns_off:?}");
-    assert!(goes_on.len() >= 35 && goes_on.iter().all(|followed| *followed == Some(2)), "{goes_on:?}");
+    assert!(goes_on.len() >= 30 && goes_on.iter().all(|followed| *followed == Some(2)), "{goes_on:?}");
     farthest
 }
 

@@ -79,8 +79,8 @@ Figures:
               the sensor's speed; without pairs whose vehicle ahead had run into
               another before: a collision stops nobody in the simulation
   known at once
-              the same, had it begun to brake in the moment in which the one ahead
-              did, of which nobody can know
+              the same, had it begun to brake in the moment in which the one
+              ahead did; nobody can know that moment
 
 Output:
   Results go to stdout, as a table or with --json as one JSON value; progress

@@ -62,7 +62,8 @@ fn table(page: &mut Page, rows: &[Row]) {
     let caption = "The worst of all runs. Jerk is the largest change of acceleration within 0.1 s, while a vehicle moves. There is \
                    no smallest gap where vehicles met. A collision was avoidable if the vehicle behind could have come to rest by the \
                    limits of its law and with its lag, had it begun to brake 0.1 s after the one ahead had lost 0.1 m/s, the largest \
-                   error of the sensor's speed; known at once: had it begun in the moment in which the one ahead did. Pairs whose vehicle ahead had run into another before are never counted as avoidable.";
+                   error of the sensor's speed. The last column counts the same, had it begun in the moment in which the one ahead \
+                   did. Pairs whose vehicle ahead had run into another before are never counted as avoidable.";
     page.table(caption, &header, &rows.iter().flat_map(group).collect::<Vec<_>>());
 }
 

@@ -23,7 +23,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
         line(&mut text, &Default::default(), "off", &cells(&row.off));
         line(&mut text, &Default::default(), "on", &cells(&row.on));
     }
-    text.push_str("avoidable: pairs in which the vehicle behind could have come to rest, had it begun to brake in time (--help)\n");
+    text.push_str("avoidable: pairs in which the vehicle behind could have come to rest, had it begun to brake in time, or\nhad it known of the braking at once (--help)\n");
     let _ = writeln!(text, "{}", Verdict::of(failures).line(failures));
     text
 }

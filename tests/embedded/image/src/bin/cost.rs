@@ -103,12 +103,12 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             *most = bench.second(number, kind).max(*most);
         }
         let [usual, all, horizons, passes] = cycle;
-        let (frames, deep) = (bench.frames, stack::depth(bench.top) as u32);
+        let (frames, mut deep) = (bench.frames, stack::depth(bench.top));
         // The first seconds with horizons, from many places; behind what is heard, and after a silence in which the time gap has opened.
         let mut first = |by: i64, silence: u64| {
             begin(bench.unit);
             let mut bench = Bench::new(bench.unit, counter, road().further_away(by + 11_000 * silence as i64));
-            // Whom the ego follows on its street it opens the gap behind.
+            // The gap opens only behind a vehicle on the ego's street.
             let before = if silence > 0 { Traffic::LANE } else { Traffic::USUAL };
             for number in 0..3 {
                 bench.second(number, before);
@@ -119,7 +119,10 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             // At the smaller gap of a sensor nobody on the street is near enough to be followed, where there are intersections.
             let opens = silence > 0 && !(has_map && has_sensor);
             assert!((bench.time_gap > config.law.time_gap) == opens, "{}", bench.time_gap.to_millis());
-            (3..6).map(|number| bench.second(number + silence, Traffic::HORIZONS).any).max().unwrap_or(0)
+            stack::paint();
+            let most = (3..6).map(|number| bench.second(number + silence, Traffic::HORIZONS).any).max().unwrap_or(0);
+            deep = stack::depth(bench.top).max(deep);
+            most
         };
         let (mut heard, mut opened) = (0, 0);
         for by in (0..if has_map { 90_000 } else { 1 }).step_by(1_000) {
@@ -135,7 +138,10 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             for number in (3..3 + silence).filter(|_| has_ticks) {
                 bench.second(number, Traffic::SILENCE);
             }
-            bench.second(3 + silence, traffic).any
+            stack::paint();
+            let most = bench.second(3 + silence, traffic).any;
+            deep = stack::depth(bench.top).max(deep);
+            most
         };
         let stale = config.link.stale.as_millis();
         let oldest = stale - 100;
@@ -157,7 +163,7 @@ fn drive(unit: &mut OnboardUnit<8, 8, CAPACITY>, counter: &Counter) {
             ("pause", after(3, false, Traffic::TOGETHER)),
         ];
         let worst = rows.iter().map(|(_, count)| *count).max().unwrap_or(0);
-        let others = [("worst", worst), ("receive", frames.most), ("bus", frames.full_bus), ("stack", deep)];
+        let others = [("worst", worst), ("receive", frames.most), ("bus", frames.full_bus), ("stack", deep as u32)];
         for (row, count) in rows.into_iter().chain(others) {
             say(format_args!("{name}-{row} 8 359 {count}"));
         }
