@@ -5,6 +5,11 @@ use std::fmt::Write;
 use super::rows::{Comfort, Row, Side};
 use crate::verdict::Verdict;
 
+const NOTES: &str =
+    "avoidable: pairs in which the vehicle behind could have come to rest, had it begun to brake in time;
+known at once: the same, had it begun with the vehicle ahead (--help)
+";
+
 /// The table.
 #[must_use]
 pub fn text(rows: &[Row], failures: &[String]) -> String {
@@ -23,7 +28,7 @@ pub fn text(rows: &[Row], failures: &[String]) -> String {
         line(&mut text, &Default::default(), "off", &cells(&row.off));
         line(&mut text, &Default::default(), "on", &cells(&row.on));
     }
-    text.push_str("avoidable: pairs in which the vehicle behind could have come to rest, had it begun to brake in time, or\nhad it known of the braking at once (--help)\n");
+    text.push_str(NOTES);
     let _ = writeln!(text, "{}", Verdict::of(failures).line(failures));
     text
 }
