@@ -86,6 +86,15 @@ class Page:
             time.sleep(0.02)
         return False
 
+    def show_on(self, run_seconds, seconds=60):
+        """Waits until so much of the run was shown. On a busy machine the scene may still be that of before, and then jump."""
+        end, shown, before = time.monotonic() + seconds, 0, self.read("state.scene.at_s")
+        while shown < run_seconds and time.monotonic() < end:
+            time.sleep(0.02)
+            now = self.read("state.scene.at_s")
+            shown += now - before if 0 < now - before < 2 else 0
+            before = now
+
     def seen(self, vehicle, what):
         return self.read(f"state.scene.byId.get({vehicle})?.{what}")
 

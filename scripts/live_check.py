@@ -76,15 +76,14 @@ def the_tour(page):
     for step, seconds in enumerate([2, 8, 6, 6, 16], start=1):
         page.click("#tour-next")
         holds(f"step {step} of the tour", page.until(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')"))
-        began = page.read("state.scene.at_s")
-        page.until(f"state.scene.at_s < {began} || state.scene.at_s > {began + seconds}")
+        page.show_on(seconds)
         if step == 1:
             holds("the sliders say what the step has set", page.until("document.getElementById('delay-said').textContent === '0 ms'"))
         if step == 5: # to be seen by others, and past the first second, which does not count
             page.keyboard.press("ArrowDown", delay=1500)
             holds("a key drives the leader in it", page.seen(0, "is_driven"))
         if step == 4:
-            page.until(f"state.scene.at_s > {began + 0.5}")
+            page.show_on(0.5)
             page.screenshot(path=f"{FOLDER}/without.png")
     page.click("#tour-next")
     page.wait_for_selector("#tour-figures:not([hidden])")
