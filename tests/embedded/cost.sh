@@ -12,7 +12,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 cargo build --locked --quiet --profile firmware --target $target -p holdover-image --bin cost
-timeout 300 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial none \
+timeout 900 qemu-system-arm -M netduinoplus2 -nographic -monitor none -serial none \
     -semihosting-config enable=on,target=native -icount shift=6,align=off,sleep=off \
     -kernel "${CARGO_TARGET_DIR:-target}/$target/firmware/cost" >"$work/counts" || {
     echo "cost: the program failed in the emulator; its last words:"
@@ -127,7 +127,7 @@ tables() {
             row("send tick, no news", "send")
             row("send tick, all peers new", "all")
             row("the same, with their horizons", "horizons")
-            row("seconds 4 to 6 with horizons, from 90 places", "first")
+            row("seconds 4 to 6 with horizons, 135 drives", "first")
             row("such seconds with an opened time gap", "opened")
             row("passes of 20 stations", "passes")
             row("samples of 0.3 s ago", "late-0.3")

@@ -41,6 +41,7 @@ pub struct Road {
     has_sensor: bool,
     is_terse: bool,
     begins: i64,
+    spacing: i64,
     sender: Sender<8>,
     tag: u8,
     sequence: u8,
@@ -58,6 +59,7 @@ impl Road {
             has_sensor: false,
             is_terse: false,
             begins: BEGINS,
+            spacing: SPACING,
             sender,
             tag: 0,
             sequence: 0,
@@ -82,6 +84,11 @@ impl Road {
     /// The same where all are so many millimetres further away from the intersections at the beginning.
     pub fn further_away(self, by: i64) -> Self {
         Self { begins: self.begins - by, ..self }
+    }
+
+    /// The same with so many millimetres from front bumper to front bumper.
+    pub fn spaced_by(self, spacing: i64) -> Self {
+        Self { spacing, ..self }
     }
 
     /// Whether a peer is on the ego's street.
@@ -135,7 +142,7 @@ impl Road {
         // On the ego's street every other peer is, where there are intersections, and the last one is on the other.
         let ahead = if self.has_junctions { 2 } else { 1 };
         let seen = RangeSample {
-            distance: Distance::from_mm((SPACING * ahead) as i32).minus(LENGTH),
+            distance: Distance::from_mm((self.spacing * ahead) as i32).minus(LENGTH),
             speed_difference: Speed::ZERO,
             distance_accuracy: Distance::from_mm(250),
             speed_accuracy: Speed::from_mm_per_s(100),
@@ -175,7 +182,7 @@ impl Road {
     }
 
     fn place(&self, at: Instant, place: u8) -> Place {
-        let ahead = SPACING * (i64::from(self.peers) - i64::from(place));
+        let ahead = self.spacing * (i64::from(self.peers) - i64::from(place));
         let along = self.begins + ahead + i64::from(SPEED) * at.as_micros() as i64 / 1_000_000;
         let is_ego = place == self.peers;
         Place { leg: if is_ego || self.is_on_lane(place) { 0 } else { 1 }, along }
