@@ -228,14 +228,20 @@ for name in "$@"; do
 done
 [ $# -gt 0 ] && steps=("$@")
 
-passed=0 failed=0 not_run=0 summary=
+passed=0 failed=0 not_run=0 summary= ends=
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
 exec 2>&1 # one stream, so that a log keeps the order
 scripts/install-rust.sh || true # what is missing then fails its steps, by name
 for name in "${steps[@]}"; do
     printf '\n==> %s\n' "$name"
     started=$SECONDS
     code=0
-    bash "$PWD/ci.sh" --one "$name" || code=$?
+    exec 3> >(tee "$log")
+    bash "$PWD/ci.sh" --one "$name" >&3 2>&3 3>&- || code=$?
+    exec 3>&-
+    # The end of its output, but not longer than this: a program that a step has left behind would keep it open.
+    timeout 10 tail --pid=$! -s 0.1 -f /dev/null || true
     if [ "$code" = 0 ]; then
         verdict=passed passed=$((passed + 1))
     elif [ "$code" = "$skipped" ] && [ "${CI:-}" != true ]; then
@@ -244,9 +250,11 @@ for name in "${steps[@]}"; do
         verdict='FAILED (skipped, which CI does not allow)' failed=$((failed + 1))
     else
         verdict="FAILED (exit code $code)" failed=$((failed + 1))
+        # Where only the end of a long log is kept, this is what says why.
+        ends+=$(printf '\n==> the end of %s, which failed\n' "$name" && tail -n 30 "$log")$'\n'
     fi
     summary+=$(printf '%-8s %4d s  %s' "$name" $((SECONDS - started)) "$verdict")$'\n'
 done
 
-printf '\n==> summary\n%s%d passed, %d failed, %d skipped\n' "$summary" "$passed" "$failed" "$not_run"
+printf '%s\n==> summary\n%s%d passed, %d failed, %d skipped\n' "$ends" "$summary" "$passed" "$failed" "$not_run"
 [ "$failed" = 0 ]
