@@ -13,6 +13,7 @@ const set = (part, on) => order({ do: "switch", vehicle: null, part, on });
 const STEPS = [
   {
     name: "perfect link",
+    goesBack: true,
     text: "1. A perfect link. Every message arrives at once. The dashed outline is the vehicle ahead as its follower believes it to be; the " +
       "band is what is certain. Range sensors and envelope are off, as in the paper: the vehicles know one another by messages alone.",
     async begin() {
@@ -45,6 +46,7 @@ const STEPS = [
   {
     name: "without the estimate",
     isPlain: true,
+    goesBack: true,
     text: "4. The same four seconds without the estimate. Time goes back to where the silence began. Who hears nothing takes the newest " +
       "message as it stands, brakes behind a vehicle that is not there any more, and everyone behind brakes too.",
     async begin(state) {
@@ -77,6 +79,7 @@ export function tour(state) {
   let at = -1; // before the first step
   let figures = STEPS.map(() => null);
   let settledS = Infinity; // figures count from then on
+  let backFromS = -Infinity; // an earlier scene than this is the first one after time went back; those on their way until then are of before
 
   function show() {
     const step = STEPS[at];
@@ -109,10 +112,11 @@ export function tour(state) {
     if (at === 0) figures = STEPS.map(() => null);
     settledS = Infinity;
     if (at < STEPS.length) {
+      const step = STEPS[at];
+      backFromS = step.goesBack ? Math.max(state.scene.at_s, 0.5) : -Infinity;
       await order({ do: "play" });
-      await STEPS[at].begin(state);
-      // The engine is at the step's beginning now; a new start is heard of a moment later.
-      settledS = (at === 0 ? 0 : state.scene.at_s) + 1;
+      await step.begin(state);
+      if (!step.goesBack) settledS = state.scene.at_s + 1;
     }
     show();
   };
@@ -121,6 +125,7 @@ export function tour(state) {
   return {
     // The estimate of the ego by its follower, or by the ego of the vehicle ahead.
     take(scene) {
+      if (scene.at_s < backFromS) [backFromS, settledS] = [-Infinity, scene.at_s + 1];
       if (at < 0 || at >= STEPS.length || scene.at_s < settledS) return;
       const ego = state.cast.ego;
       const by = ego + 1 < scene.vehicles.length ? ego + 1 : ego;
