@@ -8,12 +8,13 @@
 
 use holdover::Config;
 use holdover::model::Body;
+use holdover::parameters::FEED_FORWARD;
 use holdover::units::{Acceleration, Jerk};
 use holdover::wire::StationHash;
 use holdover::wire::driving_parameters::Limits;
 
 /// A kind of vehicle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Kind {
     /// A car of 1.5 t with 100 kW.
     #[default]
@@ -88,6 +89,13 @@ impl Kind {
             Self::Van => 0.4,
             Self::Bus => 0.5,
         }
+    }
+
+    /// The share of the acceleration ahead that its unit feeds forward, with a range sensor or without. A bus feeds nothing forward: its
+    /// jerk is limited to half of a car's, so what it adds when the vehicle ahead stops braking comes too late.
+    #[must_use]
+    pub fn feed_forward(self, has_sensor: bool) -> f64 {
+        if has_sensor && self != Self::Bus { FEED_FORWARD.get().to_num() } else { 0.0 }
     }
 
     /// Largest force of its engine, from standstill on: 4, 3 and 1.6 m/s².

@@ -159,6 +159,36 @@ fn in_a_mixed_string_the_vehicles_that_a_unit_drives_damp_a_step_and_nobody_is_h
 }
 
 #[test]
+fn vans_and_buses_need_a_longer_time_gap_than_cars() {
+    let ratio = |kinds: &str, time_gap_s: f64| {
+        let link = "--delays 0 --losses 0 --step-only --range-sensors on";
+        let row = rows(&format!("{link} --kinds {kinds} --time-gaps {time_gap_s}")).remove(0);
+        assert_eq!((row.collisions, row.not_following), (0, 0), "{kinds}, {time_gap_s} s");
+        row.holdover.unwrap().ratio
+    };
+    assert!(ratio("car", 0.8) <= LIMIT);
+    assert!(ratio("van", 0.8) > LIMIT && ratio("van", 1.0) <= LIMIT);
+    assert!(ratio("bus", 1.0) > LIMIT && ratio("bus", 1.4) <= LIMIT);
+    // The third follower is the bus.
+    let mixed =
+        rows("--delays 0 --losses 0 --step-only --range-sensors on --kinds car,van,bus --time-gaps 0.8").remove(0);
+    assert_eq!(mixed.holdover.unwrap().vehicle, 3);
+}
+
+#[test]
+fn the_kinds_are_in_the_results_and_a_kind_that_is_none_is_refused() {
+    let output = string("--kinds car,bus --delays 0 --losses 0 --step-only --json --no-report");
+    let results: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(results["kinds"], serde_json::json!(["car", "bus"]));
+    let none = "has no value; give one";
+    for (kinds, message) in [("tram", "is \"tram\"; give one of car, van, bus"), ("", none), ("car,", none)] {
+        let output = string(&format!("--kinds={kinds} --no-report"));
+        assert_eq!(String::from_utf8_lossy(&output.stderr), format!("error: --kinds: {message}\n"), "{kinds}");
+        assert_eq!((output.status.code(), output.stdout.len()), (Some(2), 0), "{kinds}");
+    }
+}
+
+#[test]
 fn a_mixture_that_cannot_be_is_refused_with_option_cause_and_remedy() {
     let cases = [
         ("--people 0", "--people: vehicle 0 is none of the followers; give followers, from 1 to 10"),

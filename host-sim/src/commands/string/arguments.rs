@@ -3,6 +3,7 @@
 use clap::Args;
 
 use crate::commands::ending::OutputArguments;
+use crate::input::kind::Kind;
 use crate::input::scenario::SensorShare;
 
 /// The arguments of `string`.
@@ -51,6 +52,10 @@ pub struct StringArguments {
     #[arg(long, value_name = "on|off|SHARE", allow_negative_numbers = true, default_value = "off")]
     pub range_sensors: SensorShare,
 
+    /// Kinds of the ten followers, which take turns
+    #[arg(long, value_name = "KIND,…", value_delimiter = ',', default_value = "car")]
+    pub kinds: Vec<Kind>,
+
     /// Followers, from 1 to 10, that a person drives and that tell their states alone
     #[arg(long, value_name = "VEHICLE,…", value_delimiter = ',', allow_negative_numbers = true)]
     pub people: Vec<usize>,
@@ -80,12 +85,17 @@ Examples:
   holdover-sim string --delays 0,0.025,0.05 --losses 0,0.1 --seeds 5
   holdover-sim string --delays 0.05 --losses 0.1 --frequencies 0.1,0.2
   holdover-sim string --range-sensors on --people 2,7 --unequipped 4
+  holdover-sim string --range-sensors on --kinds car,van,bus
 
 Runs:
   Ten vehicles behind a leader at 15 m/s that says where it is, but not how it
   will drive. It slows down by 2 m/s, or its speed goes up and down at one
   frequency, by 2 m/s or as much as 1 m/s² makes of it. Every message takes the
   delay, and the share is lost at random.
+
+  The followers are cars with a lag of 0.3 s. Vans have one of 0.4 s and buses
+  one of 0.5 s. They drive by the limits of their kind, and with a range sensor
+  all but buses feed half of the acceleration ahead forward.
 
 Mixed strings:
   A person drives by the Intelligent Driver Model, 1.5 s behind what is really

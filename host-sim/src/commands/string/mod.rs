@@ -35,6 +35,8 @@ struct Results<'a> {
     range_sensors: bool,
     /// The share of the followers that have one.
     range_sensor_share: f64,
+    /// The kinds of the followers, each in turn.
+    kinds: Vec<&'static str>,
     /// The followers that a person drives and that tell their states.
     people: &'a [usize],
     /// The followers without a unit.
@@ -66,6 +68,7 @@ pub fn run(options: &StringOptions) -> Result<Verdict, Error> {
         limit: rows::LIMIT,
         range_sensors: options.range_sensors.is_all(),
         range_sensor_share: options.range_sensors.share(),
+        kinds: options.kinds.iter().map(|kind| kind.name()).collect(),
         people: &options.mixture.people,
         unequipped: &options.mixture.unequipped,
         shipped_time_gap_s: options::shipped_time_gap_s(SensorShare::NONE),

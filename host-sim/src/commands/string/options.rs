@@ -7,6 +7,7 @@ use super::disturbance::Disturbance;
 use super::mixture::Mixture;
 use crate::commands::ending::Destination;
 use crate::error::Error;
+use crate::input::kind::Kind;
 use crate::input::scenario::SensorShare;
 use crate::seeds;
 
@@ -28,6 +29,8 @@ pub struct StringOptions {
     pub disturbances: Vec<Disturbance>,
     /// The share of the followers that have a range sensor.
     pub range_sensors: SensorShare,
+    /// The kinds of the followers, each in turn; at least one.
+    pub kinds: Vec<Kind>,
     /// Who drives the followers.
     pub mixture: Mixture,
     /// The first seed of the losses.
@@ -51,6 +54,7 @@ impl StringOptions {
             frequencies,
             step_only,
             range_sensors,
+            kinds,
             people,
             unequipped,
             seed,
@@ -73,6 +77,7 @@ impl StringOptions {
             losses,
             disturbances,
             range_sensors,
+            kinds,
             mixture,
             seed,
             seeds,
@@ -87,6 +92,12 @@ impl StringOptions {
         if loss > 0.0 { self.seeds.unwrap_or(usual) } else { 1 }
     }
 
+    /// Whether every follower is a car.
+    #[must_use]
+    pub fn has_cars_alone(&self) -> bool {
+        self.kinds.iter().all(|kind| *kind == Kind::Car)
+    }
+
     /// The command that repeats this.
     #[must_use]
     pub fn command(&self) -> String {
@@ -95,9 +106,11 @@ impl StringOptions {
             self.disturbances.iter().filter_map(|disturbance| disturbance.frequency_hz()).collect();
         let sines =
             if frequencies.is_empty() { "--step-only".into() } else { format!("--frequencies {}", list(&frequencies)) };
+        let kinds: Vec<&str> = self.kinds.iter().map(|kind| kind.name()).collect();
+        let kinds = if self.has_cars_alone() { String::new() } else { format!(" --kinds {}", kinds.join(",")) };
         let seeds = self.seeds.map_or(String::new(), |seeds| format!(" --seeds {seeds}"));
         format!(
-            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --range-sensors {}{} --seed {}{seeds}",
+            "holdover-sim string --time-gaps {} --delays {} --losses {} {sines} --range-sensors {}{kinds}{} --seed {}{seeds}",
             list(&self.time_gaps_s),
             list(&self.delays_s),
             list(&self.losses),

@@ -23,6 +23,10 @@ pub fn render(options: &StringOptions, rows: &[Row], failures: &[String]) -> Pag
     let passed = format!("With holdover no ratio is above {LIMIT} in {}.", runs(options, rows));
     page.verdict(failures.is_empty(), &if failures.is_empty() { vec![passed] } else { failures.to_vec() });
     page.paragraph(WHAT);
+    if !options.has_cars_alone() {
+        let kinds: Vec<&str> = options.kinds.iter().map(|kind| kind.name()).collect();
+        page.paragraph(&format!("The followers are of these kinds, in turn: {}.", kinds.join(", ")));
+    }
     if options.mixture.is_mixed() {
         page.paragraph(MIXED);
     }

@@ -186,7 +186,7 @@ fn is_above(worst: &Option<Worst>) -> bool {
 
 fn outcome(place: Place, disturbance: Disturbance, seed: u64, options: &StringOptions) -> Result<Outcome, Error> {
     let mixture = &options.mixture;
-    let scenario = scenario(place, disturbance, options.range_sensors, mixture)?;
+    let scenario = scenario(place, disturbance, options.range_sensors, &options.kinds, mixture)?;
     let (trace, summary) = simulate(&scenario, seed, None, |_| {})?;
     let units = Speeds::of(&trace, scenario.period_s);
     // The others drive every vehicle of a string, or none.

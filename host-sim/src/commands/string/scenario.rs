@@ -1,13 +1,12 @@
-//! The scenario of a string: time gap, link, disturbance and drivers enter; the scenario leaves, in which every vehicle starts at the gap
-//! that it keeps, and at the same speed.
+//! The scenario of a string: time gap, link, disturbance, kinds and drivers enter; the scenario leaves, in which every vehicle starts at
+//! the gap that it keeps, and at the same speed.
 
 use std::path::Path;
-
-use holdover::parameters::FEED_FORWARD;
 
 use super::disturbance::{CRUISE_MPS, Disturbance};
 use super::mixture::Mixture;
 use crate::error::Error;
+use crate::input::kind::Kind;
 use crate::input::scenario::{Driver, MAX_VEHICLES, Overrides, Scenario, SensorShare};
 use crate::sim::person::Manner;
 
@@ -31,18 +30,19 @@ pub fn scenario(
     (time_gap_s, delay_s, loss): Place,
     disturbance: Disturbance,
     sensors: SensorShare,
+    kinds: &[Kind],
     mixture: &Mixture,
 ) -> Result<Scenario, Error> {
     let duration_s = disturbance.duration_s();
     let common = format!("speed_mps = {CRUISE_MPS}\nposition_accuracy_m = 0.05\nspeed_accuracy_mps = 0.02\n");
+    let kind = |vehicle: usize| kinds[(vehicle - 1) % kinds.len()];
     let by_hand = |driver: &str| {
         let manner = Manner { wanted_mps: FREE_MPS, time_gap_s: PERSONS_GAP_S, standstill_m: STANDSTILL_M };
         let gap_m = manner.steady_gap_m(CRUISE_MPS);
         format!("driver = \"{driver}\"\ngap_m = {gap_m}\ntime_gap_s = {PERSONS_GAP_S}\n")
     };
     let by_unit = |vehicle: usize, kept_s: f64| {
-        // As `Config::with_range_sensor` has it.
-        let feed_forward: f64 = if sensors.has(vehicle) { FEED_FORWARD.get().to_num() } else { 0.0 };
+        let feed_forward = kind(vehicle).feed_forward(sensors.has(vehicle));
         let gap_m = STANDSTILL_M + CRUISE_MPS * kept_s;
         format!("gap_m = {gap_m}\ntime_gap_s = {time_gap_s}\nfeed_forward = {feed_forward}\n")
     };
@@ -54,7 +54,7 @@ pub fn scenario(
             Driver::Unit if is_unheard => by_unit(vehicle, time_gap_s.max(UNHEARD_GAP_S)),
             Driver::Unit => by_unit(vehicle, time_gap_s),
         };
-        format!("[[vehicle]]\n{drives}{common}")
+        format!("[[vehicle]]\nkind = \"{}\"\n{drives}{common}", kind(vehicle).name())
     };
     let ego = mixture.first_unit().unwrap_or(1);
     let followers: String = (1..MAX_VEHICLES).map(follower).collect();

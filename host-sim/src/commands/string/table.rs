@@ -108,10 +108,13 @@ pub fn runs(options: &StringOptions, rows: &[Row]) -> String {
     };
     let sine = options.disturbances.iter().copied().find(|disturbance| disturbance.frequency_hz().is_some());
     let of: Vec<String> = std::iter::once(Disturbance::Step).chain(sine).map(most).collect();
-    let runs: usize = rows.iter().map(|row| row.runs).sum();
+    let runs = match rows.iter().map(|row| row.runs).sum::<usize>() {
+        1 => "1 run".to_owned(),
+        runs => format!("{runs} runs"),
+    };
     let is_drawn = options.losses.iter().any(|loss| *loss > 0.0);
     let once = if is_drawn && options.losses.contains(&0.0) { ", where nothing is lost with 1" } else { "" };
-    format!("{runs} runs, {}{once}, from seed {} on", of.join(" and "), options.seed)
+    format!("{runs}, {}{once}, from seed {} on", of.join(" and "), options.seed)
 }
 
 /// A ratio to four digits.
