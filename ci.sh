@@ -229,18 +229,18 @@ done
 [ $# -gt 0 ] && steps=("$@")
 
 passed=0 failed=0 not_run=0 summary= ends=
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+logs=$(mktemp -d)
+trap 'rm -rf "$logs"' EXIT
 exec 2>&1 # one stream, so that a log keeps the order
 scripts/install-rust.sh || true # what is missing then fails its steps, by name
 for name in "${steps[@]}"; do
     printf '\n==> %s\n' "$name"
     started=$SECONDS
     code=0
-    exec 3> >(tee "$log")
+    exec 3> >(tee "$logs/$name")
     bash "$PWD/ci.sh" --one "$name" >&3 2>&3 3>&- || code=$?
     exec 3>&-
-    # The end of its output, but not longer than this: a program that a step has left behind would keep it open.
+    # Waits for the end of its output, for 10 s at most: a program that the step left behind keeps it open.
     timeout 10 tail --pid=$! -s 0.1 -f /dev/null || true
     if [ "$code" = 0 ]; then
         verdict=passed passed=$((passed + 1))
@@ -250,9 +250,9 @@ for name in "${steps[@]}"; do
         verdict='FAILED (skipped, which CI does not allow)' failed=$((failed + 1))
     else
         verdict="FAILED (exit code $code)" failed=$((failed + 1))
-        # Where only the end of a long log is kept, this is what says why.
-        ends+=$(printf '\n==> the end of %s, which failed\n' "$name" && tail -n 30 "$log")$'\n'
     fi
+    # Where only the end of a long log is kept, this is what says why.
+    [[ "$verdict" != FAILED* ]] || ends+=$(printf '\n==> the end of %s, which failed\n' "$name" && tail -n 30 "$logs/$name")$'\n'
     summary+=$(printf '%-8s %4d s  %s' "$name" $((SECONDS - started)) "$verdict")$'\n'
 done
 

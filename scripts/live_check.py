@@ -84,6 +84,8 @@ def the_tour(page):
     for step, seconds in enumerate([2, 8, 6, 6, 16], start=1):
         page.click("#tour-next")
         holds(f"step {step} of the tour", page.until(f"document.getElementById('tour-text').textContent.startsWith('{step}. ')"))
+        if step == 1:
+            page.until("state.scene.at_s < 1.5")
         page.show_on(seconds)
         if step == 1:
             holds("the sliders say what the step has set", page.until("document.getElementById('delay-said').textContent === '0 ms'"))
@@ -98,6 +100,7 @@ def the_tour(page):
     rows = page.eval_on_selector_all("#tour-figures tbody tr", "(rows) => rows.map((row) => [...row.cells].map((cell) => cell.textContent))")
     print("\n".join("  " + "  ".join(row) for row in rows))
     figures = {name: (ours, theirs) for name, ours, _, theirs in rows}
+    holds("each step has figures of its own", all(ours != "–" for ours, _ in figures.values()) and float(figures["perfect link"][0]) < 0.05)
     holds("its figures stand beside the paper's", all(figures[name][1] == "0.50" for name in ("4 s of silence", "you drive"))
           and float(figures["4 s of silence"][0]) < 0.5 and float(figures["without the estimate"][0]) > 5 and figures["you drive"][0] != "–")
     page.order('{"do":"pace","factor":1}')
@@ -118,7 +121,7 @@ def main():
         page.close()
         page = Page(browser, address, LATE)
         the_tour(page)
-        holds(f"where scenes are late too {page.faults}", page.faults == [])
+        holds(f"nor where scenes are late {page.faults}", page.faults == [])
 
 
 main()

@@ -85,13 +85,13 @@ pub const DAMPING: Seconds = Seconds::from_millis(2000);
 /// A follower that begins to slow down `L` after the one ahead, and as gently, loses `L Δv` of the gap, while the gap that it
 /// wants shrinks by `t_g Δv`. With more than that lost it has to drive slower than the one ahead to open the gap again, and
 /// passes on more than it got. `L` is the delay, the messages lost in a row, and what jerk limit and lag take. This is the
-/// smallest whole tenth of a second at which ten vehicles pass on at most 1.01 times what they got of a step of their leader,
+/// smallest whole tenth of a second at which ten cars pass on at most 1.01 times what they got of a step of their leader,
 /// whatever is late by up to 0.2 s and lost up to 40 %, in 40 draws each; `holdover-sim string` measures it.
 pub const TIME_GAP: Seconds = Seconds::from_millis(1_600);
 
-/// The time gap of a vehicle with a range sensor, which sees the braking ahead before it is heard: a tenth of a second more than the
-/// smallest that keeps to that limit with feed-forward, by `holdover-sim string --range-sensors on`. The sensor there looks 50 times a
-/// second, without faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold.
+/// The time gap of a car with a range sensor, which sees the braking ahead before it is heard: the smallest tenth of a second that keeps
+/// to that limit with feed-forward, by `holdover-sim string --range-sensors on`. The sensor there looks 50 times a second, without
+/// faults, and errs by up to 0.25 m and 0.1 m/s. While it sees nothing, 1.01 does not hold. A van needs more, and a bus more still.
 pub const TIME_GAP_WITH_SENSOR: Seconds = Seconds::from_millis(800);
 
 /// The time gap of the cruise control, and to which the time gap of the law opens while nothing new is known of the vehicle ahead. There

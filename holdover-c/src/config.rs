@@ -79,7 +79,8 @@ pub struct Body {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Law {
-    /// Desired time gap in ms; 1600 by default. With a range sensor 800 will do (`range_sensor`, and `feed_forward_milli` of 500).
+    /// Desired time gap in ms; 1600 by default. With a range sensor 800 will do in a car (`range_sensor`, and
+    /// `feed_forward_milli` of 500), 1000 in a van, and 1400 in a bus, with a `feed_forward_milli` of 0.
     pub time_gap_ms: u32,
     /// Time gap in ms to which that opens, by 100 ms a second, while the vehicle ahead is neither heard nor seen; 1800 by default. If it
     /// is no larger than the gap in force, the gap does not open.

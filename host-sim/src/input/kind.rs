@@ -91,8 +91,8 @@ impl Kind {
         }
     }
 
-    /// The share of the acceleration ahead that its unit feeds forward, with a range sensor or without. A bus feeds nothing forward: its
-    /// jerk is limited to half of a car's, so what it adds when the vehicle ahead stops braking comes too late.
+    /// The share of the acceleration ahead that its unit feeds forward in a string, with a range sensor or without. A bus feeds nothing
+    /// forward: its jerk is limited to half of a car's, so when the vehicle ahead stops braking, it is late to let go of what it has added.
     #[must_use]
     pub fn feed_forward(self, has_sensor: bool) -> f64 {
         if has_sensor && self != Self::Bus { FEED_FORWARD.get().to_num() } else { 0.0 }

@@ -173,6 +173,8 @@ fn vans_and_buses_need_a_longer_time_gap_than_cars() {
     let mixed =
         rows("--delays 0 --losses 0 --step-only --range-sensors on --kinds car,van,bus --time-gaps 0.8").remove(0);
     assert_eq!(mixed.holdover.unwrap().vehicle, 3);
+    let command = options("--kinds car,bus --people 2 --step-only").command();
+    assert!(command.contains(" --range-sensors off --kinds car,bus --people 2 "), "{command}");
 }
 
 #[test]

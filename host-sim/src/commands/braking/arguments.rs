@@ -62,9 +62,8 @@ Runs:
   Ten vehicles at their time gap behind a leader that says where it is, but not
   how it will drive. All links fall silent, and in the silence the leader brakes
   to a stop; its braking sets in at 25 m/s³. Cars, vans and buses take turns, and
-  lags of 0.1 to 0.5 s; each seed begins with another of them. With a range
-  sensor all but buses feed half of the acceleration ahead forward. The silence
-  is as long in each run, but the braking begins in another part of it.
+  lags of 0.1 to 0.5 s; each seed begins with another of them. The silence is as
+  long in each run, but the braking begins in another part of it.
 
 Figures:
   gap         smallest bumper gap of any vehicle in any run; none where vehicles

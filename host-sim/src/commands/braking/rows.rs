@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
+use holdover::parameters::FEED_FORWARD;
 use serde::Serialize;
 
 use super::avoidable::{Known, Limits, is_avoidable};
 use super::leader::{self, BRAKES_AT_S};
 use super::options::BrakingOptions;
 use crate::error::Error;
-use crate::input::kind::Kind;
 use crate::input::scenario::{MAX_VEHICLES, Overrides, Scenario};
 use crate::measure::simulate::simulate;
 use crate::parallel;
 use crate::sim::world::Tick;
 
 /// The bodies and the lags of the followers, each in turn.
-const BODIES: [Kind; 3] = [Kind::Car, Kind::Van, Kind::Bus];
+const BODIES: [&str; 3] = ["car", "van", "bus"];
 const LAGS_S: [f64; 5] = [0.1, 0.5, 0.3, 0.2, 0.4];
 
 /// Time over which a jerk is taken.
@@ -173,8 +173,9 @@ fn scenario(
     let common = format!("speed_mps = {speed_mps}\nposition_accuracy_m = 0.05\nspeed_accuracy_mps = 0.02\n");
     let turn = ((options.seed % 15) + number) as usize;
     let follower = |index: usize| {
+        // As `Config::with_range_sensor` has it.
+        let feed_forward: f64 = if range_sensors.has(index + 1) { FEED_FORWARD.get().to_num() } else { 0.0 };
         let (body, lag_s) = (BODIES[(index + turn) % BODIES.len()], LAGS_S[(index + turn) % LAGS_S.len()]);
-        let (body, feed_forward) = (body.name(), body.feed_forward(range_sensors.has(index + 1)));
         format!(
             "[[vehicle]]\nkind = \"{body}\"\nlag_s = {lag_s}\ngap_m = {gap_m}\ntime_gap_s = {time_gap_s}\n\
              feed_forward = {feed_forward}\n{common}"

@@ -29,9 +29,10 @@ The tables:
   The gain k over own speed, target's speed and headway at the moment of
   association, and a curve of the damping g over k. One is for the law of eq. 5,
   made for a time gap of 1 s, that of the scenarios. The other is for that law
-  with half of the acceleration ahead passed on (feed-forward f = 0.5), as
-  vehicles with a range sensor drive, and made for 0.7 s. Both are proved at
-  every tenth of a second from there to 2 s.
+  with half of the acceleration ahead passed on (feed-forward f = 0.5), as cars
+  and vans with a range sensor drive, and made for 0.7 s. Both are proved at
+  every tenth of a second from there to 2 s, for the linear string, without
+  limits on jerk.
 
 Limits of every pair on the curve, thousandth by thousandth:
   string stability  t_g >= sqrt(g² + 2 (1 - f)/k) - g;

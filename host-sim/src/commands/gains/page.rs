@@ -34,7 +34,7 @@ pub fn render(tables: &[Table]) -> Page {
         let design = &table.design;
         page.section(&match design.feed_forward {
             0.0 => "Without feed-forward".to_owned(),
-            share => format!("With a feed-forward of {share}, as vehicles with a range sensor drive"),
+            share => format!("With a feed-forward of {share}, as cars and vans with a range sensor drive"),
         });
         proofs(&mut page, &table.proofs);
         for own in table.cells.chunks(SPEEDS * HEADWAYS) {

@@ -85,7 +85,7 @@ Examples:
   holdover-sim string --delays 0,0.025,0.05 --losses 0,0.1 --seeds 5
   holdover-sim string --delays 0.05 --losses 0.1 --frequencies 0.1,0.2
   holdover-sim string --range-sensors on --people 2,7 --unequipped 4
-  holdover-sim string --range-sensors on --kinds car,van,bus
+  holdover-sim string --range-sensors on --kinds car,van,bus --time-gaps 1,1.2,1.4
 
 Runs:
   Ten vehicles behind a leader at 15 m/s that says where it is, but not how it
@@ -94,8 +94,9 @@ Runs:
   delay, and the share is lost at random.
 
   The followers are cars with a lag of 0.3 s. Vans have one of 0.4 s and buses
-  one of 0.5 s. They drive by the limits of their kind, and with a range sensor
-  all but buses feed half of the acceleration ahead forward.
+  one of 0.5 s. Each follower drives by the limits of its kind, and with a range
+  sensor all but buses feed half of the acceleration ahead forward. The time gap
+  by default is that of a car.
 
 Mixed strings:
   A person drives by the Intelligent Driver Model, 1.5 s behind what is really

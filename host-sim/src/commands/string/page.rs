@@ -1,8 +1,8 @@
 //! The report of string stability: rows enter, an HTML page with a table and curves leaves.
 
-use super::options::{StringOptions, shipped_time_gap_s};
+use super::options::StringOptions;
 use super::rows::{LIMIT, Mean, Row, Smallest, smallest};
-use super::table::{not_run, ratio, runs};
+use super::table::{not_run, ratio, runs, shipped};
 use crate::measure::bootstrap::spelled;
 use crate::report::page::{Cell, Page};
 use crate::report::plot::{Axis, Chart, Guide, Layer, Series, Tone};
@@ -158,7 +158,7 @@ fn over_time_gap(page: &mut Page, options: &StringOptions, rows: &[Row]) {
         line("holdover", Tone::Ours, &|row| Some(row.holdover.as_ref()?.ratio)),
     ];
     let axes = (Axis::linear("time gap", "s"), Axis::linear("largest ratio", "").including(1.0));
-    let title = format!("Largest ratio over the time gap; {} s is shipped", shipped_time_gap_s(options.range_sensors));
+    let title = format!("Largest ratio over the time gap{}", shipped(options));
     let chart =
         Chart { description: caption.into(), layers, guides: vec![guide()], ..Chart::new(&title, axes.0, axes.1) };
     page.figure(&title, caption, &[&chart]);

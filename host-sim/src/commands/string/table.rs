@@ -51,11 +51,9 @@ pub fn text(options: &StringOptions, rows: &[Row], failures: &[String]) -> Strin
     }
     match smallest_time_gap_s(rows) {
         Some(gap) => {
-            let shipped = shipped_time_gap_s(options.range_sensors);
-            let _ = writeln!(
-                text,
-                "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried; {shipped} s is shipped"
-            );
+            let shipped = shipped(options);
+            let _ =
+                writeln!(text, "at most {LIMIT} at and above a time gap of {gap} s, of those that were tried{shipped}");
         }
         None => {
             let _ = writeln!(text, "not so at the largest time gap that was tried");
@@ -84,6 +82,13 @@ fn gaps(text: &mut String, options: &StringOptions, rows: &[Row]) {
         let _ = writeln!(text, "{delay_s:<10}{loss:<6}{ours:>9}{stands:>14}{moved:>17}{cacc:>8}{degraded:>10}");
     }
     text.push('\n');
+}
+
+/// What is said of the time gap that is shipped: that is one of cars.
+#[must_use]
+pub fn shipped(options: &StringOptions) -> String {
+    let shipped = || format!("; {} s is shipped", shipped_time_gap_s(options.range_sensors));
+    if options.has_cars_alone() { shipped() } else { String::new() }
 }
 
 /// What is said where another method has no smallest time gap: in a mixed string it was not run.

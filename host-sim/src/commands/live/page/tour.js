@@ -13,7 +13,8 @@ const set = (part, on) => order({ do: "switch", vehicle: null, part, on });
 const STEPS = [
   {
     name: "perfect link",
-    goesBack: true,
+    // Where the run has hardly begun, a new start may not be told from going on.
+    goesBack: (nowS) => nowS > 1,
     text: "1. A perfect link. Every message arrives at once. The dashed outline is the vehicle ahead as its follower believes it to be; the " +
       "band is what is certain. Range sensors and envelope are off, as in the paper: the vehicles know one another by messages alone.",
     async begin() {
@@ -46,7 +47,7 @@ const STEPS = [
   {
     name: "without the estimate",
     isPlain: true,
-    goesBack: true,
+    goesBack: (nowS) => nowS > STEPS[2].atS,
     text: "4. The same four seconds without the estimate. Time goes back to where the silence began. Who hears nothing takes the newest " +
       "message as it stands, brakes behind a vehicle that is not there any more, and everyone behind brakes too.",
     async begin(state) {
@@ -79,7 +80,7 @@ export function tour(state) {
   let at = -1; // before the first step
   let figures = STEPS.map(() => null);
   let settledS = Infinity; // figures count from then on
-  let backFromS = -Infinity; // an earlier scene than this is the first one after time went back; those on their way until then are of before
+  let isAwaited = false; // time is to go back, and the scenes until then are of before
 
   function show() {
     const step = STEPS[at];
@@ -113,19 +114,22 @@ export function tour(state) {
     settledS = Infinity;
     if (at < STEPS.length) {
       const step = STEPS[at];
-      backFromS = step.goesBack ? Math.max(state.scene.at_s, 0.5) : -Infinity;
+      const nowS = () => state.scene?.at_s ?? 0;
+      isAwaited ||= step.goesBack?.(nowS()) ?? false;
       await order({ do: "play" });
       await step.begin(state);
-      if (!step.goesBack) settledS = state.scene.at_s + 1;
+      if (!isAwaited && settledS === Infinity) settledS = nowS() + 1;
     }
     show();
   };
   show();
 
   return {
+    rewind(scene) {
+      if (isAwaited) [isAwaited, settledS] = [false, scene.at_s + 1];
+    },
     // The estimate of the ego by its follower, or by the ego of the vehicle ahead.
     take(scene) {
-      if (scene.at_s < backFromS) [backFromS, settledS] = [-Infinity, scene.at_s + 1];
       if (at < 0 || at >= STEPS.length || scene.at_s < settledS) return;
       const ego = state.cast.ego;
       const by = ego + 1 < scene.vehicles.length ? ego + 1 : ego;
